@@ -10,13 +10,14 @@
 namespace octotomy::brep {
 namespace {
 
-/// Least cosine between normals that match: 37 degrees, which facets of a noisy surface still keep.
+/// Least cosine between normals that match: 37 degrees, which facets of a noisy surface still satisfy.
 constexpr double matching_cosine() {
   return 0.8;
 }
 
-/// A right fit matches this many times what any other motion matches, and this share more. Both are chosen by
-/// trials, not derived: fits of bones and of generated bodies of which up to 60 % is missing or foreign.
+/// A right fit matches at least `least_ratio` times as much of the surface as any other motion, and exceeds it
+/// by at least `least_lead` of the surface. Both constants were chosen by trials, not derived: fits of bones,
+/// and of generated bodies of which up to 60 % is missing or foreign.
 constexpr double least_ratio() {
   return 2.0;
 }
@@ -31,8 +32,8 @@ constexpr double least_small_ratio() {
 constexpr double least_lead() {
   return 0.12;
 }
-/// A fit that matches less shows nothing, whatever others match: bumps of a rounded body match a fifth of it by
-/// chance.
+/// A fit that matches less than this is no evidence, however little others match: bumps of a rounded body
+/// match a fifth of it by chance.
 constexpr double least_share() {
   return 0.2;
 }
@@ -66,7 +67,7 @@ constexpr double chance_share() {
 }
 
 /// Motions closer than this share of the spread are one answer. Refinements with few samples end within a
-/// hundredth of each other.
+/// hundredth of the spread.
 constexpr double same_share() {
   return 0.1;
 }

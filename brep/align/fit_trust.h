@@ -30,12 +30,12 @@ std::vector<glm::dmat4> different_motions(const Cloud& cloud, const std::vector<
 std::vector<double> matched_shares(const Cloud& cloud, const OrientedSurface& fixed, const glm::dmat4& motion,
                                    const std::vector<double>& ladder_mm);
 
-/// The distances at which fits are compared: three rungs, each twice the one before, from a quarter of a per
-/// cent of the spread or from a quarter of the surfaces' noise, as rungs wider than the noise match wrong fits
-/// too; a last rung of at least 2 % of the spread.
+/// The distances at which fits are compared: three rungs, each twice the one before, from a quarter of a
+/// per cent of the spread or from a quarter of the surfaces' noise, because rungs wider than the noise also
+/// match wrong fits; a last rung of at least 2 % of the spread.
 std::vector<double> trust_ladder_mm(double spread_mm, double noise_mm);
 
-/// What a fit is compared with.
+/// The data with which a fit is compared.
 struct TrustedFrom {
   const Cloud& cloud;
   const OrientedSurface& fixed;

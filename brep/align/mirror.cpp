@@ -20,19 +20,20 @@
 namespace octotomy::brep {
 namespace {
 
-/// The starts are sifted by a few samples in a few rounds, and the best planes tried again by more.
+/// The starts are sorted by fits with few samples and few rounds; the best planes are then fitted with
+/// more.
 constexpr std::size_t voting_samples = 1000, voted_count = 24, sift_samples = 150, trial_samples = 1000;
 constexpr int sift_rounds = 15, trial_rounds = 60;
 constexpr std::size_t tried_count = 4;
 
-/// The share of the overlap that trials keep, so that a loss on one side which moves the surface's centre and
-/// axes, or is larger than the overlap says, does not choose the plane.
+/// The share of the overlap that trials keep. A loss on one side may move the surface's centre and axes, or
+/// exceed the stated overlap; with this share it does not decide the plane.
 constexpr double trial_overlap() {
   return 0.5;
 }
 
-/// Planes whose normals are nearer than this, in degrees, and that pass the centre within a twentieth of the
-/// spread, are one.
+/// Planes are one if their normals differ by less than this angle in degrees and they pass the centre
+/// within a twentieth of the spread.
 constexpr double same_plane_deg() {
   return 10.0;
 }
@@ -127,9 +128,10 @@ MirrorFit plane_of(const SurfaceFit& fit, const MirrorPlane& start, const glm::d
   return found;
 }
 
-/// Planes that most pairs of samples are mirror images about, point and normal: they do not depend on the
-/// surface's centre and axes, so that a loss on one side removes votes from the mid-plane but does not move
-/// it. Pairs vote in cells of some ten degrees by a tenth of the spread; the peaks, the highest first.
+/// The planes about which most pairs of samples are mirror images, by point and normal. They do not depend
+/// on the surface's centre and axes: a loss on one side removes votes from the mid-plane but does not move
+/// it. Pairs vote in cells of about ten degrees by a tenth of the spread. Returns the peaks, the highest
+/// first.
 std::vector<MirrorPlane> voted_planes(const Cloud& cloud, std::size_t count) {
   constexpr double cells_of_normal = 6.0, cell_share = 0.1, like_normals = 0.15;
   struct Votes {
@@ -194,7 +196,8 @@ bool are_same(const MirrorPlane& a, const MirrorPlane& b, const Spread& spread) 
          std::abs(apart_mm) < 0.05 * size_mm;
 }
 
-/// The planes that fits from the starts end at, each once, the best first; of equal ones the earlier start's.
+/// The planes at which fits from the starts end, each once, the best first; among equal ones that of the
+/// earlier start.
 std::vector<Tried> tried(const std::vector<MirrorPlane>& starts, const Cloud& cloud,
                          const OrientedSurface& surface, const Spread& spread, SurfaceFitOptions options,
                          int rounds) {
@@ -217,17 +220,17 @@ std::vector<Tried> tried(const std::vector<MirrorPlane>& starts, const Cloud& cl
   return different;
 }
 
-/// A residual this many times that of the trials, which keep less of the surface, tells of samples without a
+/// A residual this many times that of the trials, which keep less of the surface, shows samples without a
 /// counterpart.
 constexpr double far_worse() {
   return 5.0;
 }
 
-/// Reports a second plane that fits nearly as well, and where none fits.
+/// Reports a second plane that fits nearly as well, and a surface that no plane fits.
 void tell_rival(const std::vector<Tried>& planes, MirrorFit& found) {
   if (!planes.empty() && !planes[0].is_fit())
     found.findings.emplace_back(
-        "WARN mid-plane: about no plane that was tried does half of the overlap have a counterpart: the "
+        "WARN mid-plane: at none of the tried planes does half of the overlap have a counterpart: the "
         "plane "
         "is a guess; give one near the right one, --plane, or a smaller --overlap");
   if (planes.size() < 2 || !planes[1].is_fit() || planes[1].rms_mm > rival_share() * planes[0].rms_mm) return;
@@ -289,7 +292,8 @@ MirrorFit fit_mirror_plane(const Mesh& mesh, const MirrorFitOptions& options) {
     fit.findings.push_back("WARN mid-plane: of " + short_text(100.0 * options.overlap) +
                            " % of the surface the residual is " + short_text(wide_mm) + " mm, so that only " +
                            short_text(100.0 * fit_options.overlap) + " % were fitted, to " +
-                           short_text(fit.rms_mm) + " mm: say by --overlap what has a counterpart");
+                           short_text(fit.rms_mm) +
+                           " mm: give by --overlap the share that has a counterpart");
   }
   if (options.progress) options.progress(1.0);
   MirrorFit found = plane_of(fit, plane, spread.centre_mm);

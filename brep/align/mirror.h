@@ -23,12 +23,12 @@ Mesh mirrored(const Mesh& mesh, const MirrorPlane& plane);
 Solid mirrored(const Solid& solid, const MirrorPlane& plane);
 
 struct MirrorFitOptions {
-  /// Near which the plane lies, to some 20 degrees; none tries those square to the surface's three axes and
-  /// those that most pairs of points are mirror images about.
+  /// The plane near which the result lies, to about 20 degrees. None: tries the planes square to the
+  /// surface's three axes, and those about which most pairs of points are mirror images.
   std::optional<MirrorPlane> start = std::nullopt;
-  /// Share of the surface's area that has a counterpart on the other side, as in SurfaceFitOptions: what is
-  /// missing or crooked on one side must be less than the rest. Without a start half of it is taken, with a
-  /// finding, where the residual tells that less has a counterpart.
+  /// Share of the surface's area that has a counterpart on the other side, as in SurfaceFitOptions: the
+  /// missing or crooked part of one side must be less than the rest. Without a start, half of this share is
+  /// used, with a finding, if the residual shows that less has a counterpart.
   double overlap = 0.7;
   int max_rounds = 100;                          ///< as in SurfaceFitOptions
   std::optional<double> rest_mm = std::nullopt;  ///< as in SurfaceFitOptions
@@ -47,8 +47,7 @@ struct MirrorFit {
   int rounds = 0;                            ///< number of rounds of the last two refinements
   bool converged = false;                    ///< both came to rest within max_rounds
   double last_step_mm = 0.0, rest_mm = 0.0;  ///< as in SurfaceFit
-  /// Doubts. Without a start also another plane that fits nearly as well, and a smaller overlap that was
-  /// taken.
+  /// Doubts. Without a start also another plane that fits nearly as well, and the use of a smaller overlap.
   std::vector<std::string> findings;
 };
 

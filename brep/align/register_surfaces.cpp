@@ -344,7 +344,7 @@ void sort_by_score(std::vector<Fit>& fits) {
                    [](const Fit& a, const Fit& b) { return a.score_mm < b.score_mm; });
 }
 
-/// What a search found, with few samples.
+/// The result of a search with few samples.
 struct Searched {
   glm::dmat4 best{1.0};
   std::vector<glm::dmat4> ends;    ///< of all starts, the best first
@@ -376,7 +376,7 @@ Searched search(const Cloud& cloud, const Cloud& fixed, const OrientedSurface& s
   for (Fit& fit : fits) fit = refinement.run(fit.motion, finalist_rounds);
   sort_by_score(fits);
   searched.best = fits.front().motion;
-  // The finalists are often one motion several times. Its rivals are refined as far.
+  // Several finalists are often the same motion. Other motions are refined as far.
   for (const glm::dmat4& end : different_motions(cloud, searched.ends, finalists + 1)) {
     const bool is_refined = apart_mm(cloud, end, searched.ends.front()) == 0.0;
     if (!is_refined) searched.others.push_back(refinement.run(end, finalist_rounds).motion);
@@ -386,7 +386,7 @@ Searched search(const Cloud& cloud, const Cloud& fixed, const OrientedSurface& s
   return searched;
 }
 
-/// The search's ends again with a smaller overlap, the one that matches most first.
+/// The search's results, refined again with a smaller overlap, the one that matches most first.
 std::vector<glm::dmat4> narrowed(const Cloud& cloud, const Searched& searched, const OrientedSurface& surface,
                                  double noise_mm, const SurfaceFitOptions& options) {
   const std::vector<double> ladder_mm = trust_ladder_mm(cloud.spread_mm, noise_mm);
@@ -504,7 +504,7 @@ SurfaceFit fit_cloud(const Cloud& cloud, const OrientedSurface& fixed, const glm
         "undetermined: add landmarks");
   if (answer.kept_share < 0.9 * options.overlap)
     answer.findings.push_back("only " + short_text(100.0 * answer.kept_share) +
-                              " % of the surface found a counterpart, less than the overlap asked for");
+                              " % of the surface found a counterpart, less than the requested overlap");
   return answer;
 }
 

@@ -313,7 +313,7 @@ void tell_films(const Question& question, Attempt& attempt) {
       attempt.findings.push_back(
           question.names.of(r) + " is without " + std::to_string(attempt.films[r]) +
           (attempt.films[r] == 1 ? " film" : " films") +
-          " thinner than the rounding of points, left where faces coincide but for their last places");
+          " thinner than the rounding of points, left where faces coincide except for their last digits");
 }
 
 void tell_flat(Attempt& attempt) {
@@ -336,8 +336,7 @@ std::size_t settle(const Question& question, Attempt& attempt, SettleReach reach
       attempt.findings.push_back(question.names.of(r) + " crosses itself: " + std::to_string(done.crossing) +
                                  (done.crossing == 1 ? " pair" : " pairs") + " of triangles, first at (" +
                                  short_text(done.at_mm.x) + ", " + short_text(done.at_mm.y) + ", " +
-                                 short_text(done.at_mm.z) +
-                                 ") mm; repair the result before other verbs take it");
+                                 short_text(done.at_mm.z) + ") mm; repair the result before using it");
   }
   return unfit;
 }

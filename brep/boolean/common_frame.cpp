@@ -22,14 +22,15 @@ namespace {
 
 constexpr std::size_t most_triangles = 200'000;
 
-/// How far points of one plane may lie beside it, in roundings: a turn is a sum of three products, a file
-/// rounds once more, and the plane through three such points is off by as much again within them.
+/// How far points of one plane may lie beside it, in roundings. A rotation sums three products, a file
+/// rounds once more, and three points rounded like that define a plane that is off by as much again between
+/// them.
 constexpr double beside_plane() {
   return 8.0;
 }
 
-/// How far apart coordinates may be that are made one number, in roundings. Twice as above, and the turn into
-/// the frame.
+/// Coordinates that differ by less than this many roundings become equal: twice the value above, and the
+/// rotation into the frame.
 constexpr double apart_along_axis() {
   return 32.0;
 }
@@ -44,8 +45,8 @@ bool is_axis(const glm::dvec3& normal) {
   return (normal.x != 0.0) + (normal.y != 0.0) + (normal.z != 0.0) == 1;
 }
 
-/// Directions of the planes in common, in the order in which they are found; of each the widest triangle's.
-/// Cost: n log n, and the pairs of triangles whose planes lie equally far from the origin.
+/// Directions of the common planes, in the order in which they are found. A direction is that of its widest
+/// triangle. Cost: n log n, and the pairs of triangles whose planes lie equally far from the origin.
 std::vector<Direction> common_directions(const std::vector<Plane>& of_a, const std::vector<Plane>& of_b,
                                          double tolerance_mm) {
   std::vector<Direction> directions;
@@ -71,7 +72,7 @@ std::vector<Direction> common_directions(const std::vector<Plane>& of_a, const s
   return directions;
 }
 
-/// Of the directions that `may_be` allows the one of most area, of equal ones the first.
+/// The direction with the largest area among those that `may_be` allows; the first of several equal ones.
 template <typename MayBe>
 std::optional<glm::dvec3> widest_direction(const std::vector<Direction>& directions, const MayBe& may_be) {
   const Direction* best = nullptr;
@@ -80,7 +81,7 @@ std::optional<glm::dvec3> widest_direction(const std::vector<Direction>& directi
   return best == nullptr ? std::nullopt : std::optional(best->normal);
 }
 
-/// The normal that `may_be` allows of the largest triangle.
+/// The normal of the largest triangle whose normal `may_be` allows.
 template <typename MayBe>
 std::optional<glm::dvec3> widest_plane(const std::vector<Plane>& of_a, const std::vector<Plane>& of_b,
                                        const MayBe& may_be) {
@@ -91,8 +92,8 @@ std::optional<glm::dvec3> widest_plane(const std::vector<Plane>& of_a, const std
   return best == nullptr ? std::nullopt : std::optional(best->normal);
 }
 
-/// Where planes that are square to an axis of the frame lie along it, ascending, further apart than the
-/// tolerance.
+/// The positions along an axis of the frame of planes that are square to it: ascending, farther apart than
+/// the tolerance.
 std::vector<double> offsets_along(const std::vector<Plane>& of_a, const std::vector<Plane>& of_b,
                                   const glm::dvec3& axis, const glm::dvec3& origin_mm, double tolerance_mm) {
   std::vector<double> all, apart;
@@ -106,7 +107,7 @@ std::vector<double> offsets_along(const std::vector<Plane>& of_a, const std::vec
   return apart;
 }
 
-/// The offset that a coordinate is nearer to than the tolerance, or the coordinate.
+/// The offset within the tolerance of a coordinate, else the coordinate.
 double on_plane(double coordinate, const std::vector<double>& offsets, double tolerance_mm) {
   auto above = std::lower_bound(offsets.begin(), offsets.end(), coordinate);
   if (above != offsets.end() && *above - coordinate <= tolerance_mm) return *above;
@@ -114,7 +115,7 @@ double on_plane(double coordinate, const std::vector<double>& offsets, double to
   return coordinate;
 }
 
-/// Whether no two different points have come to one place.
+/// Whether all different points are still at different places.
 bool are_apart(const std::vector<glm::dvec3>& given, const std::vector<glm::dvec3>& turned) {
   std::map<CommonFrame::PointKey, glm::dvec3> at;
   for (std::size_t i = 0; i < turned.size(); ++i) {
@@ -135,7 +136,8 @@ Triangles CommonFrame::moved_back(const Triangles& triangles) const {
     is_given[v] = given != given_mm.end();
     p = is_given[v] ? given->second : origin_mm + lps_from_frame * p;
   }
-  // Points of crossings that meet in one place but for rounding: what is between them is turned over.
+  // Crossing points that coincide except for rounding become one, because the triangles between them are
+  // turned over.
   for (const auto& face : back.faces)
     for (std::size_t k = 0; k < 3; ++k) {
       std::uint32_t v = face[k], w = face[(k + 1) % 3];
@@ -189,8 +191,8 @@ std::optional<CommonFrame> common_frame(const Solid& a, const Solid& b) {
   }
   if (!are_apart(of_a.points_mm, turned_a.points_mm) || !are_apart(of_b.points_mm, turned_b.points_mm))
     return std::nullopt;
-  // Points that stood beside a plane by more than the last places of doubles stay on it: put back, they could
-  // turn over what was cut beside them.
+  // Points that lay off a plane by more than the last places of doubles are not moved back: that could turn
+  // over the triangles cut beside them.
   frame.kept_mm = apart_along_axis() * std::numeric_limits<double>::epsilon() * rounding.reach_mm;
   const auto keep = [&](const Triangles& given, const Triangles& exact, const Triangles& turned) {
     for (std::size_t i = 0; i < turned.points_mm.size(); ++i) {

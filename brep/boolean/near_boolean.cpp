@@ -408,7 +408,7 @@ Corefined corefine_near(const std::array<Operand, 2>& operands, std::array<Side,
     corefined = corefine(a.mesh, b.mesh, {true, true, wanted[of_a_minus_b], wanted[of_b_minus_a]}, stop);
     if (!corefined.failure.empty()) throw Obstacle(corefined.failure);
     if (corefined.has_open_film || corefined.films != decltype(corefined.films){})
-      throw Obstacle("faces coincide but for rounding, near the cut and perhaps beyond");
+      throw Obstacle("faces coincide except for rounding, near the cut and perhaps beyond");
     if (corefined.uncut[0].empty() && corefined.uncut[1].empty()) return corefined;
     if (again || corefined.flat > 0) throw Obstacle("the surfaces touch without cutting");
     for (std::size_t s = 0; s < 2; ++s) {

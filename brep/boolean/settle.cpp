@@ -40,7 +40,7 @@ Box box_of(const Triangles& triangles) {
   return box;
 }
 
-/// Tells new points, all of which lie in the operands' common box, from points of the operands.
+/// Distinguishes new points, all of which lie in the operands' common box, from points of the operands.
 class Origins {
  public:
   explicit Origins(const std::array<const Triangles*, 2>& operands) {
@@ -68,7 +68,7 @@ class Origins {
     return is_in;
   }
 
-  /// Of each point, 1 where it is the first operand's, 2 where the second's, 3 of both, 0 where it is new.
+  /// For each point: 1 if it is the first operand's, 2 if the second's, 3 if both have it, 0 if it is new.
   std::vector<std::uint8_t> origins(const Triangles& surface) const {
     std::vector<std::uint8_t> origin(surface.points_mm.size(), 3);
     for (std::size_t v = 0; v < origin.size(); ++v) {
@@ -92,7 +92,7 @@ class Origins {
   std::array<std::vector<glm::dvec3>, 2> given_mm_;
 };
 
-/// Marks the corners of triangles that are no operand's: they have a new point, or points of both.
+/// Marks the corners of triangles that no operand has: with a new point, or with points of both operands.
 std::vector<std::uint8_t> corners_of_new(const Triangles& surface, const std::vector<std::uint8_t>& origin) {
   std::vector<std::uint8_t> is_corner(origin.size(), 0);
   for (const auto& face : surface.faces)
@@ -115,7 +115,7 @@ bool has_no_area(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& r) 
                          Kernel::Point_3(r.x, r.y, r.z));
 }
 
-/// What next verbs would refuse beside new points.
+/// Defects beside new points that later operations would refuse.
 struct Folds {
   std::size_t crossing = 0, flat = 0;
   glm::dvec3 at_mm{0.0};
@@ -145,7 +145,7 @@ struct Tolerances {
   double beside_mm = 0.0;  ///< how far the surface may move along its normal
 };
 
-/// Takes thin triangles beside new points out of a mesh where that leaves the surface in its place.
+/// Removes thin triangles beside new points from a mesh where that does not move the surface.
 class Settler {
  public:
   Settler(const Triangles& surface, std::vector<std::uint8_t> origin, const Tolerances& tolerances)

@@ -21,7 +21,7 @@ namespace {
 constexpr std::string_view stl_storage = "1.2.840.10008.5.1.4.1.1.104.3";
 constexpr std::string_view obj_storage = "1.2.840.10008.5.1.4.1.1.104.4";
 constexpr std::uint32_t open_length = 0xffffffff;
-/// Sequences inside each other beyond this depth are damage.
+/// Sequences nested deeper than this mean that the file is damaged.
 constexpr int most_depth = 16;
 
 /// A value without the blanks and zeros around it.
@@ -77,7 +77,7 @@ class AttributeWalk {
     return scanner_.binary<std::uint32_t>(std::endian::little);
   }
 
-  /// Passes over the items of a sequence whose length is open, to its end mark.
+  /// Skips the items of a sequence of undefined length, up to its end mark.
   void pass_open(int depth) {
     constexpr std::uint32_t item = 0xfffee000, item_end = 0xfffee00d, sequence_end = 0xfffee0dd;
     if (depth > most_depth)
@@ -102,7 +102,7 @@ struct Syntax {
   bool is_explicit = true;
 };
 
-/// Passes the preamble and the meta information, which is always explicit.
+/// Skips the preamble and the meta information, which is always explicit.
 Syntax syntax_of(std::string_view bytes) {
   constexpr std::size_t meta_at = 132;
   MeshScanner scanner(bytes.substr(meta_at));
@@ -120,7 +120,7 @@ Syntax syntax_of(std::string_view bytes) {
   return {scanner.bytes(scanner.rest()), syntax == "1.2.840.10008.1.2.1"};
 }
 
-/// The word for length_unit() of a UCUM code; empty if it is not one of length.
+/// The word for length_unit() that a UCUM code means; empty if it is not a unit of length.
 std::string word_of_unit(std::string_view code) {
   constexpr std::array<std::string_view, 6> metric{"nm", "um", "mm", "cm", "dm", "m"};
   if (std::find(metric.begin(), metric.end(), code) != metric.end()) return std::string(code);
@@ -147,7 +147,7 @@ std::string_view unit_code(std::string_view items, bool is_explicit) {
 bool is_dicom_model(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return false;
-  // The class stands in the meta information, which begins the file.
+  // The storage class is in the meta information, at the beginning of the file.
   std::string head(1024, '\0');
   std::ifstream in(path, std::ios::binary);
   in.read(head.data(), static_cast<std::streamsize>(head.size()));

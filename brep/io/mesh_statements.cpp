@@ -117,7 +117,7 @@ MeshStatements::Resolved MeshStatements::resolved(const std::optional<std::strin
              (made.frame == "LPS"   ? ""
               : made.frame == "RAS" ? ": x and y are negated to LPS"
                                     : ": turned to LPS") +
-             (is_mirrored ? ", and the triangles' sides with it, as this frame is left-handed" : ""));
+             (is_mirrored ? ", and the triangles are reversed, because this frame is left-handed" : ""));
   } else {
     guess("frame",
           !silent_frame_.empty() ? silent_frame_

@@ -305,7 +305,7 @@ std::vector<MeshFinding> PolygonCounts::findings(double unit_mm) const {
   if (bent > 0)
     warn(count(bent, "polygon is", "polygons are") + " not planar, by up to " +
          short_text(most_bent * unit_mm) + " mm" + first(first_bent) +
-         ": the file does not say where the surface between the corners lies");
+         ": the file does not state where the surface between the corners lies");
   if (crossing > 0)
     warn(count(crossing, "polygon crosses itself", "polygons cross themselves") + first(first_crossing) +
          ": no triangulation fills it, so the fan from its first corner is used; mend it in the program that "

@@ -230,8 +230,8 @@ class Reader3mf {
     ModelPart root = read_part(path);
     made_.says.add_unit(root.unit, "3MF's unit " + root.unit.substr(0, 40));
     made_.says.silent_frame(
-        "3MF's frame is the printer's, z up and y to the back, which LPS is of a standing "
-        "patient seen from the front: assumed; use --frame RAS if its program writes RAS");
+        "3MF's frame is the printer's, z up and y to the back. For a standing patient seen from the front "
+        "that is LPS, which is assumed; use --frame RAS if its program writes RAS");
     made_.says.add_writer(root.application);
     unit_ = root.unit;
     std::vector<Placed> items = root.items.empty() ? unplaced(path) : root.items;

@@ -152,13 +152,13 @@ class GlbReader {
     place_nodes();
     if (hidden_ > 0)
       made_.says.warn("file",
-                      std::to_string(hidden_) + " nodes are stated as invisible: they are read all the same");
+                      std::to_string(hidden_) + " nodes are marked as invisible and are read nevertheless");
     if (overlaid_ > 0)
       made_.says.warn(
           "file", std::to_string(overlaid_) +
-                      " nodes state a matrix and also a translation, rotation or scale: the matrix is taken");
+                      " nodes state a matrix and also a translation, rotation or scale: the matrix is used");
     if (moved_)
-      made_.says.warn("file", "skins and morph targets are left out: the mesh is as it was before them");
+      made_.says.warn("file", "skins and morph targets are left out: the mesh has its shape without them");
     made_.polygons.faces = made_.triangles.faces.size();
     return std::move(made_);
   }
@@ -170,7 +170,7 @@ class GlbReader {
     scanner.skip(4);
     const auto number = [&] { return scanner.binary<std::uint32_t>(std::endian::little); };
     if (const std::uint32_t version = number(); version != 2)
-      refuse_file("is glTF " + std::to_string(version) + "; version 2 is read");
+      refuse_file("is glTF " + std::to_string(version) + "; only version 2 can be read");
     if (const std::uint32_t length = number(); length > bytes_.size())
       refuse_file("is " + std::to_string(length) + " bytes by its header and " +
                   std::to_string(bytes_.size()) + " in fact: it is cut short");
@@ -319,8 +319,7 @@ class GlbReader {
       const PlacedNode placed = open.back();
       open.pop_back();
       const Json& node = entry(document_, "nodes", placed.node);
-      if (is_met[placed.node])
-        refuse_file("node " + std::to_string(placed.node) + " stands below two others");
+      if (is_met[placed.node]) refuse_file("node " + std::to_string(placed.node) + " has two parents");
       is_met[placed.node] = true;
       const glm::dmat4 matrix = placed.matrix * matrix_of(node);
       if (node.contains("mesh")) add_mesh(whole(node, "mesh", 0), matrix, points);

@@ -29,8 +29,8 @@ struct MeshFile {
 
 /// Extensions of files that read_mesh() reads, for messages: ".stl, .ply, ... or .dcm".
 extern const char* const mesh_formats_read;
-/// Whether read_mesh() reads files with the path's extension; of .dcm and files without one, whether the file
-/// holds a surface.
+/// Whether read_mesh() reads files with the path's extension. For .dcm, and for files without an extension,
+/// whether the file holds a surface.
 bool is_mesh_file(const std::filesystem::path& path);
 
 /// Reads a surface:

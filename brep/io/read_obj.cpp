@@ -56,7 +56,7 @@ struct ObjLeftOut {
                             " left out, as only polygons are read: have its program export it as triangles");
     if (files > 0)
       says.warn("file", named(files, " other file is", " other files are") +
-                            " called (call) and left out: have its program export all as one file");
+                            " referred to (call) and left out: export everything as one file");
     const auto tell = [&](std::size_t number, const char* one, const char* many) {
       if (number > 0) says.tell("file", named(number, one, many) + " left out");
     };

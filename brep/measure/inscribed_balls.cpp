@@ -19,9 +19,9 @@ namespace octotomy::brep {
 namespace {
 
 constexpr std::uint32_t leaf_size = 4;
-/// Relative to a radius: the rounding of distances, with three decimals to spare, and what a radius may be
-/// too large by after `exact_nodes`. A sphere's triangles all touch the largest ball: to exclude each exactly
-/// would cost n a ball.
+/// Both relative to a radius: the rounding of distances, with three decimals to spare, and the largest
+/// excess of a radius after `exact_nodes`. All triangles of a sphere touch its largest ball, so excluding
+/// each exactly would cost n a ball.
 constexpr double rounding = 1e-12, coarse = 5e-3;
 constexpr int exact_nodes = 128;
 constexpr double touching_share = 0.025;
@@ -47,8 +47,8 @@ double squared(const glm::dvec3& v) {
   return glm::dot(v, v);
 }
 
-/// How far along a line from `p` a triangle is passed, by Cramer's rule, or 0. Triangles are widened by more
-/// than rounding, so that no ray slips between two: on a closed surface one of them is passed.
+/// The distance along a line from `p` at which it passes a triangle, by Cramer's rule, or 0. Triangles are
+/// widened by more than rounding, so that a ray passes at least one on a closed surface.
 double passes(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& p,
               const glm::dvec3& along) {
   constexpr double widened = 1e-9;  // of a triangle's sides
@@ -171,7 +171,7 @@ Ball InscribedBalls::touching(const glm::dvec3& p_mm, const glm::dvec3& normal, 
                               double least_cosine) const {
   double radius = 0.5 * ray_mm;
   glm::dvec3 centre = p_mm - radius * normal;
-  // Triangles of the point's own sheet, which may not be of it for a smaller ball.
+  // Triangles of the point's own sheet. For a smaller ball they may belong to another sheet.
   std::vector<std::uint32_t> own_sheet;
   const auto shrink = [&](std::uint32_t triangle, double slack) {
     const Corners& t = triangles_[triangle];
@@ -205,7 +205,7 @@ Ball InscribedBalls::touching(const glm::dvec3& p_mm, const glm::dvec3& normal, 
       for (std::uint32_t i = node.begin; i < node.end; ++i) shrink(i, slack);
       continue;
     }
-    // The half nearer to the point comes first: it shrinks the ball most.
+    // The half nearer to the point comes first, because it shrinks the ball most.
     std::uint32_t near = number + 1, far = node.second;
     if (nodes_[far].squared_distance(p_mm) < nodes_[near].squared_distance(p_mm)) std::swap(near, far);
     pending.push(far);
@@ -283,7 +283,8 @@ LargestBall::LargestBall(std::vector<Ball> balls) : balls_(balls.size()) {
 Ball LargestBall::about(const glm::dvec3& p_mm, const Ball& known) const {
   Ball best = known;
   if (nodes_.empty()) return best;
-  // What a node can still offer, or 0: its largest ball, if that could reach the point.
+  // The largest radius that a node can still contribute: that of its largest ball if that could reach the
+  // point, else 0.
   const auto offers = [&](std::uint32_t number) {
     const Node& node = nodes_[number];
     const double square = squared_distance_to_box(p_mm, node.low_mm, node.high_mm);

@@ -22,26 +22,29 @@ class InscribedBalls {
   /// Precondition: the surface has triangles, and its points are finite.
   explicit InscribedBalls(const Triangles& surface);
 
-  /// The way from a point of the surface straight inward, along its unit normal, to where the surface is met
-  /// again; infinity where it is not. Places within 2^-30 of the surface's extent are the point itself. Cost:
-  /// about log n.
+  /// The distance from a point of the surface straight inward, along its unit normal, to the next point of
+  /// the surface; infinity if there is none. Places within 2^-30 of the surface's extent count as the point
+  /// itself. Cost: about log n.
   double ray_mm(const glm::dvec3& p_mm, const glm::dvec3& normal) const;
 
-  /// The largest ball that touches the surface at a point, has its centre opposite to the unit normal there,
-  /// and holds no other sheet; its diameter is at most `ray_mm`, that point's. A triangle whose nearest point
-  /// to the centre lies within the angle of `least_cosine` of the point, seen from the centre, belongs to the
-  /// point's own sheet. The radius is good to rounding, or where very many triangles touch the ball, as of a
-  /// sphere, too large by at most 0.5 %. Cost: about log n; at most some thousand nodes of the tree more.
+  /// The largest ball that touches the surface at a point, has its centre opposite to the unit normal
+  /// there, and holds no other sheet; its diameter is at most `ray_mm`, which is ray_mm() of the point. A
+  /// triangle whose nearest point to the centre lies within the angle of `least_cosine` of the point, seen
+  /// from the centre, belongs to the point's own sheet. The radius is good to rounding, or where very many
+  /// triangles touch the ball, as of a sphere, too large by at most 0.5 %. Cost: about log n; at most some
+  /// thousand nodes of the tree more.
   Ball touching(const glm::dvec3& p_mm, const glm::dvec3& normal, double ray_mm, double least_cosine) const;
 
-  /// Whether the surface touches a ball, within 2.5 % of its radius, in a direction from its centre that
-  /// encloses at least `least_rad` with that to `p_mm`, a point where it touches. `least_rad` above 90
-  /// degrees. Cost: about log n and the triangles near the opposite point.
+  /// Whether the surface touches a ball, within 2.5 % of its radius, at a second place nearly opposite to
+  /// `p_mm`, a place where it touches: seen from the ball's centre, the two places are at least `least_rad`
+  /// apart. Precondition: `least_rad` is above 90 degrees. Cost: about log n and the triangles near the
+  /// opposite point.
   bool touches_opposite(const Ball& ball, const glm::dvec3& p_mm, double least_rad) const;
 
  private:
-  /// Over triangles begin .. end - 1, within a box and a slab across their mean normal: of a curved sheet the
-  /// slab is much the thinner. An inner node's children are the next one and `second`, 0 in a leaf.
+  /// A node over triangles begin .. end - 1, within a box and a slab across their mean normal. For a curved
+  /// sheet the slab is much thinner than the box. An inner node's children are the next node and `second`,
+  /// which is 0 in a leaf.
   struct Node {
     glm::dvec3 low_mm{0.0}, high_mm{0.0}, across{0.0};
     double slab_low_mm = 0.0, slab_high_mm = 0.0;

@@ -83,7 +83,7 @@ std::vector<VolumePoint> volume_points(const Solid& solid, std::size_t wanted) {
   return all;
 }
 
-/// Some of the samples, at even steps, each with the area of those left out up to the next.
+/// Every n-th sample, with the area of the samples left out up to the next one.
 std::vector<LocalThicknessAt> surface_points(const Solid& solid, std::size_t wanted, double& reach_mm) {
   const auto spacing = std::sqrt(solid.measures().area_mm2 / static_cast<double>(wanted));
   const SurfaceSamples samples = sample_surface(
@@ -158,7 +158,7 @@ class Measurement {
     if (options_.progress) options_.progress(share);
   }
 
-  /// A point alone where the surface is not closed and the ray leaves it.
+  /// A single point if the surface is not closed and the ray leaves it.
   Ball ball_at(const glm::dvec3& p_mm, const glm::dvec3& normal, double ray_mm) const {
     return std::isfinite(ray_mm) ? inscribed_.touching(p_mm, normal, ray_mm, least_cosine_) : Ball{p_mm, 0.0};
   }
@@ -181,7 +181,7 @@ class Measurement {
     each(points_.size(), [&](std::size_t i) {
       const glm::dvec3 outward = feet[i].p_mm - points_[i].p_mm;
       const double distance = glm::length(outward);
-      // On the surface itself no direction is known, and no ball but a point.
+      // A point on the surface itself has no direction inward, so its ball is a single point.
       Ball& ball = balls_[on_surface_ + i] = Ball{points_[i].p_mm, 0.0};
       if (!(distance > 0.0)) return;
       const glm::dvec3 normal = outward / distance;
@@ -192,7 +192,8 @@ class Measurement {
   void summarise(LocalThickness& found) const {
     const LargestBall all(balls_);
     std::vector<Ball> some;
-    // Neighbours in the list are neighbours in space: a multiplicative hash leaves out at random.
+    // Neighbours in the list are neighbours in space, so a multiplicative hash chooses the balls that are
+    // left out at random.
     for (std::size_t i = 0; i < balls_.size(); ++i)
       if ((static_cast<std::uint32_t>(i) * 2654435769U) >> 30 == 0) some.push_back(balls_[i]);
     const LargestBall fewer(std::move(some));
@@ -224,7 +225,7 @@ class Measurement {
     WeightedSums of_groups;
     for (const WeightedSums& group : groups)
       if (group.weight > 0.0) of_groups.add(group.mean(), 1.0);
-    // Balls four times as dense stand half as far apart, and the error is of first order in that.
+    // Balls four times as dense are half as far apart, and the error is of first order in that distance.
     const double rise = sums.mean() - sums_of_fewer.mean();
     found.mean_mm = std::min(sums.mean() + rise, found.largest_mm);
     found.deviation_mm = sums.deviation();

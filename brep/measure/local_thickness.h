@@ -18,9 +18,9 @@ struct LocalThicknessOptions {
   /// the average fall with its square root on solids with edges.
   std::size_t samples = 20000;
   double least_angle_deg = 30.0;  ///< as of ThicknessOptions
-  /// A wall's point: its ball touches the surface, within 2.5 % of its radius, at a second place, whose
-  /// direction from the ball's centre encloses at least this with that to the point, 91..179. The two sides
-  /// of a wedge of angle a touch balls at 180 - a, so that 150 leaves out edges sharper or blunter than walls
+  /// A point belongs to a wall if its ball touches the surface, within 2.5 % of its radius, at a second
+  /// place that is at least this angle from the point, seen from the ball's centre; 91..179. The two sides
+  /// of a wedge of angle a touch balls at 180 - a. So 150 excludes edges, sharp or blunt, but not walls
   /// whose sides converge by up to 30 degrees.
   double wall_angle_deg = 150.0;
   std::function<void(double)> progress = {};  ///< is called with 0..1, from the calling thread
@@ -38,16 +38,17 @@ struct LocalThicknessAt {
 
 /// Over a solid's volume, each point weighing its part of it.
 struct LocalThickness {
-  double mean_mm = 0.0;  ///< extrapolated to infinitely many balls, and at most largest_mm: the mean over the
-                         ///< balls plus what it rose by from a fourth of them, an error of first order
+  /// Extrapolated to infinitely many balls, to first order: the mean over all balls, plus the increase from
+  /// the mean over a fourth of them. At most largest_mm.
+  double mean_mm = 0.0;
   double deviation_mm = 0.0, median_mm = 0.0, largest_mm = 0.0;  ///< over the balls, not extrapolated
-  /// The mean is within this of the truth for the given triangles, in 99 of 100 cases: twice what leaving
-  /// out three balls of four changes it by, 2.6 standard errors of the points, which sums over every second
-  /// one show, and the searches' 0.5 %.
+  /// The mean is within this of the true value for the given triangles, in 99 of 100 cases. The sum of
+  /// three terms: twice the change when three balls of four are left out, 2.6 standard errors of the
+  /// points, estimated from sums over every second one, and 0.5 % for the searches.
   double mean_half_width_mm = 0.0;
   std::vector<LocalThicknessAt> surface;
   double reach_mm = 0.0;  ///< no point of the surface lies further than this from one of `surface`
-  /// The wall's point of least thickness, in `surface`; none where no point is of a wall.
+  /// The thinnest point of a wall, as an index into `surface`; none if no point belongs to a wall.
   std::optional<std::size_t> thinnest_wall;
 };
 

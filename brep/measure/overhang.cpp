@@ -12,7 +12,8 @@
 namespace octotomy::brep {
 namespace {
 
-/// Of a unit vector's length and of a cosine: a face that is inclined by just the angle is no overhang.
+/// Tolerance of a unit vector's length and of a cosine: a face inclined by exactly the angle is no
+/// overhang.
 constexpr double direction_rounding = 1e-9;
 
 std::array<glm::dvec3, 3> corners_mm(const Triangles& triangles, std::size_t face) {

@@ -25,7 +25,7 @@ std::vector<Thickness> thickness(const Solid& solid, const std::vector<SurfacePo
   const InscribedBalls inscribed(solid.triangles());
   const double least_cosine = std::cos(options.least_angle_deg * std::numbers::pi / 180.0);
   std::vector<Thickness> thickness(points.size());
-  // In parts, between which progress is reported from this thread.
+  // Points are processed in parts, and this thread reports progress after each part.
   constexpr std::size_t part = 8192;
   for (std::size_t from = 0; from < points.size(); from += part) {
     if (options.stop.stop_requested()) throw Stopped("thickness: stopped");

@@ -69,15 +69,15 @@ class SurfaceTree {
 
   /// The foot of each point, by the same search. Throws as distances_mm() and costs as much.
   std::vector<Foot> feet(const std::vector<glm::dvec3>& points_mm) const;
-  /// The same, each told by the point's number, from several threads.
+  /// The same. Calls `visit` with each point's number and foot, from several threads.
   void visit_feet(const std::vector<glm::dvec3>& points_mm,
                   const std::function<void(std::size_t point, const Foot& foot)>& visit) const;
 
   /// The distance of each point, negative where inside() is true. Where the foot of a point lies clearly
-  /// within a triangle, the point's side of that triangle decides, and no ray is needed. A search starts with
-  /// the triangle that `nearest` has for its point, a number in the tree, and stores the nearest one there;
-  /// it starts with that of the point before where `nearest` has `unknown_triangle`. Preconditions: closed
-  /// and oriented; `nearest` is as long as the points. Throws as distances_mm().
+  /// within a triangle, the point's side of that triangle decides, and no ray is needed. A search starts
+  /// with its point's triangle in `nearest`, a number in the tree, and stores the nearest triangle there.
+  /// If `nearest` has `unknown_triangle`, it starts with the triangle of the point before. Preconditions:
+  /// closed and oriented; `nearest` is as long as the points. Throws as distances_mm().
   std::vector<double> signed_distances_mm(const std::vector<glm::dvec3>& points_mm,
                                           std::vector<std::uint32_t>& nearest) const;
   static constexpr std::uint32_t unknown_triangle = 0xFFFFFFFFU;

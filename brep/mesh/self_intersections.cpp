@@ -91,7 +91,7 @@ class MeetsElsewhere {
     return sure_sign(one - two, std::abs(one) + std::abs(two));
   }
   /// Whether the line of one of g's sides certainly separates g from f, as seen along the axis along which g
-  /// is widest, except for corners of both on the line.
+  /// has the largest outline. Corners that f shares with that side do not count.
   bool is_apart(const Face& f, const Face& g) const {
     const glm::dvec3 seen = glm::abs(glm::cross(at(g[1]) - at(g[0]), at(g[2]) - at(g[0])));
     const int axis = seen.x >= seen.y && seen.x >= seen.z ? 0 : seen.y >= seen.z ? 1 : 2;
@@ -311,8 +311,8 @@ void sort_around(const Triangles& triangles, std::span<EdgeUse> uses) {
   });
 }
 
-/// Pairs of neighbours around an edge of several sheets which both begin or both end a solid there: one sheet
-/// runs into another one. Sheets that only touch alternate.
+/// Pairs of triangles that are neighbours around an edge of several sheets and have the same winding there, so
+/// that one sheet runs into another one. Around an edge where sheets only touch, windings alternate.
 std::vector<FirstPairs::Pair> crossings_at_edges(const Triangles& triangles,
                                                  const std::vector<std::uint8_t>& is_copied,
                                                  const std::vector<std::uint8_t>& degenerate) {

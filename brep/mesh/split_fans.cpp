@@ -276,7 +276,7 @@ JoinedSurface joined_surface(Triangles triangles) {
     joined.findings.push_back("split: " + to_string(split.edges[i]));
   if (split.edges.size() > told)
     joined.findings.push_back("split: " + std::to_string(split.edges.size() - told) +
-                              " more edges of three and more triangles, or of contrary ones");
+                              " more edges with three or more triangles, or with contrary ones");
   if (!split.left_out.empty() || !split.edges.empty()) joined.surface = std::move(split.surface);
   return joined;
 }

@@ -30,8 +30,8 @@ glm::dvec3 at(std::uint64_t key) {
   return glm::dvec3(place_of(key));
 }
 
-/// Keys are sums of coordinates times powers of two: the middle has half the sum where that has no
-/// remainders.
+/// A middle exists if the sum of both places is even on every axis. Its key is then half the sum of both
+/// keys.
 bool has_middle(std::uint64_t a, std::uint64_t b) {
   return glm::all(glm::equal((place_of(a) + place_of(b)) & 1, LatticePoint(0)));
 }
@@ -86,7 +86,7 @@ class Bisection {
       report();
       level = refined(level);
     }
-    // The first round looks for all middles, each other one for those that the one before added.
+    // The first round searches all middles; each further round only those that the round before added.
     for (std::vector<std::uint64_t> added = close(middles_); !added.empty();) {
       report();
       Middles middles;
@@ -192,8 +192,9 @@ class Bisection {
     return std::abs(0.25 * sum - at_centre_mm) <= options_.tolerance_mm;
   }
 
-  /// Points of the piece of plane in a tetrahedron where its corners' distances are 0, if these are linear:
-  /// as far apart as the narrowest part allows. None where the tetrahedron is no longer than that.
+  /// Appends points of a tetrahedron's flat piece of surface: where the distance is 0 if distances are
+  /// linear in the tetrahedron. The points are `narrowest_mm` apart at most. None if the tetrahedron is no
+  /// longer than twice that.
   void add_piece(const Simplex& simplex, std::vector<glm::dvec3>& places) const {
     if (longest_mm(simplex) <= 2.0 * options_.narrowest_mm) return;
     std::vector<glm::dvec3> corners;
@@ -364,8 +365,9 @@ class Bisection {
       hangs(half, middles_) ? bisect(half, closed, added) : closed.push_back(half);
   }
 
-  /// Bisects what has one of these middles on an edge; the middles that this adds. One concerns tetrahedra of
-  /// its own level and coarser ones, so that fine ones come first: few rounds are needed.
+  /// Bisects the tetrahedra that have one of these middles on an edge. Returns the middles that this adds.
+  /// A middle concerns tetrahedra of its own level and coarser ones, so the finest are processed first,
+  /// which needs few rounds.
   std::vector<std::uint64_t> close(const Middles& middles) {
     check_count(0);
     const std::vector<Simplex> open = finest_first(found_.simplices);

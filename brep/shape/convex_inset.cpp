@@ -26,8 +26,8 @@ using Polygon = std::vector<glm::dvec3>;
 
 constexpr std::size_t most_sides = std::size_t{1} << 12;
 
-/// Within which places are one: far above the rounding of points and of a few cuts, and far below what is
-/// measured.
+/// Places nearer to each other than this are one place. Far above the rounding of points and of a few cuts,
+/// and far below any measured length.
 double slack_mm(const Size& size) {
   return 0x1p-30 * glm::length(size.high_mm - size.low_mm);
 }
@@ -43,7 +43,7 @@ Triangles hull_of(const std::vector<glm::dvec3>& points_mm) {
   for (const glm::dvec3& p : points_mm) points.emplace_back(p.x, p.y, p.z);
   Triangles hull;
   if (points.size() < 4) return hull;
-  // Four points that span a volume, or the hull would be no mesh.
+  // Without four points that span a volume, the hull would be no mesh.
   const auto far = std::find_if(points.begin(), points.end(), [&](const auto& p) { return p != points[0]; });
   if (far == points.end()) return hull;
   const auto beside = std::find_if(points.begin(), points.end(),
@@ -70,7 +70,7 @@ Triangles hull_of(const std::vector<glm::dvec3>& points_mm) {
   return hull;
 }
 
-/// Whether no edge bends inward by more than the slack: linear, and most solids end here.
+/// Whether no edge bends inward by more than the slack. Linear; for most solids the test ends here.
 bool bends_outward(const Solid& solid, double slack) {
   const Triangles& surface = solid.triangles();
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> opposite;
@@ -158,7 +158,7 @@ std::vector<Polygon> box_about(const Size& size) {
   return faces;
 }
 
-/// In the order of their directions from their middle, each once.
+/// The points in the order of their directions from their middle, each once.
 Polygon ring_of(Polygon points, const glm::dvec3& normal, double slack) {
   glm::dvec3 middle(0.0);
   for (const glm::dvec3& p : points) middle += p / static_cast<double>(points.size());
@@ -176,7 +176,7 @@ Polygon ring_of(Polygon points, const glm::dvec3& normal, double slack) {
   return ring;
 }
 
-/// Keeps what lies below the plane.
+/// Removes the parts of faces above the plane.
 void cut(std::vector<Polygon>& faces, const SidePlane& plane, double slack) {
   const auto height = [&](const glm::dvec3& p) { return glm::dot(p, plane.normal) - plane.along_mm; };
   Polygon cut_points;

@@ -8,13 +8,13 @@
 
 namespace octotomy::brep {
 
-/// What lies deeper than `depth_mm` in a convex solid: the half-spaces of its sides, each moved inward, in
-/// common. Exact but for the rounding of points, so that edges stay sharp; the empty solid if nothing lies so
-/// deep; none where the solid is not convex, or its hull has more than 2^12 sides, which offset() rounds as
-/// well. LPS millimetres. A solid counts as convex if every point lies within 2^-30 of its extent of its
-/// convex hull's surface, and its volume within as much of the hull's. Precondition: depth_mm is above 0.
-/// Throws Stopped. Cost: n log n to see whether it is convex, at once where an edge shows that it is not;
-/// sides times the edges of the result.
+/// The points deeper than `depth_mm` in a convex solid: the intersection of the half-spaces of its sides,
+/// each moved inward. Exact but for the rounding of points, so edges stay sharp. The empty solid if no
+/// point lies so deep. None if the solid is not convex, or if its hull has more than 2^12 sides, for which
+/// offset() is as good. LPS millimetres. A solid counts as convex if every point lies within 2^-30 of its
+/// extent of its convex hull's surface, and its volume within as much of the hull's. Precondition: depth_mm
+/// is above 0. Throws Stopped. Cost: n log n to see whether it is convex, at once where an edge shows that
+/// it is not; sides times the edges of the result.
 std::optional<Solid> convex_inset(const Solid& solid, double depth_mm, const Progress& progress = {});
 
 }  // namespace octotomy::brep

@@ -35,7 +35,7 @@ class CollapsedMesh : public Mesh {
   /// Returns a collapse's error; negative if it is too large.
   std::function<float(OpenMesh::HalfedgeHandle)> error_of;
 
-  /// The edge that is tested next is no other's successor in turn.
+  /// The next tested edge does not continue the turn around a vertex.
   void start_anew() { next_in_turn_.invalidate(); }
 
   /// The error of the collapse that was tested last.
@@ -84,19 +84,20 @@ class CollapsedMesh : public Mesh {
   float least_error_ = std::numeric_limits<float>::infinity();
 };
 
-/// A vertex that goes, and the one that takes its place.
+/// A vertex that is removed, and the vertex that it is merged with.
 struct Collapse {
   OpenMesh::VertexHandle from, to;
 };
 
-/// The planes about a vertex that may each be as far from it as the error, of triangles of mean area. Of the
-/// six about a vertex most are nearer; the surface that comes of it is measured, see decimate().
+/// The number of planes about a vertex, of triangles of mean area, that may each be as far from the vertex
+/// as the largest error. Most of the six planes about a vertex are nearer. The resulting surface is
+/// measured, see decimate().
 constexpr double quadric_share() {
   return 4.0;
 }
 
-/// A collapse's error, or that it may not be. The library asks each of its modules before the one for errors;
-/// here errors come first, which cost least.
+/// Computes a collapse's error, or forbids the collapse. The library runs all other modules before the one
+/// that computes errors; here errors come first, because they cost least.
 class ErrorThenShape : public OpenMesh::Decimater::ModQuadricT<CollapsedMesh> {
  public:
   using Handle = OpenMesh::Decimater::ModHandleT<ErrorThenShape>;
@@ -188,14 +189,14 @@ std::vector<bool> border_of(const Mesh& mesh) {
   return locked;
 }
 
-/// A mesh and how it came about.
+/// A mesh and the collapses that made it.
 struct Coarse {
   Mesh mesh;
   std::vector<Collapse> collapses;            ///< of the given mesh's vertices
   std::vector<OpenMesh::VertexHandle> given;  ///< the vertex of the given mesh that each one is
 };
 
-/// Makes `before` again as far as it may be, or looks for collapses where there are none before.
+/// Repeats the collapses of `before` as far as they are allowed. If there are none, searches for collapses.
 Coarse round_of_collapses(const Mesh& mesh, double mean_mm2, const DecimateOptions& options,
                           const std::vector<bool>& locked, const std::vector<Collapse>& before) {
   CollapsedMesh coarse(mesh);
@@ -232,7 +233,8 @@ Coarse round_of_collapses(const Mesh& mesh, double mean_mm2, const DecimateOptio
   return {coarse, decimater.module(collapses).made, std::move(given)};
 }
 
-/// Locks the vertices that went into a corner of some triangles. Returns the number of newly locked ones.
+/// Locks the vertices that were merged into a corner of some triangles. Returns the number of newly locked
+/// ones.
 std::size_t lock_what_went_into(const std::vector<std::uint32_t>& faces, const Coarse& coarse,
                                 std::vector<bool>& locked) {
   std::vector<bool> is_corner(locked.size(), false);
@@ -240,7 +242,7 @@ std::size_t lock_what_went_into(const std::vector<std::uint32_t>& faces, const C
     for (const auto corner : coarse.mesh.fv_range(OpenMesh::FaceHandle(static_cast<int>(face))))
       is_corner[static_cast<std::size_t>(coarse.given[static_cast<std::size_t>(corner.idx())].idx())] = true;
   std::size_t count = 0;
-  // Backwards: where a vertex went on to is known before it.
+  // Backwards, because the vertex that a vertex was merged with may have been merged itself later.
   for (auto collapse = coarse.collapses.rbegin(); collapse != coarse.collapses.rend(); ++collapse) {
     const auto from = static_cast<std::size_t>(collapse->from.idx());
     if (!is_corner[static_cast<std::size_t>(collapse->to.idx())]) continue;

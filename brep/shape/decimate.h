@@ -20,17 +20,17 @@ struct DecimateOptions {
 };
 
 /// A coarser mesh of the same topology whose vertices are vertices of the given one: edges are collapsed in
-/// the order of the error they make. Borders of an open mesh stay as they are. Collapses know nothing of
-/// triangles further along the surface, and their errors are distances from planes. So where a round makes the
-/// mesh intersect itself, or moves a surface by more than the largest error (surface_error.h), the vertices
-/// about those places are locked, and the next round makes the other collapses again, as far as they may
-/// still be; the last rounds also with half the error. With a number of faces, each round looks for its
-/// collapses anew. Where the last round is still too far off, the mesh comes back as it was. Precondition:
-/// manifold, without self-intersection; the result is that too. Throws std::invalid_argument where an option
-/// is out of its range, Error (Geometry) if `max_rounds` do not get rid of self-intersections. Deterministic.
-/// Cost: n log n for the first round; two to four rounds as a rule, the later ones a fraction of it each.
-/// Source: Garland and Heckbert, "Surface simplification using quadric error metrics", SIGGRAPH 1997, by
-/// OpenMesh's Decimater, halfedge collapses.
+/// the order of the error they make. Borders of an open mesh stay as they are. A collapse does not test
+/// triangles farther along the surface, and its error is a distance from planes. If a round makes the mesh
+/// intersect itself, or moves a surface by more than the largest error (surface_error.h), the vertices
+/// about those places are locked. The next round repeats the other collapses as far as they are still
+/// allowed; the last rounds also halve the error. With a number of faces, each round searches for its
+/// collapses again. If the last round still exceeds the largest error, returns the mesh unchanged.
+/// Precondition: manifold, without self-intersection; the result is that too. Throws std::invalid_argument
+/// where an option is out of its range, Error (Geometry) if `max_rounds` do not get rid of
+/// self-intersections. Deterministic. Cost: n log n for the first round; two to four rounds as a rule, the
+/// later ones a fraction of it each. Source: Garland and Heckbert, "Surface simplification using quadric
+/// error metrics", SIGGRAPH 1997, by OpenMesh's Decimater, halfedge collapses.
 Mesh decimate(const Mesh& mesh, const DecimateOptions& options = {});
 
 }  // namespace octotomy::brep

@@ -19,7 +19,7 @@ namespace octotomy::brep {
 namespace {
 
 constexpr double no_depth = std::numeric_limits<double>::infinity();
-/// More cells than this gain nothing beside their memory.
+/// More cells than this cost memory and save no time.
 constexpr double most_view_cells = 4.0e6;
 
 struct FlatBox {
@@ -84,7 +84,7 @@ std::size_t FrontFaces::index(const glm::ivec2& cell) const {
          static_cast<std::size_t>(dims_.x) * static_cast<std::size_t>(cell.y);
 }
 
-/// Cells are about as many as triangles.
+/// Chooses about as many cells as there are triangles.
 void FrontFaces::sort_into_cells(const std::vector<std::uint32_t>& triangles) {
   std::vector<FlatBox> boxes;
   boxes.reserve(triangles.size());
@@ -114,7 +114,7 @@ void FrontFaces::sort_into_cells(const std::vector<std::uint32_t>& triangles) {
     for_cells(boxes[i], [&](std::size_t cell) { in_cell_[next[cell]++] = triangles[i]; });
 }
 
-/// Behind this depth nothing is seen in a cell.
+/// Depth in a cell behind which no triangle is visible.
 double FrontFaces::depth_of_cover(std::size_t cell, const std::vector<std::uint8_t>& is_front) const {
   const auto begin = in_cell_.begin() + first_[cell], end = in_cell_.begin() + first_[cell + 1];
   const auto count = static_cast<std::size_t>(end - begin);
@@ -126,7 +126,7 @@ double FrontFaces::depth_of_cover(std::size_t cell, const std::vector<std::uint8
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::uint32_t side = 3 * begin[i] + k, beyond = surface_.opposite[side] / 3;
       if (is_front[beyond] != 0) {
-        // One that is not in the cell has no edge in it.
+        // A triangle that is not in the cell has no edge in it.
         const auto found = std::lower_bound(begin, end, beyond);
         if (found != end && *found == beyond) sets.join(i, static_cast<std::uint32_t>(found - begin));
         continue;

@@ -30,8 +30,8 @@ class FrontFaces {
   /// this.
   FrontFaces(const Linked& surface, const std::vector<glm::dvec3>& points);
 
-  /// The triangles that may be seen, ascending. Left out are those that lie wholly behind sheets without a
-  /// gap: such a triangle is nowhere the first.
+  /// The triangles that may be seen, ascending. Triangles wholly behind sheets without a gap are left out,
+  /// because they are nowhere visible.
   const std::vector<std::uint32_t>& seen() const { return seen_; }
   bool is_seen(std::uint32_t triangle) const { return is_seen_[triangle] != 0; }
   /// The first triangle on the line of sight through a point, or none.

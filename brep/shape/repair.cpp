@@ -53,9 +53,9 @@ bool is_within_share(double before_mm3, double now_mm3, const RepairOptions& opt
 
 [[noreturn]] void refuse_volume(double before_mm3, double now_mm3, const RepairOptions& options,
                                 const char* step, const std::string& ways) {
-  throw Error(ErrorCode::Geometry, std::string("repair: ") + step + " took the volume from " +
+  throw Error(ErrorCode::Geometry, std::string("repair: ") + step + " changed the volume from " +
                                        short_text(before_mm3) + " to " + short_text(now_mm3) +
-                                       " mm3, more than its share of " +
+                                       " mm3, more than the allowed share of " +
                                        short_text(options.max_volume_share) + ": " + ways);
 }
 
@@ -120,12 +120,12 @@ std::string ways_that_work(const Triangles& surface, const Triangles& given, dou
     break;
   }
   if (const std::optional<double> hull_mm3 = enclosed_mm3(surface, cell_mm, true, options.progress))
-    add("--hull takes the outermost shells as full, " + short_text(*hull_mm3) + " mm3");
+    add("--hull fills the outermost shells, " + short_text(*hull_mm3) + " mm3");
   if (const std::string wall = wall_way(given, Mender(given).extent_mm(), options); !wall.empty()) add(wall);
   const double share = std::abs(now_mm3 - before_mm3) / before_mm3;
-  add("what winds round by half or more has a share of " + short_text(share) +
+  add("the region with a winding number of a half or more differs by a share of " + short_text(share) +
       ", accepted by --max-volume-share " + short_text(1.01 * share) +
-      ": look at it, as thin sheets may be lost or closed gaps filled");
+      ": check the result, because thin sheets may be lost and gaps filled");
   return ways;
 }
 

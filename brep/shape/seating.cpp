@@ -93,7 +93,8 @@ std::optional<Binding> deepest(const Solid& object, const Solid& space, const Se
   return found;
 }
 
-/// When the part holds a point: between the first and the last of its surfaces along the direction.
+/// The distances before its place at which the part begins and ceases to hold a point: at the first and the
+/// last of its surfaces along the direction.
 void find_times(const Solid& part, const glm::dvec3& direction, Binding& binding) {
   // Rays go towards +x.
   const glm::dvec3 beside = std::abs(direction.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
@@ -125,7 +126,7 @@ Seating seating(const Solid& part, const Solid& object, const SeatingOptions& op
   if (part.empty() || object.empty()) throw InvalidInput("seating needs a part and an object");
   if (!(options.resolution_mm > 0.0)) throw InvalidInput("the resolution of depths is above 0 mm");
   const glm::dvec3 away = -options.direction;
-  // The way begins before the object by more than the object can reach into it.
+  // The path begins so far before the object that the part does not touch it there.
   const glm::dvec3 extent = part.size().high_mm - part.size().low_mm;
   const double end_mm = std::max(far_end_mm(part, away), far_end_mm(object, away) + glm::length(extent));
   const Shadow swept = shadow(part, {away, end_mm, options.progress});

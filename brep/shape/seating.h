@@ -15,11 +15,12 @@ struct SeatingOptions {
   Progress progress = {};
 };
 
-/// Where an object reaches deepest into the space that a part passes through on its way.
+/// The place where an object reaches deepest into the space that a part passes through.
 struct Binding {
   glm::dvec3 at_mm{0.0};  ///< a point of the object's surface
   double depth_mm = 0.0;  ///< from there to the nearest point outside of that space
-  /// The part holds the point from `first_mm` before its place on, until `last_mm` before it; 0 is the place.
+  /// The point is inside the part from `first_mm` before the part's place until `last_mm` before it; 0 is
+  /// the place.
   double first_mm = 0.0, last_mm = 0.0;
 };
 

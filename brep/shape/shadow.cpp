@@ -75,7 +75,7 @@ class PointsByPlace {
     });
   }
 
-  /// Calls back with every point that is seen exactly there.
+  /// Calls `visit` with every point at exactly this place of the view.
   template <typename Visit>
   void at(const glm::dvec2& place, const Visit& visit) const {
     const auto before = [&](std::uint32_t i, const glm::dvec2& p) {
@@ -91,7 +91,7 @@ class PointsByPlace {
   std::vector<std::uint32_t> order_;
 };
 
-/// A depth at a point of the view: from .. to are the depths that are taken for one.
+/// A depth at a point of the view. Depths in from..to count as this depth.
 struct Level {
   double from = 0.0, to = 0.0;
   std::uint32_t point = 0;  ///< of the shadow
@@ -171,7 +171,7 @@ class ShadowSurface {
 
 void ShadowSurface::draw_edges() {
   const auto& triangles = solid_.triangles().faces;
-  // Points of triangles that are seen, each place once.
+  // The points of visible triangles, each place once.
   std::vector<std::uint32_t> used;
   for (const std::uint32_t i : faces_.seen())
     used.insert(used.end(), triangles[i].begin(), triangles[i].end());
@@ -216,7 +216,7 @@ void ShadowSurface::find_first() {
     glm::dvec2 middle(0.0);
     for (int k = 0; k < 3; ++k) middle += place_in_view(face->vertex(k)) / 3.0;
     face->info() = faces_.first_at(middle);
-    // What lies in the end plane has nothing behind it.
+    // A face in the end plane has nothing behind it.
     if (face->info() == FrontFaces::none) return;
     bool is_at_end = true;
     for (int k = 0; k < 3; ++k) is_at_end = is_at_end && depth_at(face, face->vertex(k)) == end_;
@@ -224,7 +224,7 @@ void ShadowSurface::find_first() {
   });
 }
 
-/// The depth of a face at one of its corners; the end plane's where the face is not covered.
+/// The depth of a face at one of its corners; the end plane's depth if the face is not covered.
 double ShadowSurface::depth_at(ViewFace face, ViewVertex vertex) const {
   if (!is_covered(face)) return end_;
   const glm::dvec2 place = place_in_view(vertex);
@@ -260,7 +260,8 @@ void ShadowSurface::find_levels() {
     const glm::dvec2 place = place_in_view(vertex);
     for (Level& level : own) {
       level.point = static_cast<std::uint32_t>(surface_.points_mm.size());
-      // The nearer to the end plane the truer: only its own depth is not computed from a triangle's plane.
+      // Prefers the depth nearest to the end plane, whose own depth is the only one not computed from a
+      // triangle's plane.
       glm::dvec3 p_mm = axes_.lps({place, level.to});
       by_place_.at(place, [&](std::uint32_t i) {
         if (points_[i].z >= level.from - same_depth_mm_ && points_[i].z <= level.to + same_depth_mm_)
@@ -290,7 +291,8 @@ void ShadowSurface::add_caps(ViewFace face) {
   surface_.faces.push_back(bottom);
 }
 
-/// From the edge at one face's depth to the same edge at the other's, through all the depths at either end.
+/// Adds the wall between the depths of two neighbouring faces along their common edge, through all depths
+/// at either end.
 void ShadowSurface::add_wall(ViewFace face, int opposite) {
   const ViewFace other = face->neighbor(opposite);
   if (!is_covered(face) && !is_covered(other)) return;

@@ -14,12 +14,13 @@
 namespace octotomy::brep {
 namespace {
 
-/// Taubin's step in: the largest at which no wave (eigenvalues 0..2 of the umbrella operator) changes sign.
+/// Taubin's inward step: the largest at which no wave (eigenvalues 0..2 of the umbrella operator) changes
+/// sign.
 constexpr double step_in() {
   return 0.5;
 }
 
-/// The step out that leaves waves at `pass_band` unchanged: 1 / step_in + 1 / step_out = pass_band.
+/// The outward step that leaves waves at `pass_band` unchanged: 1 / step_in + 1 / step_out = pass_band.
 double step_out(double pass_band) {
   return 1.0 / (pass_band - 1.0 / step_in());
 }
@@ -31,8 +32,8 @@ void check(const SmoothOptions& options) {
   if (!(options.max_volume_share > 0.0)) refuse("the share of volume that may change must be positive");
 }
 
-/// What the volume may change by a share of: that of a closed mesh, and of an open one that of a ball of its
-/// area, as it has none of its own.
+/// The volume of which a share may change. For a closed mesh its own volume; for an open mesh, which has
+/// none, the volume of a ball of its area.
 double volume_for_share_mm3(const Mesh& mesh, double volume_mm3) {
   bool is_open = false;
   for (const auto halfedge : mesh.halfedges()) is_open = is_open || mesh.is_boundary(halfedge);
@@ -72,7 +73,7 @@ Mesh smooth(const Mesh& mesh, const SmoothOptions& options) {
   if (!(std::abs(now - volume) <= options.max_volume_share * volume_for_share_mm3(mesh, volume)))
     throw Error(ErrorCode::Geometry, "smooth: the volume went from " + std::to_string(volume) + " to " +
                                          std::to_string(now) +
-                                         " mm3, more than its share: ask for fewer rounds or a "
+                                         " mm3, more than the allowed share: use fewer rounds or a "
                                          "wider pass band, or allow a larger share");
   return smoothed;
 }

@@ -78,7 +78,7 @@ bool has(const std::vector<Triple>& sorted, const Triple& triple) {
   return std::binary_search(sorted.begin(), sorted.end(), triple);
 }
 
-/// The triangles of a surface by numbers of their corners, and in order.
+/// The triangles of a surface by the numbers of their corners, in the surface's order and sorted.
 struct Triples {
   std::vector<Triple> of_face, sorted;
 
@@ -108,7 +108,8 @@ FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Tria
   const std::vector<std::array<std::uint32_t, 2>> sides = sides_of(given);
   const double spacing_mm = mean_side_mm(given, sides);
 
-  // From the given surface to the coarse one, except points and sides that are still there.
+  // Measures from the given surface to the coarse one, except points and sides that the coarse one still
+  // has.
   std::vector<std::uint8_t> is_point_of_coarse(given.points_mm.size(), 0);
   for (const Triple& triple : now.of_face)
     for (const std::uint32_t v : triple) is_point_of_coarse[v] = 1;
@@ -146,7 +147,8 @@ FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Tria
                               sides[i - used.size()].end());
   }
 
-  // From the coarse surface to the given one, except triangles of the given one and those measured before.
+  // Measures from the coarse surface to the given one, except triangles of the given one and those measured
+  // before.
   points.clear();
   std::vector<std::uint32_t> face_of;
   for (std::uint32_t f = 0; f < coarse.faces.size(); ++f)

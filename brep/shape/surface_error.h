@@ -18,25 +18,26 @@ struct FarPlaces {
 
 /// Measures a coarse version of a surface against it, both ways, in LPS millimetres: at the given surface's
 /// points and the middles of its sides, and at points of the coarse surface no further apart than the mean
-/// side of the given one. Both ends of a side stand for its middle; a coarse face that is too far names the
-/// corners of the given triangle nearest to it as well. A search ends at the first distance below `enough_mm`,
-/// at most the limit; `largest_mm` below that need not be right. Precondition: `tree` is of `given`, both have
-/// triangles. The same answer on any number of threads. Cost: n log n, parallel.
+/// side of the given one. If the middle of a side is too far, both ends of the side are reported. If a
+/// coarse face is too far, the corners of the nearest given triangle are reported, too. A search ends at
+/// the first distance below `enough_mm`, which is at most the limit; a `largest_mm` below that is not
+/// exact. Precondition: `tree` is of `given`, both have triangles. The same answer on any number of
+/// threads. Cost: n log n, parallel.
 FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Triangles& coarse,
                      double limit_mm, double enough_mm = 0.0);
 
-/// What earlier measurements of one given surface hold on: triangles, by the given points of their corners,
-/// ascending.
+/// Results of earlier measurements of one given surface: triangles, each by its corners as points of the
+/// given surface.
 struct NearFaces {
   std::vector<std::array<std::uint32_t, 3>> coarse;     ///< sorted; all of their samples are near
   std::vector<std::array<std::uint32_t, 3>> of_sample;  ///< near each sample of the given surface
 };
 
-/// The same where the points of the coarse surface are points of the given one, `given_of_coarse`: measures
-/// only where it is new. Triangles and sides of the given surface that are still there lie on it; triangles in
-/// `near` were measured before, and samples of the given surface need no search while the triangle near them
-/// is still there. `near` is empty before the first call, and of the same given surface and limit in all.
-/// `largest_mm` is right above the limit only.
+/// The same if the points of the coarse surface are points of the given one, `given_of_coarse`: measures
+/// only the new parts. Triangles and sides that both surfaces have are not measured. Triangles in `near`
+/// were measured before, and samples of the given surface are not searched again while the triangle near
+/// them still exists. `near` must be empty before the first call; all calls must have the same given
+/// surface and limit. `largest_mm` is exact only above the limit.
 FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Triangles& coarse,
                      const std::vector<std::uint32_t>& given_of_coarse, double limit_mm, NearFaces& near);
 

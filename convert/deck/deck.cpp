@@ -29,9 +29,10 @@ namespace {
 void check_name(const std::filesystem::path& path, const std::string& what, const std::string& name) {
   if (!is_solver_name(name))
     refuse_to_write(
-        path, what + " '" + name +
-                  "' is no name that Abaqus and CalculiX take: a letter, then letters, digits, '_', '-', at "
-                  "most 80 in all");
+        path,
+        what + " '" + name +
+            "' is no name that Abaqus and CalculiX accept: a letter, then letters, digits, '_', '-', at "
+            "most 80 in all");
 }
 
 void check_nodes(const Tetrahedra& tetrahedra, const std::filesystem::path& path) {
@@ -49,7 +50,7 @@ void check_nodes(const Tetrahedra& tetrahedra, const std::filesystem::path& path
   for (const glm::dvec3& p : tetrahedra.nodes_mm)
     if (!std::isfinite(p.x + p.y + p.z)) refuse_to_write(path, "a node is not finite");
   if (!tetrahedra.mid_nodes.empty() && tetrahedra.mid_nodes.size() != tetrahedra.tets.size())
-    refuse_to_write(path, "nodes on sides are given of " + std::to_string(tetrahedra.mid_nodes.size()) +
+    refuse_to_write(path, "nodes on sides are given for " + std::to_string(tetrahedra.mid_nodes.size()) +
                               " of " + std::to_string(tetrahedra.tets.size()) + " tetrahedra");
   for (const auto& middles : tetrahedra.mid_nodes)
     for (const std::uint32_t node : middles)
@@ -71,7 +72,7 @@ void check_materials(const Tetrahedra& tetrahedra, const std::filesystem::path& 
       refuse_to_write(path, "Poisson's ratio of " + material.name + " must lie between -1 and 0.5");
   }
   if (!options.material_of_tet.empty() && options.material_of_tet.size() != tetrahedra.tets.size())
-    refuse_to_write(path, "materials are given of " + std::to_string(options.material_of_tet.size()) +
+    refuse_to_write(path, "materials are given for " + std::to_string(options.material_of_tet.size()) +
                               " of " + std::to_string(tetrahedra.tets.size()) + " tetrahedra");
   for (const std::uint32_t material : options.material_of_tet)
     if (material >= options.materials.size())
@@ -106,7 +107,7 @@ void check_sets(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
                                   [&](const NodeSet& s) { return s.name == prescribed.node_set; });
     if (set == options.node_sets.end())
       refuse_to_write(
-          path, "displacements are prescribed of a set '" + prescribed.node_set + "' that is not there");
+          path, "displacements are prescribed for a set '" + prescribed.node_set + "' that is not there");
     if (!prescribed.displacement_mm.empty() && prescribed.displacement_mm.size() != set->nodes.size())
       refuse_to_write(path, "set " + set->name + " has " + std::to_string(set->nodes.size()) + " nodes and " +
                                 std::to_string(prescribed.displacement_mm.size()) + " displacements");
@@ -241,9 +242,10 @@ void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
   check_materials(tetrahedra, path, options);
   check_sets(tetrahedra, path, options);
   if (const auto clash = name_clash(tetrahedra, options))
-    refuse_to_write(path, *clash + " have one name for solvers, which do not tell capitals apart");
+    refuse_to_write(path, *clash + " have the same name for solvers, which ignore capitals");
   if (options.second_order) {
-    if (parts.size() > 1) refuse_to_write(path, "TetGen's files are of linear elements: choose another deck");
+    if (parts.size() > 1)
+      refuse_to_write(path, "TetGen's files hold only linear elements: choose another deck");
     const SecondOrder made = second_order(tetrahedra, options);
     write_deck(made.tetrahedra, path, made.options);
     return;
@@ -270,7 +272,7 @@ void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
     } catch (const std::ios::failure&) {
       complete = false;
     }
-    if (file.close() == nullptr || !complete) fail("cannot be written to its end");
+    if (file.close() == nullptr || !complete) fail("cannot be written completely");
   }
   staged_files.commit();
 }

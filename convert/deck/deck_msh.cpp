@@ -144,7 +144,8 @@ void write_2_2(const Tetrahedra& tetrahedra, const DeckOptions& options, std::os
 void write_fields(const DeckOptions& options, std::size_t tets, std::ostream& out) {
   std::size_t first = 1;
   for (const DeckSurface& surface : options.surfaces) first += surface.faces.size();
-  // Of several regions in version 4.1, elements stand by region: fields are then left to the other formats.
+  // With several regions in version 4.1, elements are ordered by region, so fields are left out of this
+  // format.
   for (const ElementField& field : options.fields) {
     out << "$ElementData\n1\n\"" << field.name << "\"\n1\n0\n3\n0\n1\n" << tets << "\n";
     for (std::size_t t = 0; t < tets; ++t)

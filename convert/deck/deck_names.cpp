@@ -103,7 +103,7 @@ std::optional<std::string> name_clash(const Tetrahedra& tetrahedra, const DeckOp
 
 std::vector<std::string> make_names_unique(const Tetrahedra& tetrahedra, DeckOptions& options) {
   std::vector<std::string> changed;
-  // The sets that something refers to, by place, as two may have one name.
+  // The sets by their places, because two sets may have one name.
   const auto place_of = [](const auto& list, const std::string& name) {
     std::size_t place = 0;
     while (place < list.size() && list[place].name != name) ++place;
@@ -120,7 +120,7 @@ std::vector<std::string> make_names_unique(const Tetrahedra& tetrahedra, DeckOpt
     const std::string free = free_name(name, taken);
     if (free != name)
       changed.push_back(what + " '" + name + "' is written as '" + free +
-                        "': solvers do not tell names apart by case, and that one is taken");
+                        "': solvers ignore case, and that name is in use");
     name = free;
     taken.take(what, name);
   });

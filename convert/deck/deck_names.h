@@ -13,7 +13,8 @@ namespace octotomy::convert {
 bool is_solver_name(const std::string& name);
 
 /// Whether a node set of the caller's may not have this name, because a deck's own sets have it: "SURFACE",
-/// "SOLID" and "NSOLID". Case does not tell names apart: Abaqus and CalculiX read all in capitals.
+/// "SOLID" and "NSOLID". Case does not distinguish names, because Abaqus and CalculiX convert them to
+/// capitals.
 bool is_own_node_set_name(const std::string& name, const DeckOptions& options = {});
 
 /// Two names of a deck that a solver would not distinguish: "node sets 'Pin' and 'PIN'". Compares node sets

@@ -24,11 +24,11 @@ double least_fade_mm(double largest_displacement_mm);
 
 /// The displacements of tetrahedra's nodes as a field over space: linear within each element; outside all
 /// elements, the displacement of the nearest point of their surface. So the field is continuous across the
-/// surface, and what the elements surround (bone, mouth, airway) goes with them. Beyond the elements' box
-/// along the patient's axes that displacement fades to zero, because what the deck leaves out is held by what
-/// lies about it. The fading function is Wendland's (1-r)^4 (4r+1) of r = distance to the box / fade_mm, the
-/// one of compact support with which Fornefett, Rohr and Stiehl, Image and Vision Computing 19 (2001), bound
-/// local deformations of heads.
+/// surface, and parts that the elements surround (bone, mouth, airway) move with them. Beyond the elements'
+/// box along the patient's axes the displacement fades to zero, because the surrounding tissue holds the
+/// parts that the deck leaves out. The fading function is Wendland's (1-r)^4 (4r+1) of r = distance to the
+/// box / fade_mm, the one of compact support with which Fornefett, Rohr and Stiehl, Image and Vision
+/// Computing 19 (2001), bound local deformations of heads.
 class DisplacementField {
  public:
   /// Throws std::invalid_argument if there are no elements, not one displacement for each node, or `fade_mm`

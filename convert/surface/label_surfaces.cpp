@@ -437,7 +437,8 @@ class Extraction {
   brep::PartedSurface made_;
 };
 
-/// Adds the surfaces of a layer, whose parts are ranks.
+/// Adds the surfaces of a layer. A part of `ranks` is the position of its label in the layer's labels, from 1;
+/// 0 is no label.
 void append(const voxel::LabelLayer& layer, const brep::PartedSurface& ranks, brep::PartedSurface& made) {
   const std::size_t first = made.triangles.points_mm.size();
   if (first + ranks.triangles.points_mm.size() > std::numeric_limits<std::uint32_t>::max())

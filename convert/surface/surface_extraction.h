@@ -16,7 +16,8 @@
 
 namespace octotomy::convert {
 
-// Marching cubes for the sources of this room, each with its own rule of what is inside and of crossings.
+// Marching cubes for the sources of this room. Each source has its own rule for the inside and for
+// crossings.
 
 /// One bit a sample of the padded lattice, in rows along x of whole words. A row starts with `before` outside
 /// bits and ends with at least one.

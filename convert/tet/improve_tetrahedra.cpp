@@ -15,8 +15,8 @@ namespace {
 
 using Corners = std::array<glm::dvec3, 4>;
 
-/// The cosine of the smallest dihedral angle: 1 of a flat element, 1/3 of the regular one; 2 of one that has
-/// no volume or is turned inside out.
+/// The cosine of the smallest dihedral angle: 1 for a flat element, 1/3 for the regular one; 2 for an element
+/// without volume or turned inside out.
 double flatness(const Corners& p) {
   const glm::dvec3 a = p[1] - p[0];
   const glm::dvec3 b = p[2] - p[0];
@@ -72,8 +72,7 @@ const std::array<glm::dvec3, 14>& directions() {
   return all;
 }
 
-/// Directions in which a surface node may move: its face or edge stays where it is where it is flat or
-/// straight.
+/// Directions in which a node of the surface may move without moving its flat face or straight edge.
 struct Freedom {
   enum class Kind { Free, Plane, Line, None } kind = Kind::Free;
   glm::dvec3 axis{0.0};  ///< the plane's unit normal, or the line's unit direction
@@ -93,8 +92,8 @@ struct Freedom {
   }
 };
 
-/// The cosine between normals of one flat face: a degree, which a face of elements of 3 mm has for bumps of
-/// some 0.03 mm.
+/// Normals with at least this cosine belong to one flat face: one degree, the effect of bumps of about 0.03
+/// mm on elements of 3 mm.
 constexpr double flat_cosine() {
   return 0.99985;
 }
@@ -122,8 +121,8 @@ class FaceNormals {
     }
   }
 
-  /// About a node on a flat face all have one normal, on a straight edge two, in a corner three. More tell of
-  /// a curved surface, where the node is free.
+  /// About a node on a flat face all have one normal, on a straight edge two, in a corner three. More
+  /// normals show a curved surface, where the node is free.
   Freedom freedom(std::size_t v) const {
     const std::vector<glm::dvec3>& n = of_node_[v];
     if (n.size() == 1) return {Freedom::Kind::Plane, n[0]};
@@ -135,7 +134,7 @@ class FaceNormals {
   }
 
  private:
-  /// Six times the volume that three normals span: a half of a cube's corner.
+  /// Least value of six times the volume that three normals span: half that of a cube's corner.
   static constexpr double least_corner() { return 0.5; }
 
   const Tetrahedra& t_;
@@ -216,7 +215,7 @@ class Improving {
     return moved;
   }
 
-  /// The largest flatness about a node if it stood at `p_mm`, or the first found that is `enough` or more.
+  /// The largest flatness about a node if it stood at `p_mm`, or the first value of at least `enough`.
   /// Begins with the element `worst`, because the element that is flattest at one position is mostly the
   /// flattest nearby. Sets `worst` to the flattest element.
   double flattest(std::uint32_t v, const glm::dvec3& p_mm, double enough, std::uint32_t& worst) const {
@@ -295,7 +294,7 @@ int improve(Tetrahedra& tetrahedra, const ImproveOptions& options) {
       options.rounds < 1)
     throw std::invalid_argument("improve: the surface's play must not be negative, rounds at least 1");
   if (options.all_or_nothing && !options.surface_play_mm.empty())
-    throw std::invalid_argument("improve: where the surface has play, rounds cannot be gone on with");
+    throw std::invalid_argument("improve: a call with play of the surface cannot continue earlier rounds");
   return Improving(tetrahedra, options).run();
 }
 

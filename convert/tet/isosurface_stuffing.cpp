@@ -29,7 +29,7 @@
 namespace octotomy::convert {
 namespace {
 
-// In halves of a cell, so that corners of cubes are even and their middles odd on all axes.
+// Coordinates in halves of a cell, so that corners of cubes are even and their middles odd on all axes.
 using LatticePoint = glm::ivec3;
 
 /// The sides that leave a lattice point in the half space of positive directions: three long, four short.
@@ -194,8 +194,8 @@ class CubeLists {
   std::vector<std::uint32_t> faces_;
 };
 
-/// What is left of a lattice tetrahedron, as nodes that come before each other where quadrilaterals are cut:
-/// cut points of long sides, then lattice points, then cut points of short sides.
+/// The remaining part of a lattice tetrahedron. Its nodes are listed in the order in which quadrilaterals
+/// are cut: cut points of long sides, then lattice points, then cut points of short sides.
 struct Node {
   std::uint64_t order = 0;
   std::uint32_t number = 0;
@@ -221,7 +221,7 @@ class Stuffing {
   Tetrahedra result() && { return std::move(made_); }
 
  private:
-  /// A side by its end that the way leaves from.
+  /// A side by the end from which the direction leaves.
   std::uint64_t key(const LatticePoint& from, std::size_t w) const { return lattice_.index(from) * 7 + w; }
   bool is_inside(const LatticePoint& p) const { return lattice_.has(p) && inside_[lattice_.index(p)] != 0; }
 

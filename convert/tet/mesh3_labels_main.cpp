@@ -118,7 +118,8 @@ struct Labels {
         static_cast<std::size_t>(std::find(labels.begin(), labels.end(), label) - labels.begin()));
   }
 
-  /// The lowest label of a group that is on its own side of each of its planes to others of the group.
+  /// The lowest label of a group for which the point lies on the label's side of every plane between it and
+  /// another label of the group. The group itself if there is none.
   int of_group(std::uint8_t group, const std::array<std::uint8_t, 8>& labels,
                const std::array<std::uint8_t, 8>& groups, const Point& p) const {
     const glm::dvec3 p_mm(p.x(), p.y(), p.z());
@@ -148,7 +149,7 @@ struct Length {
     return length_mm * share(p);
   }
 
-  /// Between the eight samples about a point, trilinear.
+  /// A share between the eight samples about a point, trilinear.
   double share(const Point& p) const {
     if (labels.size_shares.empty()) return 1.0;
     std::array<std::size_t, 3> count{};
@@ -216,7 +217,7 @@ Complex mesh(const Labels& labels, const LabelSizes& sizes) {
   const Domain domain(
       labels.start, label, box,
       CGAL::parameters::relative_error_bound = error_voxels * labels.spacing_mm[0] / diagonal_mm);
-  // Half a voxel, under which there is nothing but the corners of voxels.
+  // Half a voxel, below which there is nothing but the corners of voxels.
   constexpr double least_voxels = 0.5;
   const Least least{least_voxels * *std::min_element(labels.spacing_mm.begin(), labels.spacing_mm.end())};
   const convert::FacetsDownTo<Triangulation, Least> facets(

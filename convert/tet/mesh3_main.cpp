@@ -45,7 +45,7 @@ class SizeField {
       : surface_(surface), tree_(tree), sizes_mm_(sizes_mm), grading_(grading) {}
 
   FT operator()(const Point& p) const {
-    // Mesh_3 asks about one point twice, and about near ones one after the other; most are on the surface.
+    // Mesh_3 queries a point twice, and near points one after the other; most are on the surface.
     const glm::dvec3 p_mm(p.x(), p.y(), p.z());
     if (p_mm == asked_mm_) return size_mm_;
     const octotomy::brep::Foot foot = tree_.foot(p_mm, nearest_, on_surface_mm);
@@ -68,7 +68,7 @@ class SizeField {
   mutable double size_mm_ = 0.0;
 };
 
-/// A share of the field, up to a length, as Mesh_3 asks for it.
+/// A share of the field, up to a length, in the form that Mesh_3 requires.
 struct Sizes {
   using FT = Domain::FT;
   const SizeField& field;
@@ -140,8 +140,8 @@ Complex mesh(const Request& request) {
   const convert::CellsDownTo<Triangulation, Least> cells(
       {convert::safe_radius_edge, Sizes{field, sizes.cell, sizes.max_cell_mm}}, least);
   const convert::CriteriaDownTo<Triangulation, Least> criteria(facets, cells);
-  // No limit of time, not even CGAL's own. Flatter elements than this are exuded; moving nodes mends the
-  // rest.
+  // No limit of time, not even CGAL's own. Sliver exudation removes elements flatter than this; moving
+  // nodes mends the rest.
   constexpr double sliver_deg = 10.0;
   return CGAL::make_mesh_3<Complex>(domain, criteria, p::no_perturb(),
                                     p::exude(p::time_limit = 0.0, p::sliver_bound = sliver_deg));

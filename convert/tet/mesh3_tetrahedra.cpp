@@ -27,8 +27,8 @@ namespace {
 
 using voxel::rounded;
 
-/// The radius of a ball whose largest tetrahedron has a volume: 8 R^3 / (9 sqrt 3), of which passes 2 and 3
-/// may enlarge one by the rest.
+/// The radius R of a ball whose largest inscribed tetrahedron, 8 R^3 / (9 sqrt 3), has 0.9 of a volume. Passes
+/// 2 and 3 may enlarge an element by the rest.
 double radius_of_volume(double mm3) {
   constexpr double before_moves = 0.9;
   return std::cbrt(before_moves * mm3 * 9.0 * std::sqrt(3.0) / 8.0);
@@ -322,7 +322,7 @@ Try try_once(const MesherInput& surface, const Given& given, const TetOptions& o
   Try t;
   t.outcome = run_mesh3(surface, sizes, {options.time_limit, options.memory_limit_bytes, options.progress});
   if (!t.outcome.failure && t.outcome.tetrahedra.empty())
-    t.outcome.failure = "CGAL's Mesh_3 gave no tetrahedra";
+    t.outcome.failure = "CGAL's Mesh_3 made no tetrahedra";
   if (t.outcome.failure) return t;
   t.made.nodes_mm = std::move(t.outcome.points_mm);
   t.made.tets = std::move(t.outcome.tetrahedra);
@@ -338,7 +338,7 @@ Try try_once(const MesherInput& surface, const Given& given, const TetOptions& o
 Mesh3Filling fill_by_mesh3(const MesherInput& given, const SizeLimits& limits, double surface_mm3,
                            const TetOptions& options) {
   constexpr int tries = 4;
-  // Facets may not have longer sides than the refinements ask for.
+  // Facets may not have longer sides than the refinements require.
   SizeLimits by_facets = limits;
   for (double& most_mm : by_facets.most_mm) most_mm /= std::sqrt(3.0) * facet_radius_by_side();
   SurfaceSizes sizes(given, Mesh3Sizes{}.grading, by_facets);

@@ -152,7 +152,7 @@ class Filling {
   Filling(const voxel::Universe& universe, const OctreeCells& cells)
       : lattice_(universe.lattice()), cells_(cells), numbers_(universe.side()), cell_count_(cells.count()) {}
 
-  /// Regions share no voxel. Without `tells_regions` all elements are one.
+  /// Regions share no voxel. Without `tells_regions` all elements belong to one region.
   Tetrahedra run(const std::vector<voxel::Octree>& regions, bool tells_regions,
                  const voxel::Progress& progress) {
     mark_nodes(voxel::part_of(progress, 0.0, 0.5));
@@ -222,8 +222,8 @@ class Filling {
         });
   }
 
-  /// The bit of the half cube across a fan's triangle, by its two places on the round. An undivided edge is
-  /// of two quarters of which neither has a cell beyond.
+  /// The bit of the half cube across a fan's triangle, by its two places on the round. An undivided edge
+  /// consists of two quarters, neither of which has a cell beyond it.
   static std::uint64_t half_beyond(int face, int b, int c) {
     glm::ivec3 half(0);
     for (int axis = 0; axis < 3; ++axis) half[axis] = along(b, axis) + along(c, axis) > 2 ? 2 : 1;

@@ -14,9 +14,9 @@
 #include "brep/mesh/segment.h"
 #include "convert/tet/element_faces.h"
 
-// Some meshers make a surface of their own with nodes on the given one; its triangles then cut sharp edges
-// off. Here such nodes move onto these edges, as Labelle and Shewchuk (isosurface_stuffing.h) move lattice
-// nodes onto the surface.
+// Some meshers make a surface of their own with nodes on the given one; its triangles then cut off sharp
+// edges. Here such nodes move onto these edges, as Labelle and Shewchuk (isosurface_stuffing.h) move
+// lattice nodes onto the surface.
 
 namespace octotomy::convert {
 namespace {
@@ -93,7 +93,7 @@ class SharpEdges {
  public:
   SharpEdges(const brep::Triangles& surface, const std::vector<glm::dvec3>& normals, double cell_mm)
       : surface_(surface), cell_mm_(cell_mm) {
-    // The surfaces of bone have edges everywhere; nodes that are held on these leave no good elements.
+    // The surfaces of bone have edges everywhere. Nodes held on these would prevent good elements.
     const double least_mm2 = 8.0 * cell_mm * cell_mm;
     const std::vector<double> areas_mm2 = flat_areas_mm2(surface, normals);
     std::map<Ends, std::uint32_t> first;
@@ -171,8 +171,8 @@ class Putting {
     const double side_mm = sum_mm / static_cast<double>(sides.size());
     const SharpEdges edges(given_.triangles, normals_, side_mm);
     put_on_corners(edges, side_mm);
-    // The second round moves nodes that an element kept in place in the first round and that may move since
-    // it changed.
+    // The second round moves nodes that an element kept in place in the first round and that may move after
+    // the element has changed.
     constexpr int rounds = 2;
     for (int round = 0; round < rounds; ++round) put_on_edges(edges, sides);
     std::sort(moved_.begin(), moved_.end());

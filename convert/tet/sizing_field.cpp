@@ -28,11 +28,12 @@ constexpr double longest_share() {
 [[noreturn]] void refuse_number() {
   throw voxel::Error(voxel::ErrorCode::Resource, "refinement would take a surface of over " +
                                                      std::to_string(most_triangles) +
-                                                     " triangles: ask for larger elements");
+                                                     " triangles: request larger elements");
 }
 
-/// How many triangles a surface is divided into, at least: none is larger than an equilateral one of the
-/// longest side, and none of those divided from one has a larger size than its middle's and the way to there.
+/// The least number of triangles into which a surface is divided. No triangle is larger than an equilateral
+/// one of the longest side, and none of the parts of a triangle has a larger size than the size at its
+/// middle plus the growth over the distance to it.
 double least_count(const brep::Triangles& surface, const SizingField& sizes) {
   const auto& p = surface.points_mm;
   std::vector<glm::dvec3> middles_mm;
@@ -97,7 +98,7 @@ class Round {
       if (length_mm(sides[i]) > longest_share() * sizes_mm[i]) middle_.emplace(sides[i], 0);
   }
 
-  /// The side across from which a triangle is halved: its longest, of equal ones the one that both of its
+  /// The side across which a triangle is halved: its longest; among equal ones the side that both of its
   /// triangles choose.
   std::size_t longest(const Face& face) const {
     std::size_t best = 0;
@@ -254,7 +255,7 @@ std::optional<std::string> coarse_place(const Tetrahedra& tetrahedra, const std:
     }
   if (count == 0) return std::nullopt;
   return "elements at " + voxel::rounded(at_mm) + " mm have sides of " + voxel::rounded(side_mm) +
-         " mm where " + voxel::rounded(asked_mm) + " mm were asked for" +
+         " mm where " + voxel::rounded(asked_mm) + " mm were requested" +
          (count > 1 ? ", the worst of " + std::to_string(count) + " such places" : "") +
          ": fine elements grow inward from the surface only: choose a place on the surface, or bound the "
          "volume of all elements";

@@ -66,7 +66,7 @@ double six_volumes(const TetCorners& corners_mm) {
 }
 
 TetQuality quality(const Tetrahedra& tetrahedra) {
-  if (tetrahedra.tets.empty()) throw std::invalid_argument("there is no quality of no tetrahedra");
+  if (tetrahedra.tets.empty()) throw std::invalid_argument("without tetrahedra there is no quality");
   TetQuality q;
   q.min_volume_mm3 = std::numeric_limits<double>::infinity();
   q.min_dihedral_deg = 180.0;

@@ -212,8 +212,8 @@ glm::dvec3 hole_point(const MesherInput& surface, const std::vector<Part>& parts
   return from + 0.5 * nearest * direction;
 }
 
-/// The volume that meshers are asked for, relative to the largest that is allowed: nodes that move to mend
-/// flat elements enlarge some of their neighbours, by up to a tenth in balls and boxes.
+/// The volume requested from meshers, relative to the largest that is allowed: nodes that move to mend flat
+/// elements enlarge some of their neighbours, by up to a tenth in balls and boxes.
 constexpr double asked_volume_share() {
   return 0.85;
 }
@@ -246,7 +246,7 @@ std::optional<std::size_t> divide_for_volume(MesherInput& surface, double max_vo
   return surface.triangles.size() == before ? std::nullopt : std::optional(before);
 }
 
-/// Reports elements that are larger than asked for.
+/// Reports elements that are larger than requested.
 std::optional<std::string> too_large(const Tetrahedra& made, double max_volume_mm3) {
   std::size_t count = 0, largest = 0;
   double most_mm3 = max_volume_mm3;
@@ -260,10 +260,10 @@ std::optional<std::string> too_large(const Tetrahedra& made, double max_volume_m
   if (count == 0) return std::nullopt;
   const TetCorners corners = corners_mm(made, largest);
   return std::to_string(count) + " of " + std::to_string(made.tets.size()) +
-         " elements are larger than the " + rounded(max_volume_mm3) + " mm3 asked for, the largest " +
+         " elements are larger than the " + rounded(max_volume_mm3) + " mm3 requested, the largest " +
          rounded(most_mm3) + " mm3 at " +
          rounded(0.25 * (corners[0] + corners[1] + corners[2] + corners[3])) +
-         " mm: ask for smaller ones, or take another mesher";
+         " mm: request smaller ones, or use another mesher";
 }
 
 void check(const TetOptions& options) {
@@ -336,7 +336,7 @@ std::optional<Tetrahedra> by_tetgen(MesherInput surface, double surface_mm3, con
           made.findings.push_back("the surface's " + std::to_string(*before) +
                                   " triangles were divided in their planes to " +
                                   std::to_string(surface.triangles.size()) +
-                                  ", as larger ones have elements larger than asked for");
+                                  ", because larger ones would have elements larger than requested");
         return made;
       }
       outcome.failure = made.method + "Q " + *fault;
@@ -433,7 +433,7 @@ std::optional<Tetrahedra> by_stuffing(const MesherInput& surface, double surface
                           rounded(apart_mm[apart_mm.size() * 95 / 100]) + " mm of it, all within " +
                           rounded(apart_mm.back()) + " mm");
   if (!options.finer.empty())
-    made.findings.push_back("elements are not finer where that was asked for: stuffing has one size");
+    made.findings.push_back("elements are not finer where that was requested: stuffing has one size");
   return made;
 }
 

@@ -50,19 +50,20 @@ std::optional<std::string> fault_in_shape(const Tetrahedra& tetrahedra);
 /// stay there.
 ///
 /// If TetGen fails it runs again with fewer demands: with quality (-pYq), without (-pY), with new points on
-/// the surface (-p), and without the largest volume last; `method` and `findings` say which. Nodes inside then move to improve flat elements
-/// (improve_tetrahedra.h). Short edges of an isosurface make quality expensive: run brep::decimate() first.
-/// Refinements divide the surface's triangles in their planes, and elements grow inward from there.
-/// Stuffing's cells are as large as the triangles' mean side, larger where that would be over two million
-/// elements; findings say how far its surface lies from the given one, and where refinements had no effect.
+/// the surface (-p), and without the largest volume last; `method` and `findings` report which. Nodes
+/// inside then move to improve flat elements (improve_tetrahedra.h). Short edges of an isosurface make
+/// quality expensive: run brep::decimate() first. Refinements divide the surface's triangles in their
+/// planes, and elements grow inward from there. Stuffing's cells are as large as the triangles' mean side,
+/// larger where that would be over two million elements; findings report how far its surface lies from the
+/// given one, and where refinements had no effect.
 ///
-/// Guaranteed: all volumes positive; the total volume is the surface's to 1e-9 by TetGen, to 1e-3 by Mesh_3,
-/// to 5e-2 by Stuffing.
-/// Throws voxel::Error: Geometry if the mesh is open, inside out, flat or tiny, or the meshers fail on it;
-/// Resource if a limit of time or memory ends the last of them, or a mesher is not installed beside the
-/// running program. The message names the switches tried and what to try next. Throws std::invalid_argument
-/// if an option is out of range, or the largest volume asks for over 2e7 elements; voxel::Stopped.
-/// Source: Si, "TetGen, a Delaunay-based quality tetrahedral mesh generator", ACM TOMS 41(2), 2015.
+/// Guaranteed: all volumes positive; the total volume is the surface's to 1e-9 by TetGen, to 1e-3 by
+/// Mesh_3, to 5e-2 by Stuffing. Throws voxel::Error: Geometry if the mesh is open, inside out, flat or
+/// tiny, or the meshers fail on it; Resource if a limit of time or memory ends the last of them, or a
+/// mesher is not installed beside the running program. The message names the switches tried and what to try
+/// next. Throws std::invalid_argument if an option is out of range, or the largest volume asks for over 2e7
+/// elements; voxel::Stopped. Source: Si, "TetGen, a Delaunay-based quality tetrahedral mesh generator", ACM
+/// TOMS 41(2), 2015.
 Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options = {});
 
 /// The fault of tetrahedra that should fill a surface of this volume within a relative tolerance: there are

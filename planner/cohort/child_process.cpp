@@ -127,7 +127,7 @@ ChildEnd run_child_process(const ChildProcess& child, const std::stop_token& sto
     kill(process, SIGTERM);
   });
   reader.join();
-  if (is_asked) throw voxel::Stopped("stopped: the subjects that were done stay");
+  if (is_asked) throw voxel::Stopped("stopped: the results of finished subjects stay");
   return {status, said.substr(0, said.find('\n'))};
 }
 

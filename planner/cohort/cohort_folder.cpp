@@ -110,7 +110,7 @@ bool is_ours(const fs::path& out, const std::string& name) {
 
 void need_ours(const fs::path& out, const std::string& name) {
   if (!is_ours(out, name))
-    refuse(out / "code" / name, "is not Octotomy's, or was changed after it wrote it: move it");
+    refuse(out / "code" / name, "is not Octotomy's, or was changed after Octotomy wrote it: move it");
 }
 
 /// The opened and locked list: the lock allows one process at a time to write to code/.

@@ -71,7 +71,7 @@ std::string submit(const EngineRequest& request, const Words& options, const Wor
   if (!WIFEXITED(child.status) || WEXITSTATUS(child.status) != 0 || job.empty() ||
       job.find_first_not_of("0123456789") != std::string::npos)
     throw voxel::Error(voxel::ErrorCode::Resource, "sbatch refused " + script[0] +
-                                                       ": see what it says above; its options come from "
+                                                       ": see its message above; its options come from "
                                                        "--slurm");
   return job;
 }
@@ -120,7 +120,7 @@ bool run_parallel(const EngineRequest& request) {
   Words words{"parallel",   "--will-cite",
               "--joblog",   code_path(request, cohort_log).string(),
               "--arg-file", write_labels(request).string()};
-  if (request.jobs > 0) words.insert(words.end(), {"--jobs", std::to_string(request.jobs)});
+  if (request.jobs) words.insert(words.end(), {"--jobs", std::to_string(*request.jobs)});
   words.push_back(shell_text(request.program) + " --participant-label {} >/dev/null");
   const Pipe pipe;
   run_child_process({.words = words,

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@ struct EngineRequest {
   std::vector<std::string> group;    ///< the group's command
   std::vector<std::string> labels;   ///< one process per label
   std::filesystem::path out;
-  int jobs = 0;                    ///< jobs of parallel; 0: as many as there are cores
+  std::optional<int> jobs;         ///< of parallel at a time; none: as many as there are cores
   std::vector<std::string> slurm;  ///< options of sbatch: "--mem=8G", "--partition=long"
   std::stop_token stop;
   std::function<void(const std::string& doing, double fraction)> progress;

@@ -77,7 +77,7 @@ std::vector<std::pair<double, double>> of_kernels(const CohortColumn& column) {
   return answers;
 }
 
-/// The same subjects' numbers of two observers, for the other minus this one.
+/// For each subject that both observers have: this observer's number, then the other's.
 std::vector<std::pair<double, double>> of_observers(const CohortColumn& column, const CohortTable& other) {
   std::map<std::uint32_t, double> others;
   for (const CohortColumn& its : other.columns())

@@ -162,8 +162,8 @@ std::vector<fs::path> needed_names(const Plan& plan, const ParticipantOptions& o
   return names;
 }
 
-/// Runs the work unless the subject has failed before. Enters what the work throws as the subject's failure.
-/// Stops and a want of memory, disk or time are not the subject's: they are thrown on.
+/// Runs the work unless the subject has failed before. Records an exception of the work as the subject's
+/// failure. Rethrows stops and a lack of memory, disk or time, because these are not the subject's.
 template <typename Work>
 void attempt(SubjectRecord& record, const Work& work) {
   if (!record.reason.empty()) return;

@@ -328,9 +328,9 @@ std::vector<std::string> doubts_of_cohort(const fs::path& input, const Plan& pla
   for (std::size_t i = 0; i < header.size(); ++i)
     if (!read.contains(i)) passed_over += (passed_over.empty() ? "'" : ", '") + header[i] + "'";
   if (!passed_over.empty())
-    doubts.push_back(
-        input.string() + ": unused columns " + passed_over +
-        ": how a scan is read, as its unit, frame or series, stands beside its path in the plan");
+    doubts.push_back(input.string() + ": unused columns " + passed_over +
+                     ": options for reading a scan, such as its unit, frame or series, belong beside its "
+                     "path in the plan");
   return doubts;
 }
 

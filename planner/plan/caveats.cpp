@@ -127,8 +127,8 @@ bool is_operated(const std::vector<ScanRecord>& records, std::string name) {
   }
 }
 
-/// Of an object's volume. More padding within it makes its numbers wrong. Less may be dark samples of an MR that
-/// happen to have the padding's value, 0.
+/// As a share of an object's volume. More padding within the object makes its numbers wrong. Less padding
+/// may be dark samples of an MR that happen to have the padding's value, 0.
 constexpr double most_missing_share = 0.005;
 
 void add_unmeasured(const MadeOf& from, Object& made) {
@@ -270,8 +270,8 @@ void add_kept_parts(std::vector<verify::OpenPart> kept, const std::vector<verify
                            ": both kernels keep the parts that only one of them connects; 'cut_bridges_mm' "
                            "of the step cuts a neck";
   made.findings.push_back(text);
-  made.shared_values.push_back(made.kind +
-                               ": which parts beyond thin necks stay, as either kernel connects them");
+  made.shared_values.push_back(
+      made.kind + ": the choice of parts beyond thin necks, which stay if one kernel connects them");
   const double whole_mm3 = static_cast<double>(made.voxel.octree.voxel_count()) *
                            made.voxel.octree.universe().lattice().voxel_mm3();
   if (all_mm3 > little * whole_mm3) made.caveats.push_back({voxel::Verdict::Warn, text});

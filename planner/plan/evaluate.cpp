@@ -159,7 +159,7 @@ class Evaluator {
     sha256 = sum_of(path);
     if (source.sha256 && *source.sha256 != sha256)
       throw std::runtime_error("scan '" + name + "': " + path.string() + " has SHA-256 " + sha256 +
-                               ", the plan wants " + *source.sha256 + ": it is another scan");
+                               ", the plan states " + *source.sha256 + ": it is another scan");
     voxel::ReadOptions options = source.read;
     options.progress.stop = options_.stop;
     voxel::Scene scene =

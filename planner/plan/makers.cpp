@@ -30,7 +30,7 @@ void add_makers(const MadeOf& from, bool found_values, Object& made) {
   // If only the mesh kernel does the operation, the voxels come from its mesh.
   if (!operation.voxel) add(made.voxel.makers, made.mesh.makers);
   if (found_values)
-    add(made.shared_values, {operation.name + ": values that the step finds once for both kernels"});
+    add(made.shared_values, {operation.name + ": values that the step computes once for both kernels"});
   if (operation.is_of_head && from.objects.lps_from_head != glm::dmat3(1.0))
     add(made.shared_values, {operation.name + ": how the head is held"});
   for (const std::string& scan : scans_used(from.action))

@@ -15,8 +15,8 @@ void migrate(nlohmann::json& plan, const Migrations& migrations) {
     refuse("octotomy_plan", "must be a version of plans, from 1 to " + std::to_string(newest));
   if (found->get<std::int64_t>() > newest)
     refuse("octotomy_plan", "must be 1" + (newest > 1 ? " to " + std::to_string(newest) : std::string()) +
-                                ", the only version of plans there is in this program: a newer one wrote "
-                                "this plan, install that");
+                                ", because this program reads no later version of plans: a newer program "
+                                "wrote this plan, install that one");
   for (int version = found->get<int>(); version < newest; ++version) {
     migrations[static_cast<std::size_t>(version - 1)](plan);
     plan["octotomy_plan"] = version + 1;

@@ -32,7 +32,7 @@ const SortedJson& Keys::need(const std::string& key) const {
 std::string Keys::text(const std::string& key) const {
   const SortedJson& value = need(key);
   if (!value.is_string()) refuse(at(key), "must be a text in quotes, not " + type_of(value));
-  if (value.get_ref<const std::string&>().empty()) refuse(at(key), "is empty: say what is meant");
+  if (value.get_ref<const std::string&>().empty()) refuse(at(key), "is empty: give a value");
   return value.get<std::string>();
 }
 

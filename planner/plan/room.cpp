@@ -64,7 +64,7 @@ std::optional<voxel::Universe> with_room(const voxel::Universe& universe, const 
   while (larger.side() < std::max({wanted.x, wanted.y, wanted.z}))
     if (++larger.depth > std::min(universe.depth + most_levels, voxel::Universe::max_depth))
       return std::nullopt;
-  // The room that is left over is on both sides, in whole voxels.
+  // The remaining room is divided between both sides, in whole voxels.
   const glm::dvec3 first = low - glm::floor(0.5 * (static_cast<double>(larger.side()) - wanted));
   if (larger.depth > universe.depth) larger.lps_from_voxel[3] = glm::dvec4(lattice.lps_mm(first), 1.0);
   return larger;

@@ -186,7 +186,7 @@ class Through {
     if (!known.insert(std::minmax(one, other)).second) return;
     const Object &a = objects_.at(one), &b = objects_.at(other);
     if (!a.mesh.within || !b.mesh.within || a.mesh.within->empty() || b.mesh.within->empty()) {
-      findings_.push_back(one + " and " + other + " have no two meshes: their gap is left out");
+      findings_.push_back(one + " and " + other + " do not both have a mesh: their gap is left out");
       return;
     }
     const glm::dvec3 spacing_mm = a.voxel.octree.universe().lattice().spacing_mm();

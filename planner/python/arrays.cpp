@@ -83,7 +83,7 @@ py::array array_of(const glm::dmat4& matrix) {
 }
 
 py::object python_of(const nlohmann::ordered_json& json) {
-  // The names of files may be no UTF-8.
+  // Names of files need not be UTF-8.
   constexpr auto replace = nlohmann::ordered_json::error_handler_t::replace;
   return py::module_::import("json").attr("loads")(json.dump(-1, ' ', false, replace));
 }

@@ -12,8 +12,8 @@ namespace octotomy::planner::python {
 
 namespace py = pybind11;
 
-/// An array that shows `first` and what follows, and keeps `owner` alive; nobody can write to it. Shape as
-/// NumPy has it, the fastest axis last.
+/// A read-only array of the values from `first` on, which keeps `owner` alive. Shape as in NumPy, the
+/// fastest axis last.
 template <typename Number>
 py::array shown(const Number* first, std::vector<py::ssize_t> shape, py::handle owner) {
   py::array array(py::dtype::of<Number>(), std::move(shape), first, owner);
@@ -23,17 +23,17 @@ py::array shown(const Number* first, std::vector<py::ssize_t> shape, py::handle 
 
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// Each throws std::invalid_argument naming `what` where the shape is another one or a number is not finite,
-/// or not in its range.
+/// Each throws std::invalid_argument naming `what` if the shape differs, or a number is not finite or out
+/// of its range.
 glm::dvec3 vector_of(const Numbers& numbers, const char* what);
 std::vector<glm::dvec2> points_2d_of(const Numbers& numbers, const char* what);
 std::vector<glm::dvec3> points_3d_of(const Numbers& numbers, const char* what);
 /// `number` itself, which must lie from `low` to `high`; either may be infinite.
 double number_from(double number, double low, double high, const char* what);
-/// Row by row, as NumPy and nibabel have it.
+/// Row by row, as in NumPy and nibabel.
 glm::dmat4 matrix_of(const Numbers& numbers, const char* what);
 
-/// Names of files may be any bytes: those that are no UTF-8 become \xff and the like.
+/// Names of files may be any bytes. Bytes that are not UTF-8 are written as escapes, \xff.
 py::str text_of(const std::string& bytes);
 
 py::array array_of(const glm::dvec3& vector);

@@ -46,14 +46,15 @@ void translate(std::exception_ptr thrown) {
 void add_errors(py::module_& module) {
   const py::handle runtime(PyExc_RuntimeError), value(PyExc_ValueError);
   const py::object base = py::reinterpret_borrow<py::object>(
-      new_error(module, "Error", "What a kernel or the planner refuses, with place, cause and remedy.",
+      new_error(module, "Error", "A refusal by a kernel or the planner, with place, cause and remedy.",
                 py::reinterpret_borrow<py::object>(runtime)));
   of_fault = {
       new_error(module, "InputError", "Data or text from outside is wrong.", py::make_tuple(base, value)),
       new_error(module, "GeometryError", "The data are sound, but the operation has no answer on them.",
                 base),
       new_error(module, "CancelledError", "The work was stopped.", base),
-      new_error(module, "ResourceError", "Memory, disk, time or a child process gave out.", base),
+      new_error(module, "ResourceError", "Memory, disk or time is exhausted, or a child process failed.",
+                base),
       new_error(module, "InternalError", "A mistake in the program: please report it.", base)};
   py::register_exception_translator(translate);
 }

@@ -28,7 +28,7 @@ using brep::Solid;
 using brep::Triangles;
 using SharedTriangles = std::shared_ptr<Triangles>;
 
-/// Doubles still part points by a ten-millionth of a millimetre at this distance.
+/// At this distance doubles still distinguish points a ten-millionth of a millimetre apart.
 constexpr double farthest_mm = 1e9;
 
 SharedTriangles triangles_of_arrays(const Numbers& vertices_mm, const Numbers& faces) {
@@ -89,7 +89,8 @@ void write(const Triangles& triangles, const std::filesystem::path& path) {
 
 void add_meshes(py::module_& module) {
   py::class_<Triangles, SharedTriangles> mesh(
-      module, "Mesh", "Triangles in LPS millimetres; nothing is promised of them.", py::dynamic_attr());
+      module, "Mesh", "Arbitrary triangles in LPS millimetres, which need not be closed.",
+      py::dynamic_attr());
   mesh.attr("audit") = py::tuple();  // of meshes that no file was read for
   mesh.def(
           py::init(&triangles_of_arrays), py::arg("vertices_mm"), py::arg("triangles"),
@@ -164,8 +165,7 @@ void add_meshes(py::module_& module) {
       },
       py::arg("path"), py::arg("frame") = py::none(), py::arg("unit") = py::none(),
       "Reads .stl, .ply, .obj, .off, .vtk, .vtp, .vtu, .glb or .3mf. The mesh's `audit` says which frame and "
-      "unit the file states, and what was assumed; `frame` (\"RAS\") and `unit` (\"inch\") are taken "
-      "instead.");
+      "unit the file states, and what was assumed; `frame` (\"RAS\") and `unit` (\"inch\") override these.");
   module.def("isosurface", &isosurface, py::arg("scan"), py::arg("low"), py::arg("high") = 32767.0,
              "The surface on which a scan's samples enter low..high.");
 }

@@ -103,10 +103,9 @@ py::array motion(const std::optional<Numbers>& translate_mm, double degrees,
 }  // namespace
 
 void add_octrees(py::module_& module) {
-  py::class_<Expression>(
-      module, "Expression",
-      "A Boolean expression of objects: & (and), | (or), - (less), ^ (either), ~ (not). Nothing is computed "
-      "until octree() is asked for.")
+  py::class_<Expression>(module, "Expression",
+                         "A Boolean expression of objects: & (and), | (or), - (less), ^ (either), ~ (not). "
+                         "Nothing is computed until octree() is called.")
       .def(py::init<Octree>(), py::arg("octree"))
       .def(py::self & py::self)
       .def(py::self | py::self)
@@ -159,8 +158,9 @@ void add_octrees(py::module_& module) {
       },
       py::arg("grey"), py::arg("low"), py::arg("high") = 32767.0,
       "The samples from low to high, both included.");
-  module.def("mask", &mask, py::arg("regions"),
-             "What projects into the polygons of every region: pairs of a view and its polygons in mm.");
+  module.def(
+      "mask", &mask, py::arg("regions"),
+      "The points that project into the polygons of every region: pairs of a view and its polygons in mm.");
   module.def(
       "half_space",
       [](const Numbers& normal, double offset_mm) {

@@ -17,7 +17,7 @@
 namespace octotomy::planner::python {
 namespace {
 
-/// A plan's result, and the last of its parts that Python holds keeps it.
+/// A plan's result. Its parts that Python holds keep it alive.
 using SharedResult = std::shared_ptr<Result>;
 
 const Object& object_of(const Result& result, const std::string& id) {
@@ -59,7 +59,7 @@ void add_plans(py::module_& module) {
       "plan_schema", [] { return python_of(plan_schema()); },
       "The JSON schema of plans: every operation with its fields, units, ranges and defaults.");
 
-  py::class_<Result, SharedResult>(module, "Evaluation", "What a plan's steps made, in both kernels.")
+  py::class_<Result, SharedResult>(module, "Evaluation", "The results of a plan's steps, in both kernels.")
       .def_property_readonly(
           "objects",
           [](const Result& result) {

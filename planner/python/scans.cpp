@@ -161,13 +161,13 @@ void add_scans(py::module_& module) {
           "Writes .nrrd, .nii, .nii.gz or .mha as the name ends. The names of the labels of a label map that "
           "was read from a file are written beside it, as .tsv.");
 
-  module.def(
-      "read_scan", &read_scan, py::arg("path"), py::arg("series") = "", py::arg("spacing_mm") = py::none(),
-      py::arg("frame") = py::none(), py::arg("unit") = py::none(), py::arg("join") = false,
-      "Reads a scan: DICOM folder or file, NIfTI, NRRD, MetaImage, images. `series` chooses a DICOM "
-      "series by number, UID or part of its description; `join` takes slices of one geometry together "
-      "whose identifiers differ, which the audit then fails. `frame` (\"RAS\") and `unit` (\"um\") say "
-      "what the file does not, or wrongly.");
+  module.def("read_scan", &read_scan, py::arg("path"), py::arg("series") = "",
+             py::arg("spacing_mm") = py::none(), py::arg("frame") = py::none(), py::arg("unit") = py::none(),
+             py::arg("join") = false,
+             "Reads a scan: DICOM folder or file, NIfTI, NRRD, MetaImage, images. `series` chooses a DICOM "
+             "series by number, UID or part of its description; `join` takes slices of one geometry together "
+             "whose identifiers differ, which the audit then fails. `frame` (\"RAS\") and `unit` (\"um\") "
+             "state what the file omits or states wrongly.");
 }
 
 }  // namespace octotomy::planner::python

@@ -15,7 +15,7 @@
 namespace octotomy::verify {
 namespace {
 
-/// What the witness reads at the centres of some voxels.
+/// The witness's readings at the centres of some voxels.
 struct CentreCount {
   std::uint64_t surplus = 0, lacking = 0;  ///< voxels that must not be there, and that must
   std::uint64_t on_surface = 0, unknown = 0;

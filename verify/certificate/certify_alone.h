@@ -18,11 +18,11 @@ struct AloneInputs {
   Witness witness;                  ///< not empty; ends with the universe, as the voxels do
 };
 
-/// Judges an object that the voxel kernel alone made (tier Bounded): at the centre of every voxel of the
-/// universe, inside and outside of the object, its witness must allow the side. The witness's own reading
-/// stands in the place of the mesh kernel's answer, with the voxels' makers: the certificate is not
-/// independent, says so, and is a WARN at best. It names the volume whose side the witness does not know.
-/// Throws voxel::Stopped. Cost: a reading of the witness for each voxel of the universe.
+/// Judges an object that the voxel kernel alone made (tier Bounded). At the centre of every voxel of the
+/// universe, inside and outside the object, its witness must allow the object's side. The witness's reading
+/// replaces the mesh kernel's answer and has the voxels' makers. So the certificate is not independent,
+/// states this, and is a WARN at best. It states the volume in which the witness allows both sides. Throws
+/// voxel::Stopped. Cost: a reading of the witness for each voxel of the universe.
 Certificate certify_alone(const voxel::Octree& octree, const AloneInputs& inputs,
                           const voxel::Progress& progress = {});
 

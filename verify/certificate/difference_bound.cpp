@@ -158,7 +158,7 @@ void derive_volume_tolerance(Certificate& certificate, const Evidence& evidence)
        "Flat parts through voxel centres, their rims, and cuts that were declared but not found may move "
        "either way.",
        "h/2 * area", model.unsure.mm3 + evidence.unseen_mm3},
-      {"border", "The kernels close an object that ends with the scan up to half a sample apart.",
+      {"border", "Where the scan cuts an object off, the kernels close it up to half a sample apart.",
        "s/2 * area", evidence.border.mm3},
       {"bent", "Triangles are chords of a curved surface.",
        "0.33 |integral of s^2 curvature|, with rough at most 0.1 s S", share * bent_mm3},

@@ -38,10 +38,10 @@ Evidence evidence_of(const voxel::Octree& octree, const brep::Solid& solid, cons
 void derive_volume_tolerance(Certificate& certificate, const Evidence& evidence);
 /// Sets the tolerances of the symmetric difference and of the centroid. Precondition: the volume's are set.
 void derive_other_tolerances(Certificate& certificate, const Evidence& evidence);
-/// Of a component of the inertia tensor, of which the largest is `largest_mm5`. Precondition: the others are
-/// set.
+/// For a component of the inertia tensor, of which the largest is `largest_mm5`. Precondition: the other
+/// terms are set.
 double inertia_tolerance_mm5(const Certificate& certificate, const Evidence& evidence, double largest_mm5);
-/// Of the area by the Crofton formula, beside `thin_mm2` of parts thinner than a voxel.
+/// For the area by the Crofton formula, with `thin_mm2` of parts thinner than a voxel.
 double area_tolerance_mm2(const Evidence& evidence, double thin_mm2);
 
 struct DistanceBounds {

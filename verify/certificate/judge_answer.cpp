@@ -108,7 +108,7 @@ std::vector<glm::dvec3> decided_centres(const voxel::Octree& set, const KernelAn
 
 Certificate no_solid() {
   Certificate certificate;
-  lower(certificate, Verdict::Warn, "The mesh kernel has no answer to hold this one against.");
+  lower(certificate, Verdict::Warn, "The mesh kernel has no answer to compare this one with.");
   return certificate;
 }
 

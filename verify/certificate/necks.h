@@ -55,8 +55,8 @@ class Necks {
   /// The side of the answer that alone has the voxel or a neighbour of it; null where the answers agree.
   Side* side_near(const glm::ivec3& at) const;
   bool is_thick(Side& side, const std::vector<glm::ivec3>& part) const;
-  /// Whether the reading leaves both kernels one answer on a path from the part to voxels of both answers. Both
-  /// kernels must then have connected the part, however they interpolate.
+  /// Whether some path from the part to voxels of both answers allows both kernels only one answer on its
+  /// way. Both kernels must then have connected the part, however they interpolate.
   bool is_surely_connected(const std::vector<glm::ivec3>& part) const;
   std::optional<glm::dvec3> neck_by_voxels(Side& side, const std::vector<glm::ivec3>& part) const;
   std::optional<glm::dvec3> neck_by_reading(const glm::ivec3& from) const;

@@ -201,9 +201,9 @@ std::vector<glm::ivec3> blocks_of(const voxel::Octree& octree, const LineReading
   return blocks;
 }
 
-/// Sampled voxels on which both kernels agree and which the witness's word for the mesh contradicts, except
-/// the `compared` ones, which are sorted. Empty if the object has no reading along lines, because that
-/// reading bounds the search.
+/// Sampled voxels on which both kernels agree and at which the witness's sides for the mesh contradict
+/// them, except the `compared` ones, which are sorted. Empty if the object has no reading along lines,
+/// because that reading bounds the search.
 std::vector<FailedVoxel> failed_inside(const voxel::Octree& octree, const voxel::Octree& digitised,
                                        const std::vector<glm::ivec3>& compared, const Witness& witness,
                                        const voxel::Progress& progress) {

@@ -201,7 +201,8 @@ double SurfaceDistances::leave_out_thin() {
     const glm::dvec3 along = glm::abs(samples_.normals[numbers[i]] * axes_mm);
     widths_mm[i] = along.x + along.y + along.z;
   }
-  // Sheets lie in stacks, and the far end of a voxel may lie in the next sheet or gap: reads the way to it, too.
+  // Sheets may be stacked, and the far end of a voxel may lie in the next sheet or gap. So reads along the
+  // whole distance to that end.
   std::vector<std::uint8_t> thin(count, 0);
   std::vector<std::size_t> left;
   std::vector<glm::dvec3> within_mm, beyond_mm;

@@ -44,8 +44,8 @@ class SurfaceDistances {
   /// leave_out_thin() does not find, because they are thick along their own normals. Returns their area as
   /// leave_out_thin() does.
   double leave_out_unheld(const voxel::Octree& digitised, double reach_mm);
-  /// Removes the points in or beside these voxels from both surfaces; one that leaves no point is 0 apart.
-  /// Precondition: the voxels are in the order of before().
+  /// Removes from both surfaces the points in or beside these voxels. A surface without remaining points
+  /// has the distance 0. Precondition: the voxels are in the order of before().
   void leave_out_beside(const std::vector<glm::ivec3>& voxels);
 
   /// Points of one surface.

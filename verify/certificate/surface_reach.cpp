@@ -87,7 +87,7 @@ void raise(std::atomic<double>& number, double to) {
   }
 }
 
-/// The sample that is farthest from a surface, of those that `counts`.
+/// The sample that is farthest from a surface, among those for which `counts` is true.
 FarSample farthest(const brep::Triangles& mesh, const TriangleGrid& from, double spacing_mm, double search_mm,
                    const std::function<bool(const glm::dvec3&)>& counts, const voxel::Progress& progress) {
   constexpr std::size_t some = 1024;
@@ -171,10 +171,10 @@ void judge_reach(Certificate& certificate, const brep::Triangles& answer, const 
   if (answer.faces.empty() || surface.faces.empty()) {
     if (answer.faces.empty() && has_surface)
       lower(certificate, Verdict::Fail,
-            "The answer is empty, and its step makes a surface of " + voxel::rounded(area_of(surface)) +
+            "The answer is empty, but its step must make a surface of " + voxel::rounded(area_of(surface)) +
                 " mm2.");
     if (!answer.faces.empty())
-      lower(certificate, Verdict::Fail, "The answer has a surface, and its step makes none.");
+      lower(certificate, Verdict::Fail, "The answer has a surface, but its step must make none.");
     return;
   }
   const TriangleGrid grid(answer);

@@ -9,7 +9,8 @@
 
 namespace octotomy::verify {
 
-/// What may separate an answer from the surface where it must lie, beyond the surface's own reach.
+/// The allowed distance between an answer and the surface where it must lie, in addition to the surface's
+/// own reach.
 struct ReachOptions {
   voxel::Box world_mm;      ///< the answer ends there and the surface does not
   double shift_mm = 0.0;    ///< how far Booleans on the way moved the operand
@@ -17,11 +18,12 @@ struct ReachOptions {
 };
 
 /// Adds to the certificate of an answer the largest distance of its surface from the surface where it must
-/// lie, and the other way round: at all vertices, and at points of sides and triangles no farther apart than
-/// the spacing. Each distance fails beyond reach_doubt times the reach. Raises the detection limit to the
-/// volume of a layer of that thickness over the whole surface, because an answer may be off by that
-/// thickness. One of both empty is a FAIL. Throws voxel::Stopped. Parallel; same answer on any thread count.
-/// Cost: one search of a grid for each sample; for parts that are missing or added some hundred longer ones.
+/// lie, and the other way round: at all vertices, and at points of sides and triangles no farther apart
+/// than the spacing. Each distance fails beyond reach_doubt times the reach. Raises the detection limit to
+/// the volume of a layer of that thickness over the whole surface, because an answer may be off by that
+/// thickness. FAIL if only one of the two is empty. Throws voxel::Stopped. Parallel; same answer on any
+/// thread count. Cost: one search of a grid for each sample; for parts that are missing or added some
+/// hundred longer ones.
 void judge_reach(Certificate& certificate, const brep::Triangles& answer, const ReshapedSurface& expected,
                  const ReachOptions& options, const voxel::Progress& progress = {});
 

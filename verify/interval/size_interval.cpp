@@ -365,8 +365,8 @@ double mean_step(const Level& level) {
   return sum / parts;
 }
 
-/// The mean step at the face of a sheet that a Gaussian of this deviation has blurred, as a share of the
-/// contrast between a depth and `away`; all in samples.
+/// The mean step at the face of a sheet blurred by a Gaussian, as a share of the contrast between `depth`
+/// inside and `away` outside the face. `deviation` is the Gaussian's. All lengths are in samples.
 double step_share(double deviation, double depth, double thickness) {
   const auto level = [&](double at) {
     return normal_distribution(at / deviation) - normal_distribution((at - thickness) / deviation);

@@ -436,8 +436,7 @@ void widen_to(const Interval& ambiguous, Interval& by_surface) {
   const double far = std::max(ambiguous.value + ambiguous.half_width - by_surface.value,
                               by_surface.value - ambiguous.value + ambiguous.half_width);
   if (far <= by_surface.half_width) return;
-  by_surface.sources.push_back({"faint",
-                                "what samples below the bound add up to: thin walls or a lower density",
+  by_surface.sources.push_back({"faint", "the sum of samples below the bound: thin walls or a lower density",
                                 far - by_surface.half_width, true});
   by_surface.half_width = far;
 }

@@ -22,7 +22,8 @@ class ImplicitSolid {
     const Primitive* primitive = nullptr;  ///< of a leaf
     double mm = 0.0;                       ///< blending width of a union or intersection; growth
   };
-  /// A function, or the steps of it that matter within a ball. Valid as long as the solid that it comes from.
+  /// The steps that evaluate a solid: all of them, or only those that matter within a ball. Valid as long
+  /// as the solid.
   using Steps = std::vector<Step>;
 
   double operator()(const glm::dvec3& p_mm) const;

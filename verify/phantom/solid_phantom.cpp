@@ -18,7 +18,7 @@ using std::numbers::pi;
 
 constexpr int chequers = 8;  // cells a side: the nodes of level 3 (thesis 3.3.3)
 
-/// Size and position of the solid that a kind's builder makes.
+/// Size and position of the solid for a kind's builder.
 struct SolidFrame {
   double radius_mm;
   glm::dvec3 centre_mm;
@@ -284,7 +284,7 @@ SolidPhantom solid_phantom(std::string_view kind, const SolidPhantomOptions& opt
   if (!(radius_voxels > 0.0) || !std::isfinite(radius_voxels))
     throw voxel::InvalidInput("a radius is a positive number of voxels");
   if (found->on_lattice && (options.centre_mm != glm::dvec3(0.0) || options.lps_from_axes != glm::dmat3(1.0)))
-    throw voxel::InvalidInput(std::string(kind) + " is bound to the lattice: it is not turned nor moved");
+    throw voxel::InvalidInput(std::string(kind) + " is fixed to the lattice: it cannot be turned or moved");
   if (found->reach == 0.0 && options.radius_voxels)
     throw voxel::InvalidInput(std::string(kind) + " fills its universe and has no radius");
   const double voxel_mm = std::min({options.spacing_mm.x, options.spacing_mm.y, options.spacing_mm.z});

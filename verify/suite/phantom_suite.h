@@ -35,8 +35,8 @@ struct Tightness {
   double p99_share = 0.0;    ///< its 99th percentile; the tolerance is 1 / p99_share times that difference
 };
 
-/// A constant of the tolerances, and the value that is needed for poses of other seeds than those of the
-/// cases.
+/// A constant of the tolerances, and the value that the cases need with other seeds than those of the
+/// calibration.
 struct Calibration {
   std::string constant;
   double in_use = 0.0;

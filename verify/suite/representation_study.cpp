@@ -64,7 +64,7 @@ voxel::GreyOctree grey_head() {
   return grey_octree_of(universe, scene, 0);
 }
 
-/// What drawing a head from the front visits.
+/// The visits of drawing a head from the front.
 voxel::Visits drawn(const voxel::DrawnObject& object, voxel::Algorithm algorithm) {
   voxel::RenderOptions options;
   options.view = voxel::parse_view("anterior");

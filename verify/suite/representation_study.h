@@ -18,7 +18,8 @@ struct ThesisComparison {
 };
 
 struct RepresentationStudy {
-  /// What holds for any object: face codes, orders of algorithms by their cost, bounds of theorem 3.1.
+  /// Relations that hold for any object: face codes, orders of algorithms by their cost, bounds of theorem
+  /// 3.1.
   std::vector<ThesisEntry> entries;
   std::vector<ThesisComparison> beside;
 };

@@ -17,7 +17,7 @@
 namespace octotomy::verify {
 namespace {
 
-/// As of other shapes from a plan: rounding of a vertex, relative to its coordinates.
+/// Rounding of a vertex, relative to its coordinates; the same as for other shapes of a plan.
 constexpr double on_hull = 1e-8;
 
 /// Faces of a brush about the origin: normal . p <= reach_mm.
@@ -63,7 +63,7 @@ std::vector<Face> faces_of_disc(const DrawnBrush::Disc& disc, double radius_mm) 
   return faces;
 }
 
-/// A straight piece of a way, over which the brush slides.
+/// A straight piece of a path, along which the brush slides.
 class Piece {
  public:
   Piece(std::shared_ptr<const std::vector<Face>> faces, const glm::dvec3& from_mm, const glm::dvec3& to_mm)
@@ -121,7 +121,7 @@ class Piece {
         ahead = ahead || glm::dot(face.normal, by_mm_) > 0.0;
         behind = behind || glm::dot(face.normal, by_mm_) < 0.0;
       }
-    // Beside the piece, a face of the hull stands for two of the brush.
+    // Beside the piece, one face of the hull represents two faces of the brush.
     return std::max(1, is_within && ahead && behind ? count - 1 : count);
   }
 
@@ -164,14 +164,14 @@ class Piece {
 std::vector<Piece> pieces_of(const std::vector<DrawnBrush>& ways) {
   std::vector<Piece> pieces;
   for (const DrawnBrush& way : ways) {
-    if (way.way_mm.empty()) throw voxel::InvalidInput("a way of the brush has no point");
+    if (way.way_mm.empty()) throw voxel::InvalidInput("a path of the brush has no point");
     const auto faces = std::make_shared<const std::vector<Face>>(
         way.disc ? faces_of_disc(*way.disc, way.radius_mm) : faces_of_ball(way.radius_mm));
     if (way.way_mm.size() == 1) pieces.emplace_back(faces, way.way_mm.front(), way.way_mm.front());
     for (std::size_t i = 0; i + 1 < way.way_mm.size(); ++i)
       pieces.emplace_back(faces, way.way_mm[i], way.way_mm[i + 1]);
   }
-  if (pieces.empty()) throw voxel::InvalidInput("the brush has no way");
+  if (pieces.empty()) throw voxel::InvalidInput("the brush has no path");
   return pieces;
 }
 

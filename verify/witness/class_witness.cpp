@@ -21,7 +21,8 @@ class Classed {
         by_(std::move(by)),
         dims_(scan_->lattice.dims),
         voxel_from_lps_(glm::inverse(scan_->lattice.lps_from_voxel)) {
-    if (by_.meant >= by_.centres.size()) throw voxel::InvalidInput("the class that is meant is none");
+    if (by_.meant >= by_.centres.size())
+      throw voxel::InvalidInput("no class has the number of the described class");
   }
 
   AllowedSides allowed(const glm::dvec3& p_mm) const {

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint8_t may_belong = 1, surely_belongs = 2;
 
-/// The samples of a scan, with what of them was reached.
+/// The samples of a scan, with the set of reached samples.
 class Grown {
  public:
   Grown(const voxel::Scene& scan, const GrownFrom& from)

@@ -11,7 +11,7 @@
 
 namespace octotomy::verify {
 
-/// What grows from where, through a scan's own samples.
+/// The seeds and limits of growing through a scan's own samples.
 struct GrownFrom {
   std::vector<glm::dvec3> seeds_mm;  ///< LPS; each begins at the nearest sample
   /// Grows through the samples in the range of the seeds' samples, widened by this at both ends. None:
@@ -19,20 +19,21 @@ struct GrownFrom {
   std::optional<double> tolerance = {};
   double low = 0.0, high = std::numeric_limits<double>::infinity();
   int neighbours = 6;  ///< 6 by faces, 18 by edges too, 26 by corners too
-  /// By how much a kernel may have rounded a sample, in the scan's unit. Samples that near a bound may belong
-  /// or not, and so may all that hangs on them.
+  /// The largest rounding of a sample by a kernel, in the scan's unit. Samples that near a bound may belong
+  /// or not, and so may all samples reached only through them.
   double rounding = 0.0;
-  /// With a tolerance: grows in rounds. In each, all neighbours join whose samples lie within the tolerance of
-  /// the mean of the region's samples before the round. Samples count as their nearest multiples of this,
-  /// halves upwards: the mean depends on all samples, so that their rounding is part of the definition. None:
-  /// only the seeds determine the range.
+  /// With a tolerance: grows in rounds. In each, all neighbours join whose samples lie within the tolerance
+  /// of the mean of the region's samples before the round. Samples are rounded to the nearest multiples of
+  /// this, halves upwards, because the mean depends on all samples and so on their rounding. None: only the
+  /// seeds determine the range.
   std::optional<double> mean_of_steps = {};
 };
 
-/// The samples that a path of neighbours joins to a seed, by a flood of this source's own. For voxels whose
-/// centres are the samples: at a sample both sides are certain, beyond the scan all is outside. Elsewhere a
-/// point is certain where the eight samples about it agree. Throws std::invalid_argument without seeds, for a
-/// seed beyond the scan, and for other neighbours. Cost: linear in the samples; a byte for each is kept.
+/// The samples that a path of neighbours joins to a seed, by a flood that no kernel shares. For voxels
+/// whose centres are the samples: at a sample both sides are certain, beyond the scan all is outside.
+/// Elsewhere a point is certain where the eight samples about it agree. Throws std::invalid_argument
+/// without seeds, for a seed beyond the scan, and for other neighbours. Cost: linear in the samples; a byte
+/// for each is kept.
 Witness witness_of_grown(const voxel::Scene& scan, const GrownFrom& from);
 
 }  // namespace octotomy::verify

@@ -90,7 +90,7 @@ class PointGrid {
       low_ = glm::min(low_, p);
       high = glm::max(high, p);
     }
-    // Cells are widened where there would be many more than points.
+    // The edge is doubled until there are not many more cells than points, which bounds memory.
     const auto cells_at = [&](double edge_mm) {
       const glm::dvec3 cells = glm::floor((high - low_) / edge_mm) + 1.0;
       return cells.x * cells.y * cells.z;
@@ -150,13 +150,13 @@ struct SurfacePlaces {
   }
 };
 
-/// What both kernels may answer of the operand at a point.
+/// The answers that both kernels may have for the operand at a point.
 AllowedSides common_sides(const Reading& reading) {
   return {reading.voxel.in || reading.mesh.in, reading.voxel.out || reading.mesh.out,
           reading.voxel.near || reading.mesh.near};
 }
 
-/// The edge of a face's two voxels, and a voxel further either way.
+/// The place of the surface between the two voxels of a face, and up to a voxel farther on either side.
 SurfacePlaces places_at(const voxel::VoxelFace& face, const OffsetOperand& operand,
                         const voxel::Octree& digitised) {
   const voxel::Lattice lattice = operand.voxels.universe().lattice();
@@ -228,7 +228,7 @@ SurfacePlaces places_near(const glm::dvec3& p_mm, const glm::dvec3& normal, doub
   int in = 0, out = 0;
   while (in > -steps_a_voxel && allowed(in).in && allowed(in).out) --in;
   while (out < steps_a_voxel && allowed(out).in && allowed(out).out) ++out;
-  // A point that is certainly on one side has the surface on its other side.
+  // If a point is certainly on one side, the surface lies on its other side.
   if (allowed(0) == certainly_out)
     while (in > -steps_a_voxel && allowed(in).out) --in;
   if (allowed(0) == certainly_in)
@@ -244,7 +244,7 @@ SurfacePlaces places_near(const glm::dvec3& p_mm, const glm::dvec3& normal, doub
   return places;
 }
 
-/// Where walls and gaps are that pass between the voxels' centres, away from the places at voxels' faces.
+/// The walls and gaps that pass between the voxels' centres, away from the places at voxels' faces.
 SurfacePlaces thin_places_of(const OffsetOperand& operand, const std::vector<glm::dvec3>& between_mm) {
   const voxel::Universe& universe = operand.voxels.universe();
   const voxel::Box world = voxel::bounds(universe.lattice());
@@ -315,7 +315,8 @@ class OffsetWitness {
     return (is_centre ? cut_corner : cut_corner + 0.5) * diagonal_mm_ + whole_voxels_mm_;
   }
 
-  /// The word by the places at voxels' faces. None: they do not move the surface to here.
+  /// The allowed sides by the places at voxels' faces. None: the surface of no such place is moved to this
+  /// point.
   std::optional<AllowedSides> allowed(const AllowedSides& own, const glm::dvec3& p_mm,
                                       double error_mm) const {
     const AllowedSides beyond = by_mm_ > 0.0 ? certainly_in : certainly_out;
@@ -329,7 +330,7 @@ class OffsetWitness {
     return thin_between_.has_within(p_mm, std::abs(by_mm_) + error_mm + thin_error_mm_);
   }
 
-  /// Of a wall or gap between its voxels' centres the voxel kernel cannot have the offset.
+  /// If a wall or gap passes between voxels' centres, the voxel kernel cannot have its offset.
   AllowedSides voxel_sides(const AllowedSides& own, const glm::dvec3& p_mm, double error_mm) const {
     if (const std::optional<AllowedSides> known = allowed(own, p_mm, error_mm)) return *known;
     return is_near_thin(p_mm, error_mm) ? either_side : own;

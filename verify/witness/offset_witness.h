@@ -7,16 +7,16 @@
 
 namespace octotomy::verify {
 
-/// An object whose surface is moved, as both kernels have it, and its own witness.
+/// An object whose surface is moved, as each kernel represents it, and its own witness.
 struct OffsetOperand {
   Witness witness;
   voxel::Octree voxels;
   brep::Solid mesh;
-  /// The voxel kernel knows the object by whole voxels alone, not where its surface lies between them.
+  /// The voxel kernel has only whole voxels of the object, not the position of its surface between them.
   bool is_whole_voxels = false;
 };
 
-/// How far its surface moves, and how finely the mesh kernel looks for it.
+/// The distance by which the surface moves, and the resolution of the mesh kernel's search for it.
 struct WitnessedOffset {
   double by_mm = 1.0;    ///< outward; below 0 inward; not 0
   double cell_mm = 1.0;  ///< edge of the mesh kernel's cells, above 0
@@ -34,10 +34,10 @@ struct WitnessedOffset {
 /// and a look at the places about it.
 Witness witness_of_offset(const OffsetOperand& operand, const WitnessedOffset& asked);
 
-/// How far two right answers to an offset may lie apart on the mean over a surface of `area_mm2`, beyond what
-/// digitisation does to that surface: the mean errors of both kernels' distances. Derived in
-/// offset_witness.cpp. Not of the answers under test, but of the operand. Cost: linear in the operand's
-/// triangles.
+/// The mean distance that two right answers to an offset may have over a surface of `area_mm2`, in addition
+/// to the error of digitisation: the mean errors of both kernels' distances. Derived in
+/// offset_witness.cpp. Computed from the operand, not from the answers under test. Cost: linear in the
+/// operand's triangles.
 double offset_allowance_mm(const OffsetOperand& operand, const WitnessedOffset& asked, double area_mm2);
 
 }  // namespace octotomy::verify

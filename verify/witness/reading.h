@@ -83,7 +83,7 @@ class Witness {
   Reading operator()(const glm::dvec3& p_mm, double slack_mm, ReadingNeeds asked = ReadingNeeds::Both) const {
     return read_(p_mm, slack_mm, asked);
   }
-  /// The reader that the witness was made of; null if it is of another type.
+  /// The reader from which the witness was made; null if it is of another type.
   template <typename Reader>
   const Reader* reader() const {
     return read_.target<Reader>();

@@ -38,7 +38,7 @@ std::vector<std::vector<std::uint32_t>> neighbours_of(const brep::Triangles& tri
   return neighbours;
 }
 
-/// Copies share what was made. Where a box cuts the object, `cut` reads its points.
+/// Copies share the computed surface. If a box cuts the object, `cut` reads its points.
 class ReshapedReader {
  public:
   explicit ReshapedReader(std::function<Reshaped()> make) : state_(std::make_shared<State>()) {
@@ -49,7 +49,8 @@ class ReshapedReader {
 
   const Reshaped& made() const {
     std::call_once(state_->once, [this] {
-      // While it waits for its own tasks, this thread takes no other one, which might wait here as well.
+      // While this thread waits for its own tasks it must not run another one, which might wait here as
+      // well.
       tbb::this_task_arena::isolate([this] { state_->made.emplace(state_->make()); });
       state_->make = nullptr;
     });

@@ -21,16 +21,16 @@ inline double rounded_mm(const glm::dvec3& p_mm) {
 /// Where the surface of a right answer lies.
 struct ReshapedSurface {
   TriangleGrid surface;
-  /// How far a right answer's surface may lie from it, and it from the answer's, at any place.
+  /// The largest distance of a right answer's surface from this one, and of this one from the answer's.
   double reach_mm = 0.0;
   std::string formula;  ///< of the reach
 };
 /// A kernel's answer fails beyond this multiple of the reach, as all comparisons do (add_comparison()).
 inline constexpr double reach_doubt = 2.0;
 
-/// What a point is read by. With `sides` that witness reads it, and the surface only serves
-/// expected_surface(). Without, a point is near the surface within reach_doubt times the reach; any other
-/// point is inside where a ray crosses the surface an odd number of times.
+/// The witness that reads a point. If it is set, the surface only serves expected_surface(). If not, a
+/// point within reach_doubt times the reach is near the surface; any other point is inside if a ray crosses
+/// the surface an odd number of times.
 struct Reshaped {
   ReshapedSurface expected;
   Witness sides = {};
@@ -41,22 +41,24 @@ struct Reshaped {
 /// this witness. Cost of a reading: some triangles of the surface.
 Witness witness_of_reshaped(std::function<Reshaped()> make);
 
-/// The object where it lies in a box. Such a witness stays one, with the surface that the step made, so that
-/// an object that ends at its universe's border is judged as one that does not. Of any other witness it is
-/// both() with the box.
+/// The part of the object in a box. A reshaped witness stays one, with the surface that the step made, so
+/// an object that ends at its universe's border is judged like any other. Any other witness becomes both()
+/// with the box.
 Witness cut_by_box(const Witness& whole, const voxel::Box& box);
 
-/// Whether a witness is such a one, and not a Boolean or a motion of others.
+/// Whether a witness is a reshaped one, and not a Boolean or a motion of others.
 bool is_reshaped(const Witness& witness);
-/// The surface of such a witness. It lives as long as a copy of the witness. Precondition: is_reshaped().
+/// The surface of a reshaped witness. It lives as long as a copy of the witness. Precondition:
+/// is_reshaped().
 const ReshapedSurface& expected_surface(const Witness& witness);
 
-/// What `smooth` must make of closed triangles: rounds of a step in and a step out, by code of this source
-/// alone (Taubin 1995, equal weights, 1 / 0.5 + 1 / step out = pass band). The reach is the rounding of the
-/// steps' sums. Cost: rounds times triangles.
+/// The required result of `smooth` for closed triangles: rounds of a step in and a step out, by code of
+/// this source alone (Taubin 1995, equal weights, 1 / 0.5 + 1 / step out = pass band). The reach is the
+/// rounding of the steps' sums. Cost: rounds times triangles.
 ReshapedSurface surface_smoothed(const brep::Triangles& still, int rounds, double pass_band);
 
-/// The still surface, near which `decimate` must stay: within the largest error that was asked for.
+/// The surface before decimation. The result of `decimate` must stay near it, within the largest requested
+/// error.
 ReshapedSurface surface_decimated(const brep::Triangles& still, double max_error_mm);
 
 }  // namespace octotomy::verify

@@ -19,9 +19,9 @@
 namespace octotomy::verify {
 namespace {
 
-/// Readers of contours take centres within a millionth of a millimetre of a contour as on it.
+/// Readers of contours count centres within a millionth of a millimetre of a contour as on it.
 constexpr double contour_width_mm = 2e-6;
-/// Of coordinates, as a share of them.
+/// Rounding of coordinates, as a share of them.
 constexpr double rounded_share = 1e-8;
 constexpr double far_outside_mm = std::numeric_limits<double>::infinity();
 
@@ -52,7 +52,7 @@ class Outline {
       const double t = length2 > 0.0 ? std::clamp(glm::dot(rel, edge) / length2, 0.0, 1.0) : 0.0;
       const glm::dvec2 apart = rel - t * edge;
       square = std::min(square, glm::dot(apart, apart));
-      // Of an edge that crosses the height of p, the crossing's place on that height.
+      // For an edge that crosses the height of p: the position of the crossing at that height.
       if ((side.from.y > p.y) != (side.to.y > p.y) &&
           p.x < side.from.x + (p.y - side.from.y) / (side.to.y - side.from.y) * (side.to.x - side.from.x))
         is_inside = !is_inside;
@@ -105,7 +105,7 @@ class SliceWitness {
     const AllowedSides allowed = is_near || (is_in && is_out) ? on_surface
                                  : is_in                      ? certainly_in
                                                               : certainly_out;
-    // A mesh of such a surface may have a vertex anywhere on it.
+    // A mesh of interpolated slices may have a vertex anywhere on their surface.
     return {allowed, allowed, allowed.near ? 2 : 0};
   }
 

@@ -62,9 +62,9 @@ bool crosses(const glm::dvec3& p, glm::dvec3 a, glm::dvec3 b) {
   return p.z < a.z + (p.y - a.y) / (b.y - a.y) * (b.z - a.z);
 }
 
-/// A distance to a box of triangles beyond which none of them is computed to be within `mm`. Coordinates and
-/// what is computed of them are accurate to some 2^-50 of the largest; boxes lie within a cell's length of the
-/// point's distance to them.
+/// A distance to a box of triangles beyond which none of them is computed to be within `mm`. Coordinates
+/// and numbers computed from them are accurate to about 2^-50 of the largest; boxes lie within a cell's
+/// length of the point's distance to them.
 double surely_beyond_mm(double mm, const glm::dvec3& p_mm) {
   return mm + 0x1p-40 * (mm + 1.0 + std::abs(p_mm.x) + std::abs(p_mm.y) + std::abs(p_mm.z));
 }
@@ -168,8 +168,8 @@ TriangleGrid::TriangleGrid(brep::Triangles triangles) : triangles_(std::move(tri
   rows_ = BoxGrid(projected(boxes), mean_extent_mm(boxes));
 }
 
-// Cells are read in shells about the point's own. A triangle of no shell up to the n-th is n cells away or
-// more. Cells and triangles' boxes beyond the least distance so far are passed over.
+// Cells are read in shells about the point's own. A triangle outside the first n shells is at least n cells
+// away. Cells and triangles' boxes beyond the least distance so far are skipped.
 std::optional<TriangleGrid::Foot> TriangleGrid::nearest(const glm::dvec3& p_mm, double most_mm,
                                                         double enough_mm) const {
   if (cells_.empty() || !(most_mm >= 0.0)) return std::nullopt;

@@ -21,7 +21,7 @@ namespace {
 constexpr double bends = 2.0;
 constexpr int most_steps = 200;
 
-/// The faces that one element alone has. Corners in any order: only places on them matter.
+/// The faces that only one element has. Their corners are in any order, because only places on them matter.
 brep::Triangles skin_of(const convert::Tetrahedra& elements) {
   using Face = std::array<std::uint32_t, 3>;
   std::vector<Face> faces;
@@ -49,7 +49,8 @@ glm::dvec4 shares_of(const glm::dvec3& p, const std::array<glm::dvec3, 4>& corne
   return {1.0 - shares.x - shares.y - shares.z, shares};
 }
 
-/// How far triangles are off that stay flat between points that moved, back where they came from.
+/// The largest error of triangles that stay flat between moved points, measured after moving their points
+/// back.
 double bent_mm(const brep::Triangles& still, const NodeMotion& motion) {
   constexpr std::array<std::array<double, 3>, 10> places{{{0.75, 0.25, 0.0},
                                                           {0.5, 0.5, 0.0},

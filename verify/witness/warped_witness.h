@@ -15,9 +15,9 @@
 namespace octotomy::verify {
 
 /// Displacements of tetrahedra's nodes as a field over space: linear within an element, outside of all of
-/// them that of the nearest point of their surface. At a distance d from the box of all nodes it is multiplied by
-/// (1 - r)^4 (4 r + 1) with r = d / fade_mm, and beyond fade_mm it is zero. By code of this source alone. LPS
-/// millimetres.
+/// them that of the nearest point of their surface. At a distance d from the box of all nodes it is
+/// multiplied by (1 - r)^4 (4 r + 1) with r = d / fade_mm, and beyond fade_mm it is zero. No kernel shares
+/// this code. LPS millimetres.
 class NodeMotion {
  public:
   /// Throws std::invalid_argument without elements, or unless each node has one displacement.
@@ -26,8 +26,8 @@ class NodeMotion {
   glm::dvec3 displacement_mm(const glm::dvec3& p_mm) const;
   /// Whether the displacements turn an element over. Points then may have several origins.
   bool turns_over() const;
-  /// The point that moves to p_mm: x = p - u(x), repeated until x rests. None where that does not rest, as
-  /// where elements stretch or shear by their own length.
+  /// The origin of p_mm, the point that the field moves there: x = p - u(x), repeated until x rests. None
+  /// if that does not converge, for example where elements stretch or shear by their own length.
   std::optional<glm::dvec3> origin_mm(const glm::dvec3& p_mm) const { return origin_mm(p_mm, p_mm); }
   /// The same from a guess.
   std::optional<glm::dvec3> origin_mm(const glm::dvec3& p_mm, const glm::dvec3& guess_mm) const;
@@ -41,13 +41,13 @@ class NodeMotion {
   std::optional<TriangleGrid> surface_;  ///< of the elements; its points are all nodes
 };
 
-/// A surface each of whose points moves as NodeMotion says. The reach is rounding.
+/// A surface whose points move as NodeMotion states. The reach is rounding.
 ReshapedSurface surface_warped(const brep::Triangles& still, const NodeMotion& motion);
 
 /// An object that moved with a field: at a point, the still object's witness at the origin of that point.
-/// Triangles stay flat between points that moved; the witness allows what that is off by, which is measured
-/// at three points of each side and in the middle of each triangle. Where a point has no origin, any answer
-/// is allowed. Empty where the still object has no witness, and where elements turn over.
+/// Triangles stay flat between moved points; the witness allows the resulting error, which is measured at
+/// three points of each side and in the middle of each triangle. Where a point has no origin, any answer is
+/// allowed. Empty where the still object has no witness, and where elements turn over.
 Witness witness_of_warped(Witness still, const brep::Triangles& still_surface,
                           std::shared_ptr<const NodeMotion> motion);
 

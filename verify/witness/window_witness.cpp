@@ -40,7 +40,7 @@ constexpr double rounding = 1e-9;
 
 /// The vertices of an isosurface keep a thousandth of an edge from its ends (convert/surface/isosurface.h).
 constexpr double kept_from_samples = 1e-3;
-/// How near to a face of a cell a point lies on it, in samples.
+/// A point this near to a face of a cell, in samples, lies on it.
 constexpr double on_face = 1e-6;
 
 /// How far f may lie above a bound where the mesh is outside, and below the bound where the mesh is inside.
@@ -318,7 +318,8 @@ class WindowWitness {
     return sample == padding_ ? std::nullopt : std::optional(sample);
   }
 
-  /// A voxel's sample. None: the scan has none for the voxel. `sure` is false where rounding decides that.
+  /// The sample of a voxel. None if the scan has no sample for the voxel. `sure` is false if rounding
+  /// decides which.
   struct Measured {
     std::optional<double> value;
     bool sure = true;

@@ -55,7 +55,8 @@ Witness without(Witness a, Witness b);
 Witness carried(Witness still, const glm::dmat4& moved_from_still);
 /// The object with surfaces that may be off by `by_mm`, because corefinement moves operands that touch.
 Witness loosened(Witness tight, double by_mm);
-/// The object with voxels that may be off by `by_mm`, as whole voxels are under a motion. The mesh's word stays.
+/// The object with voxels that may be off by `by_mm`, as whole voxels are under a motion. The mesh's sides
+/// stay.
 Witness with_voxels_within(Witness tight, double by_mm);
 /// Some of the object's connected parts. For a point inside the object both answers are allowed, because its
 /// part may not be chosen.

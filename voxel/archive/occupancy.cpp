@@ -27,7 +27,8 @@ struct Along {
   std::vector<std::vector<Covered>> covered = {};  ///< by the octree's voxels along the axis
 };
 
-/// What an octree's voxel at `centre`, `edge` long, covers of the `count` voxels along an axis.
+/// The parts of the `count` voxels along an axis that an octree's voxel covers, which has its centre at
+/// `centre` and the length `edge`.
 std::vector<Covered> covered_by(double centre, double edge, int count) {
   std::vector<Covered> covered;
   const double low = centre - 0.5 * edge, high = centre + 0.5 * edge;
@@ -39,7 +40,7 @@ std::vector<Covered> covered_by(double centre, double edge, int count) {
   return covered;
 }
 
-/// The axes in the octree's order; none unless they are parallel to those of the lattice.
+/// The lattice's axes in the octree's order; none unless they are parallel to those of the octree.
 std::optional<std::array<Along, 3>> axes_along(const Universe& universe, const Lattice& lattice) {
   const glm::dmat4 lattice_from_octree = glm::inverse(lattice.lps_from_voxel) * universe.lps_from_voxel;
   const std::array<std::size_t, 3> strides{

@@ -56,8 +56,8 @@ constexpr std::array<RuledAttribute, 26> rules{{{0x00080020, "Study Date", Rule:
                                                 {0x00200052, "Frame of Reference UID", Rule::Replace},
                                                 {0x00200060, "Laterality", Rule::Word}}};
 
-/// Words of the attributes with Rule::Word: PS3.3, C.7.3.1.1.2, C.8.3.1 and C.7.3.1; PS3.16, annex L, of the head and
-/// trunk.
+/// Allowed values of the attributes with Rule::Word: PS3.3, C.7.3.1.1.2, C.8.3.1 and C.7.3.1; and the terms
+/// for head and trunk of PS3.16, annex L.
 constexpr std::array<std::string_view, 62> defined_words{
     "HFS",      "HFP",    "HFDR",    "HFDL",   "FFS",       "FFP",      "FFDR",  "FFDL",     "SE",
     "IR",       "GR",     "EP",      "RM",     "SK",        "MTC",      "SS",    "TRSS",     "SP",

@@ -52,7 +52,7 @@ FaceSet view_code(int octant);
 /// The faces in the order of equation 3.2, x- x+ y- y+ z- z+: `E F F E E F`, F for a face of the set.
 std::string face_text(FaceSet faces);
 
-/// What drawing back to front costs (4.4.3.1).
+/// The costs of drawing back to front (4.4.3.1).
 struct MaskedDrawing {
   std::vector<LevelCount> visits;  ///< to levels 1..n by status
   std::uint64_t drawn_faces = 0;   ///< of Full nodes

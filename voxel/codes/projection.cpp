@@ -77,7 +77,7 @@ Projection projection(const CuberilleFaces& faces, Direction from) {
 Projection projection(const BinaryArray& array, Direction from) {
   Columns columns(array.universe, from);
   const int side = columns.side();
-  // Descending depth along the view's axis; the order along the others is any.
+  // By descending depth along the view's axis; the order along the other axes does not matter.
   const auto at = [&](int axis, int i) {
     return axis == columns.axis() && !columns.from_high() ? side - 1 - i : i;
   };
@@ -125,7 +125,7 @@ Projection projection(const SegmentIndex& index, Direction from) {
   };
   for (int across = 0; across < side; ++across) {
     if (columns.axis() == 0) {
-      // Along the segments, only the nearest of each row is seen.
+      // Along the direction of the segments, only the nearest segment of each row is visible.
       for (int y = 0; y < side; ++y) {
         const SegmentIndex::Row* row = row_of(y, across);
         if (row == nullptr) continue;

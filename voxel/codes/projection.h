@@ -11,8 +11,8 @@
 
 namespace octotomy::voxel {
 
-/// What an observer sees of an object along an axis: for each column of voxels, the number of voxels before
-/// the first.
+/// The view of an object along an axis: for each column of voxels, the number of voxels before the first
+/// voxel of the object.
 struct Projection {
   int side = 0;
   /// Column (i, j) is entry i + side j; i and j count along the two other axes of the universe in their

@@ -116,7 +116,7 @@ TrackedSurface track_surface(const Octree& octree, const SurfaceFace& seed, Join
                        std::to_string(seed.voxel.z) + " has none in that direction");
   TrackedSurface made{{octree.universe(), {}}, 0};
   std::vector<SurfaceFace> waiting{seed};
-  // How often each face of the front is still to be reached.
+  // The number of times that each face of the front will still be reached.
   std::unordered_map<std::uint64_t, int> front{{tracker.key(seed), 2}};
   while (!waiting.empty()) {
     const SurfaceFace face = waiting.back();

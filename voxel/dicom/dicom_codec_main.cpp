@@ -101,7 +101,8 @@ int main(int count, char** arguments) {
   // One of GDCM's codecs uses temporary files and does not remove them when it fails.
   if (count != 2 || setenv("TMPDIR", arguments[1], 1) != 0) return 1;
 #ifndef OCTOTOMY_SANITIZED  // a sanitizer traces the process
-  // Without a kernel that can, the limits above and the process's own address space remain.
+  // If the system lacks these features, only the limits above and the separate address space protect the
+  // user.
   static_cast<void>(octotomy::voxel::confine(arguments[1]));
 #endif
   while (answer_next()) {

@@ -33,7 +33,7 @@ constexpr std::array<DicomTrait, 21> dicom_traits{{
      "issuer of the patient's number",
      TraitRole::Identity,
      {0x00100021},
-     "images of another issuer's patient of the same number"},
+     "images of another issuer's patient who has the same number"},
     {"study", "study", TraitRole::Origin, {0x0020000d}, "images of another study"},
     {"modality", "modality", TraitRole::Identity, {0x00080060}, "images of another modality"},
     {"frame_of_reference",

@@ -57,8 +57,8 @@ void check_options(const Scene& scene, const BiasFieldOptions& options) {
     refuse("the noise of the filter must be above 0, not " + std::to_string(options.noise));
 }
 
-// The filters that N4 makes have ITK's default number of threads, and the fit's sums depend on that number.
-// While this lives the default is 1. Filters of other threads set their own number.
+// N4's own filters have ITK's default number of threads, and the fit's sums depend on that number. During
+// the lifetime of this object the default is 1. Filters of other threads set their own number.
 class OneThread {
  public:
   OneThread() : lock_(mutex()), before_(itk::MultiThreaderBase::GetGlobalDefaultNumberOfThreads()) {
@@ -124,7 +124,7 @@ class Spline {
   std::vector<double> points_;
 };
 
-// Every few samples of the scan, and which of them determine the field.
+// A regular selection of the scan's samples, with marks for those that determine the field.
 struct Thinned {
   Lattice lattice;
   FloatSamples values;

@@ -554,7 +554,7 @@ Extrusion extrusion_of(const Scene& scene, const ExtrusionOptions& options) {
   check(scene);
   if (!(options.thick_mm > 0.0)) throw InvalidInput("a board's thickness must be above 0 mm");
   const auto* samples = std::get_if<Int16Samples>(&scene.samples);
-  if (samples == nullptr) throw InvalidInput(scene.source + ": a support is sought among int16 samples");
+  if (samples == nullptr) throw InvalidInput(scene.source + ": supports are found only in int16 samples");
   const View view = view_of(scene, *samples);
   Extrusion found;
   found.marks.assign(samples->size(), 0);

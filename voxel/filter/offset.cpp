@@ -133,7 +133,7 @@ class Depths {
     return points;
   }
 
-  /// `voxel` is the one whose side of the surface counts.
+  /// The depth at a position. `voxel` decides whether the position counts as inside the solid.
   double at(const glm::dvec3& p_voxel, const glm::ivec3& voxel) const {
     const double distance_mm = surface_.distance(edges_mm_ * p_voxel);
     return octree_.contains(voxel) ? by_mm_ + distance_mm : by_mm_ - distance_mm;
@@ -152,7 +152,8 @@ std::vector<glm::ivec3> blocks_about(const Octree& octree, double by_mm) {
   if (range.is_empty()) return {};
   const Universe& universe = octree.universe();
   if (by_mm > 0.0) {
-    // Along a voxel axis an offset reaches as far as the distance between the planes across it allows.
+    // Along a voxel axis the number of voxels within the offset follows from the distance between the
+    // planes across that axis.
     const glm::dmat3 voxel_from_mm = glm::transpose(glm::inverse(glm::dmat3(universe.lps_from_voxel)));
     glm::ivec3 reach(0);
     for (int axis = 0; axis < 3; ++axis)

@@ -13,7 +13,7 @@ struct SeatingOptions {
   Progress progress = {};
 };
 
-/// Where an object reaches deepest into the space that a part passes through on its way.
+/// The place where an object reaches deepest into the space that a part passes through.
 struct Binding {
   glm::dvec3 at_mm{0.0};  ///< a voxel's centre
   double depth_mm = 0.0;  ///< from there to the nearest voxel outside of that space, less half an edge

@@ -31,12 +31,12 @@ namespace {
 
 constexpr int points_an_edge = 5;  ///< of a voxel, and columns of one
 constexpr int points_a_voxel = points_an_edge * points_an_edge * points_an_edge;
-/// Of a cell's longest edge: by how much it cuts an edge of the solid off at most, and how far the middles of
-/// its triangles are moved out at most (SurfaceCrossings).
+/// As shares of a cell's longest edge: the largest distance by which a surface of triangles cuts off an
+/// edge of the solid, and the largest move of the triangles' middles outward (SurfaceCrossings).
 constexpr double cut_off = 0.59, moved_out = 0.75;
-/// In voxel edges: where the object is looked for about the depth of an outline, which is a jump by more
-/// than that, and how finely. At an edge of
-/// 90 degrees half a step is lost.
+/// In voxel edges. An outline is a jump of depth by more than `look_behind`. There the object is searched
+/// for from `look_before` in front of the depth to `look_behind` behind it, in steps of `look_step`. At an
+/// edge of 90 degrees half a step is lost.
 constexpr float look_before = 0.75F, look_behind = 4.0F, look_step = 0.0625F;
 constexpr int tile_side = 16;  ///< columns whose depths have one range
 constexpr float no_surface = std::numeric_limits<float>::infinity();
@@ -181,7 +181,7 @@ class FirstDepths {
     return found;
   }
 
-  /// Of the column nearest to a place.
+  /// The depth of the column nearest to a place.
   float at(const glm::dvec2& place) const {
     const glm::ivec2 column(glm::floor((place - origin_) / pitch_mm_ + 0.5));
     if (column.x < 0 || column.y < 0 || column.x >= dims_.x || column.y >= dims_.y) return no_surface;
@@ -193,7 +193,7 @@ class FirstDepths {
     return static_cast<std::size_t>(column.y) * static_cast<std::size_t>(dims_.x) +
            static_cast<std::size_t>(column.x);
   }
-  /// Of each column and those beside it the least depth.
+  /// For each column the least depth of the column and those beside it.
   std::vector<float> nearest_beside() const {
     std::vector<float> in_rows(depths_.size()), found(depths_.size());
     tbb::parallel_for(0, dims_.y, [&](int y) {
@@ -252,8 +252,8 @@ class ShadowShares {
           points_[number++] = steps_ * ((glm::dvec3(x, y, z) + 0.5) / double{points_an_edge} - 0.5);
   }
 
-  /// Twice the count of a voxel's points in the shadow, less all of them: of all voxels of a block, or 0 where
-  /// it may differ between them.
+  /// The points of a voxel in the shadow minus those outside it, if this is the same for all voxels of a
+  /// block; 0 if it may differ between them.
   std::int16_t of_block(const glm::ivec3& first, int side) const {
     const glm::dvec3 middle = origin_ + steps_ * (glm::dvec3(first) + 0.5 * (side - 1));
     const glm::dvec3 reach = 0.5 * side * (glm::abs(steps_[0]) + glm::abs(steps_[1]) + glm::abs(steps_[2]));

@@ -24,24 +24,24 @@ struct Shadow {
 };
 
 /// The points of an object and all points behind it as seen along a direction, up to a plane across that
-/// direction: what nothing can reach that moves along the direction from outside. `octree` holds the object's
-/// voxels, and `solid` decides where its surface crosses the lines between neighbouring voxels' centres. The
-/// object ends at the universe's border, and so does the shadow.
+/// direction: an object that moves along the direction from outside cannot reach them. `octree` holds the
+/// object's voxels, and `solid` decides where its surface crosses the lines between neighbouring voxels'
+/// centres. The object ends at the universe's border, and so does the shadow.
 ///
-/// Columns along the direction, a fifth of the smallest voxel edge apart, each begin at the first crossing of
-/// a surface through those crossings (SurfaceCrossings); beside an outline, where that surface cuts edges
-/// off, at the solid itself. A voxel's share is counted at 5^3 points of it, each in the nearest column: the
-/// shadow's side walls lie at random up to 0.15 of a voxel edge off, and not on the mean. Walls thinner than
-/// half a voxel along the direction have no voxels.
+/// Columns along the direction, a fifth of the smallest voxel edge apart, each begin at the first crossing
+/// of a surface through those crossings (SurfaceCrossings); beside an outline, where that surface cuts
+/// edges off, at the solid itself. A voxel's share is counted at 5^3 points of it, each in the nearest
+/// column: the shadow's side walls lie at random up to 0.15 of a voxel edge off, and not on the mean. Walls
+/// thinner than half a voxel along the direction have no voxels.
 ///
-/// Throws std::invalid_argument if the direction is not a unit vector, the end is not finite or the octree is
-/// empty; Stopped. Parallel; same bits on any thread count. Cost: the crossings, and for each voxel of the
-/// shadow's boundary 125 look-ups; 8 bytes a column, 2 bytes for each voxel of the blocks of 16 voxels a side
-/// that hold a part of the shadow.
+/// Throws std::invalid_argument if the direction is not a unit vector, the end is not finite or the octree
+/// is empty; Stopped. Parallel; same bits on any thread count. Cost: the crossings, and for each voxel of
+/// the shadow's boundary 125 look-ups; 8 bytes a column, 2 bytes for each voxel of the blocks of 16 voxels
+/// a side that hold a part of the shadow.
 Shadow shadow(const Octree& octree, const Expression& solid, const ShadowOptions& options);
 
-/// The largest p . direction of the object's surface as voxels have it, for a unit direction. Throws as
-/// shadow(). Cost: the crossings.
+/// The largest p . direction of the object's surface, computed from its voxels, for a unit direction.
+/// Throws as shadow(). Cost: the crossings.
 double far_end_mm(const Octree& octree, const Expression& solid, const glm::dvec3& direction);
 
 /// The volume that shadow() adds to the object along each of some unit directions, up to the object's far end:

@@ -19,7 +19,7 @@ glm::ivec3 axis_step(int axis) {
   return step;
 }
 
-/// A voxel of the universe or beside it, and an axis or 3, as one number.
+/// A number for a pair of a voxel, in the universe or beside it, and an axis, or 3 for no axis.
 std::uint64_t key_of(const glm::ivec3& voxel, int axis) {
   constexpr int bits = 20;
   const glm::u64vec3 from(voxel + 2);
@@ -72,7 +72,8 @@ SurfaceCrossings::SurfaceCrossings(const Octree& octree, const Expression& solid
       found[i].first = no_key;
       return;
     }
-    // The share of the way out: eight halvings, below a hundredth of an edge.
+    // Position on the edge as a share of the way out, by eight halvings: the error is below a hundredth of
+    // an edge.
     double in = 0.0, out = 1.0;
     for (int halving = 0; halving < 8; ++halving) {
       const double middle = 0.5 * (in + out);
@@ -92,7 +93,7 @@ SurfaceCrossings::SurfaceCrossings(const Octree& octree, const Expression& solid
   }
 }
 
-/// The cells about the crossings, each by its lowest voxel.
+/// The cells that contain a crossing, each by its lowest voxel.
 std::vector<std::uint64_t> SurfaceCrossings::cells() const {
   std::vector<std::uint64_t> found;
   found.reserve(4 * keys_.size());
@@ -111,7 +112,7 @@ std::vector<glm::dvec3> SurfaceCrossings::with_middles() const {
   for (const std::uint64_t key : keys_) {
     const int axis = static_cast<int>(key & 3);
     const glm::ivec3 at = voxel_of(key), b = axis_step((axis + 1) % 3), c = axis_step((axis + 2) % 3);
-    // A square is known by its lowest voxel and its normal.
+    // A square is identified by its lowest voxel and its normal.
     for (const int back : {0, 1}) {
       squares.push_back(key_of(at - back * b, (axis + 2) % 3));
       squares.push_back(key_of(at - back * c, (axis + 1) % 3));
@@ -159,7 +160,8 @@ SurfaceCrossings::Middle SurfaceCrossings::middle_of_chord(std::uint64_t square)
   return {true, 0.5 * (points_[ends[0]] + points_[ends[1]])};
 }
 
-/// The mean of a cell's crossings where chords join all of them to one ring: there the cell holds one sheet.
+/// The mean of a cell's crossings if chords join all of them to one ring; the cell then holds a single
+/// sheet.
 SurfaceCrossings::Middle SurfaceCrossings::middle_of_ring(const glm::ivec3& low) const {
   std::vector<Chord> chords;
   for (int normal = 0; normal < 3; ++normal)
@@ -169,7 +171,8 @@ SurfaceCrossings::Middle SurfaceCrossings::middle_of_ring(const glm::ivec3& low)
       if (ends.size() == 2) chords.emplace_back(ends[0], ends[1]);
     }
   if (chords.size() < 3) return {};
-  // From chord to chord: each crossing has two, as its edge lies in two of the cell's squares.
+  // Follows the chords around the ring. Each crossing belongs to two chords, because its edge lies in two
+  // of the cell's squares.
   glm::dvec3 sum = points_[chords[0].first];
   std::size_t at = chords[0].second, used = 0, count = 1;
   for (; at != chords[0].first; ++count) {
@@ -203,7 +206,7 @@ glm::dvec3 SurfaceCrossings::outer_middle(const std::vector<std::size_t>& ring, 
   normal *= (normal[static_cast<int>(key & 3)] * side < 0.0 ? -1.0 : 1.0) / area;
   const Lattice lattice = octree_.universe().lattice();
   const auto is_inside = [&](double out) { return contains(lattice.lps_mm(middle + out * normal)); };
-  // Not beyond the cell, whose middle part a cut-off edge or corner is in.
+  // Stays within the cell, because a cut-off edge or corner lies in the cell's middle part.
   constexpr double most = 0.75;
   double in = 0.0, out = most;
   if (!is_inside(in) || is_inside(out)) return middle;

@@ -26,9 +26,10 @@ class SurfaceCrossings {
   /// The crossings, the middles of the chords between two of them in a lattice square, and the middles of
   /// the cells whose crossings form one ring.
   std::vector<glm::dvec3> with_middles() const;
-  /// Calls back, from several threads, with the triangles of a surface through the crossings: a fan about the
-  /// middle of each ring of a cell, moved outward to the solid's surface, so that edges are hardly cut off. Each ring's chords are the neighbouring cell's, so that the surface is
-  /// closed where the solid ends within the universe. Triangles do not wind alike.
+  /// Calls back, from several threads, with the triangles of a surface through the crossings: a fan about
+  /// the middle of each ring of a cell, moved outward to the solid's surface, so that edges are cut off
+  /// very little. Each ring's chords are the neighbouring cell's, so that the surface is closed where the
+  /// solid ends within the universe. Triangles do not wind alike.
   void for_triangles(const std::function<void(const std::array<glm::dvec3, 3>& corners)>& visit) const;
 
  private:

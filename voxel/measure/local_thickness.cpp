@@ -79,8 +79,8 @@ class Pyramid {
   }
   glm::ivec3 place_of(const glm::ivec3& voxel) const { return finer_ * (voxel - low_); }
 
-  /// The centre of the largest ball that holds a place, with all radii less by `shorter_mm`; the place itself
-  /// where none is larger.
+  /// The centre of the largest ball that contains a place, with all radii smaller by `shorter_mm`; the
+  /// place itself if no ball is larger.
   glm::ivec3 largest_about(const glm::ivec3& place, double shorter_mm) const {
     Search search{place, shorter_mm, distance_mm(place), place};
     walk(static_cast<int>(levels_.size()) - 1, glm::ivec3(0), search);
@@ -156,9 +156,9 @@ struct LatticeBall {
   bool is_of_wall = false;
 };
 
-/// Half the distance of the lattice planes across a direction, given in steps: the outside begins between two
-/// of them. Along an axis half a voxel; towards oblique directions it falls to 0. For voxels with unequal
-/// edges oblique planes are taken for those of cubes of the shortest.
+/// Half the distance between lattice planes across a direction, given in steps: the outside begins between
+/// two such planes. Along an axis it is half a voxel; for oblique directions it approaches 0. If voxels
+/// have unequal edges, oblique planes are assumed to be those of cubes with the shortest edge.
 double half_planes_mm(const glm::ivec3& direction, const Pyramid& pyramid) {
   const glm::dvec3 voxel_mm = double(pyramid.finer()) * pyramid.step_mm();
   const glm::ivec3 a = glm::abs(direction);
@@ -168,8 +168,8 @@ double half_planes_mm(const glm::ivec3& direction, const Pyramid& pyramid) {
   return 0.5 * std::min({voxel_mm.x, voxel_mm.y, voxel_mm.z}) / glm::length(primitive);
 }
 
-/// Where the outside comes as near to a ball's centre as its distance, and a voxel more: so far off are
-/// a ball's two sides, as its centre stands on a lattice.
+/// The largest ball about a centre. Outside that is up to a voxel farther away than the nearest outside counts
+/// as a side of the ball, too: the centre lies on a lattice, so it may be off the middle between two sides.
 LatticeBall ball_about(const glm::ivec3& centre, const Pyramid& pyramid, double most_cosine) {
   const glm::dvec3& step_mm = pyramid.step_mm();
   const double distance = pyramid.distance_mm(centre);
@@ -247,7 +247,7 @@ std::vector<glm::ivec3> surface_of(const Octree& octree) {
   return voxels;
 }
 
-/// Measures voxels with one pyramid. Balls are looked at once, however many voxels they hold.
+/// Measures voxels with one pyramid. Each ball is examined once, however many voxels it contains.
 class Balls {
  public:
   Balls(const Pyramid& pyramid, double most_cosine, const Progress& progress)

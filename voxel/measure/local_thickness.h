@@ -31,9 +31,9 @@ struct ThicknessAtVoxel {
 /// Over an object's voxels.
 struct VoxelThickness {
   double mean_mm = 0.0, deviation_mm = 0.0, median_mm = 0.0, largest_mm = 0.0;
-  /// The mean is within this of the truth in 99 of 100 cases: half a voxel's longest edge for each of a
-  /// ball's two sides, as digitising moves parallel walls alike, a quarter for the steps of its centre, and
-  /// 2.6 standard errors of the sampled voxels.
+  /// The mean is within this of the true value in 99 of 100 cases. The sum of three terms: half a voxel's
+  /// longest edge for each of a ball's two sides, because digitisation displaces parallel walls in the same
+  /// way; a quarter of that edge for the lattice of centres; and 2.6 standard errors of the sampled voxels.
   double mean_half_width_mm = 0.0;
   std::vector<ThicknessAtVoxel> surface;
   std::optional<std::size_t> thinnest_wall;  ///< in `surface`; none where no sampled voxel is of a wall

@@ -185,15 +185,14 @@ SliceNames ordered_by_name(const std::vector<fs::path>& files) {
     return std::any_of(places.begin(), places.end(), [&](const auto& entry) { return is(entry.second); });
   };
   doubt(any([](const NumberProperties& p) { return p.is_sign() && !p.has_other; }),
-        "each name has a minus before its number, which is taken as its sign: where it only separates, the "
-        "stack is upside down; rename the files");
-  doubt(
-      any([](const NumberProperties& p) { return p.is_sign() && p.has_other && p.is_behind_word; }),
-      "a minus behind a letter is taken as the number's sign, as other names have none there: where it only "
-      "separates, the slices are out of order; rename the files");
+        "each name has a minus before its number, which is taken as the number's sign: if it is only a "
+        "separator, the stack is upside down; rename the files");
+  doubt(any([](const NumberProperties& p) { return p.is_sign() && p.has_other && p.is_behind_word; }),
+        "a minus after a letter is taken as the number's sign, because other names lack it there: if it is "
+        "only a separator, the slices are out of order; rename the files");
   doubt(any([](const NumberProperties& p) { return p.least_digits != p.most_digits && p.is_decimal(); }),
-        "a dot in numbers is taken as the decimal point, so that 1.25 comes before 1.5: where it separates "
-        "two numbers, the slices are out of order; rename the files");
+        "a dot in numbers is taken as the decimal point, so that 1.25 comes before 1.5: if it separates two "
+        "numbers, the slices are out of order; rename the files");
   return made;
 }
 

@@ -50,7 +50,7 @@ double two_decimals_error() {
   return 0.01 * std::sqrt(3.0);
 }
 
-/// Along the normal of the first.
+/// The mean distance of slices along the normal of the first one; none for a single slice.
 std::optional<double> mean_distance_mm(const std::vector<DicomSlice>& slices) {
   if (slices.size() < 2) return {};
   const glm::dvec3 normal = glm::cross(slices.front().along_row, slices.front().along_column);

@@ -168,7 +168,8 @@ class SeriesReader {
       find("rescale", Verdict::Pass, applied);
     else
       find("rescale", Verdict::Warn,
-           applied + " where it is; " + slices(without.size()) + " have none: " + listed(without), without);
+           applied + " where it exists; " + slices(without.size()) + " have none: " + listed(without),
+           without);
     return true;
   }
 
@@ -219,7 +220,7 @@ class SeriesReader {
     else if (!half_differing.empty())
       find("rescale", Verdict::Fail,
            "RescaleSlope or RescaleIntercept is absent in " + slices(half_differing.size()) +
-               ", where 1 or 0 is taken; the others have another: " + listed(half_differing),
+               ", where 1 or 0 is assumed; the other slices state other values: " + listed(half_differing),
            half_differing);
     else if (!differing.empty())
       find("rescale", Verdict::Warn,

@@ -366,7 +366,7 @@ class SegReader {
     return ((pixels_[pixel / 8] >> (pixel % 8)) & 1) != 0;
   }
 
-  /// The number of the segment of this label; else of this number.
+  /// The number of the segment with this label, or with this number if no label is equal.
   int chosen(const std::string& wanted) const {
     std::vector<int> named;
     std::string all;

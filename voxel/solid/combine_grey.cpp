@@ -58,7 +58,8 @@ GreyOctree combine_grey(const Universe& universe, const Expression& expression, 
   for (const Window& window : windows)
     if (window.grey.step() != step)
       throw InvalidInput("grey octrees whose samples count in steps of " + std::to_string(step) + " and " +
-                         std::to_string(window.grey.step()) + " cannot be one: make both of whole numbers");
+                         std::to_string(window.grey.step()) +
+                         " cannot be combined: make both of whole numbers");
   const std::int16_t background = rounded(options.background / step);
   const std::int16_t filled = rounded(options.filled / step);
   const auto sample = [&](const glm::ivec3& voxel) {

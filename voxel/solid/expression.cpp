@@ -111,7 +111,7 @@ class Parser {
   }
 
   [[noreturn]] void fail(const std::string& reason) const {
-    // Of a long text only the part around the error is quoted.
+    // Only the part of a long text around the error is quoted.
     constexpr std::size_t most_quoted = 200;
     const bool whole = text_.size() <= most_quoted;
     const std::size_t from = whole ? 0 : std::max(at_, most_quoted / 2) - most_quoted / 2;
@@ -219,7 +219,7 @@ Expression parse_expression(std::string_view text, const Names& names) {
   return parse<Expression>(
       text, [&](std::string_view name) { return names.object(name); },
       [&](const Expression& still, std::string_view name) {
-        if (!names.motion) throw InvalidInput("there are no motions to move by here: leave 'move(...)' out");
+        if (!names.motion) throw InvalidInput("no motions are defined here: leave 'move(...)' out");
         return moved(still, names.motion(name));
       },
       [](char symbol, const Expression& a, const Expression& b) {

@@ -38,7 +38,7 @@ Expression on_scan_lattices(const Expression& expression) {
       });
 }
 
-/// A value that no sample has, below them all.
+/// A value below all samples.
 double value_below(const Scene& frame) {
   const double low = range(frame).low, below = std::floor(low) - 1.0;
   if (std::holds_alternative<FloatSamples>(frame.samples)) {
@@ -81,7 +81,7 @@ ExpressionScan expression_scan(const Scene& frame, const GreyOctree& of_frame, c
                                const ExpressionScanOptions& options) {
   const GreyOctree& own = of_frame.on_scan_lattice();
   const glm::ivec3& dims = frame.lattice.dims;
-  // From samples to voxels: the plan's universe serves where its voxels lie on the samples.
+  // The plan's universe is used if its voxels coincide with the samples.
   const std::optional<glm::ivec3> offset =
       whole_voxel_offset(glm::inverse(own.universe().lps_from_voxel) * frame.lattice.lps_from_voxel);
   if (!offset || glm::any(glm::lessThan(*offset, glm::ivec3(0))) ||
@@ -131,7 +131,7 @@ ExpressionScan expression_scan(const Scene& frame, const GreyOctree& of_frame, c
               if (is_held) owned = owners.at(voxel, glm::dvec3(voxel));
               if (is_held && !owned) ++filled_here;
               const std::int16_t steps = owned ? in_steps(owned->in_steps) : filled_steps;
-              // A sample that is the frame's, counted in steps, keeps the frame's bits.
+              // A sample that is the frame's own, counted in steps, keeps the frame's bits.
               const bool is_measured = own.scan().contains(voxel);
               if (is_held && is_measured && own.sample(voxel) == steps) continue;
               if (!is_held && !is_measured && frame.padding) continue;

@@ -11,8 +11,9 @@
 namespace octotomy::voxel {
 
 struct ExpressionScanOptions {
-  /// Sample where the expression contains nothing, in the scan's unit. None: the frame's padding, or where it
-  /// has none a value below all its samples, which becomes the result's padding: no window contains it.
+  /// The sample where the expression contains nothing, in the scan's unit. None: the frame's padding. If
+  /// the frame has no padding, a value below all its samples, which then becomes the result's padding,
+  /// because no window contains it.
   std::optional<double> hole;
   /// Sample of voxels that only objects without samples fill. Default: 3071 of Hounsfield units, otherwise the
   /// frame's largest sample.
@@ -28,18 +29,19 @@ struct ExpressionScan {
   double hole = 0.0, filled = 0.0;    ///< as used
 };
 
-/// The scan that a scanner would make of an expression: samples on the frame's lattice, each from the operand
-/// that owns its place, as GreyOwners has it. A sample at rest keeps its bits; one of a moved operand is
-/// interpolated once, trilinearly between that operand's own samples. Padding of the frame stays where the
-/// expression contains nothing. Lattice, type and meaning of the samples and the patient's identity are the
-/// frame's. `of_frame` is a grey octree that keeps the frame (GreyOctree::with_scan()); the expression's
-/// windows are of this or of others with samples in the same steps; windows in other steps, such as those of
-/// offset(), only bound.
+/// The scan that a scanner would make of an expression: samples on the frame's lattice, each from the
+/// operand that owns its place, as GreyOwners decides. A sample at rest keeps its bits; one of a moved
+/// operand is interpolated once, trilinearly between that operand's own samples. Padding of the frame stays
+/// where the expression contains nothing. Lattice, type and meaning of the samples and the patient's
+/// identity are the frame's. `of_frame` is a grey octree that keeps the frame (GreyOctree::with_scan());
+/// the expression's windows are of this or of others with samples in the same steps; windows in other
+/// steps, such as those of offset(), only bound.
 ///
-/// Throws Error (Input) if the frame has more than 1,024 samples a side or reaches out of the octree's universe,
-/// if a typed value is none that the samples can have, or if no value is left for holes; Stopped. Parallel; same bits on any
-/// thread count. Cost and memory: those of combine() and GreyOwners on the frame's lattice, and a copy of the
-/// frame's samples. Source: thesis, chapter 7: grey octrees of a plan's objects.
+/// Throws Error (Input) if the frame has more than 1,024 samples a side or reaches out of the octree's
+/// universe, if a typed value is none that the samples can have, or if no value is left for holes; Stopped.
+/// Parallel; same bits on any thread count. Cost and memory: those of combine() and GreyOwners on the
+/// frame's lattice, and a copy of the frame's samples. Source: thesis, chapter 7: grey octrees of a plan's
+/// objects.
 ExpressionScan expression_scan(const Scene& frame, const GreyOctree& of_frame, const Expression& expression,
                                const ExpressionScanOptions& options = {});
 

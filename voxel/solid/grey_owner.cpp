@@ -41,8 +41,8 @@ bool is_alternative(Expression::Kind kind, bool positive) {
   return kind == Kind::And || kind == Kind::Minus;
 }
 
-// Whether the term's windows are tested by their own samples or by operands of their own, so that the term's
-// voxels add nothing.
+// Whether the term's windows decide by their own samples or by operands of their own. The term's voxels
+// then add nothing.
 bool owns_itself(const Expression::Term& term, bool positive) {
   using Kind = Expression::Kind;
   const Expression::Term* at = &term;
@@ -166,8 +166,8 @@ Expression all_samples(const GreyOctree& grey, const glm::dmat4& moved_from_stil
   return moved_from_still == glm::dmat4(1.0) ? samples : carried(samples, moved_from_still);
 }
 
-// A union with all of space contains all of space, so that the intersection keeps its voxels; its window comes
-// after those of the voxels, and is tested by its own samples.
+// The union with all of space contains all of space, so the intersection has the voxels of `voxels`. The window
+// of `samples` comes after the windows of `voxels`, and is tested by its own samples.
 Expression with_samples(const Expression& voxels, const Expression& samples) {
   return voxels & (samples | ~Expression(Octree::empty({})));
 }
@@ -187,7 +187,8 @@ std::vector<Window> positive_windows(const Expression& expression) {
   bool positive = true;
   for_each_term(expression, [&](const MetTerm& met) {
     if (met.term.kind != Kind::Leaf) {
-      // Met before its operands and after them, so that the sign turns back.
+      // A walk meets a complement before its operands and again after them, so the second meeting restores
+      // the sign.
       if (met.subtracted != (met.term.kind == Kind::Not)) positive = !positive;
     } else if (const auto* window = std::get_if<Window>(&*met.term.leaf)) {
       if (positive != met.subtracted) found.push_back(*window);

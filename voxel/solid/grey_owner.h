@@ -29,9 +29,9 @@ struct SampleSource {
 /// All samples of a scan, under a rigid motion or reflection of LPS onto itself.
 Expression all_samples(const GreyOctree& grey, const glm::dmat4& moved_from_still = glm::dmat4(1.0));
 
-/// The same voxels with more samples: a voxel that no window of `voxels` owns has the sample that `samples`,
-/// a window under motions, has there, if it has one. Serves voxels that were computed from a scan and are kept
-/// as an octree.
+/// The same voxels with more samples: a voxel that no window of `voxels` owns has the sample of `samples`,
+/// a window under motions, at that place, if there is one. For voxels that were computed from a scan and
+/// stored as an octree.
 Expression with_samples(const Expression& voxels, const Expression& samples);
 /// The term whose samples with_samples() completed; the term itself if it did not make it.
 const Expression::Term& before_samples(const Expression::Term& term);
@@ -59,8 +59,8 @@ class GreyOwners {
   const Universe& universe() const;
   /// All windows in their order.
   std::vector<Window> windows() const;
-  /// Whether both surely answer alike: of one universe, the same voxels and the same terms in memory. Windows
-  /// and their motions made anew are compared by value.
+  /// Whether both certainly give the same results: one universe, the same voxels and the same terms in
+  /// memory. Windows and their motions that were created separately are compared by value.
   bool is_same(const GreyOwners& other) const;
 
  private:

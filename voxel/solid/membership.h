@@ -11,8 +11,8 @@ namespace octotomy::voxel {
 /// an octree contains its whole voxels. Copies share their data; any number of threads may call one object.
 class Membership {
  public:
-  /// A window at rest on the lattice of `universe` that excludes the background ends where its samples leave
-  /// the window; any other window also ends with its scan (postfix_expression.h).
+  /// A window ends where its samples leave it, and where its scan ends (postfix_expression.h). The scan's end
+  /// does not count for a window that excludes the background, at rest on the lattice of `universe`.
   Membership(const Universe& universe, Expression expression);
   bool operator()(const glm::dvec3& p_mm) const;
 

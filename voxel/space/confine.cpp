@@ -85,8 +85,9 @@ constexpr sock_filter step(std::uint16_t code, std::uint32_t value, std::uint8_t
   return {code, if_true, if_false, value};
 }
 
-/// A filter of system calls in classic BPF: of another architecture, all are refused; else those above. A process is
-/// made by clone without CLONE_THREAD; clone3 says "not there", so that the C library falls back on clone.
+/// A filter of system calls in classic BPF. Refuses every call of another architecture, and the calls
+/// listed above. Also refuses clone without CLONE_THREAD, which makes a process. clone3 fails as if it did
+/// not exist, so that the C library uses clone instead.
 bool filter_calls() {
   constexpr std::uint32_t refuse = SECCOMP_RET_ERRNO | EPERM;
   constexpr std::uint32_t clone_thread = 0x00010000;
@@ -112,7 +113,8 @@ bool filter_calls() {
   return prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
 }
 
-/// Files are changed below one folder alone. Empty folders can still be removed, so that the process can remove its own.
+/// Forbids changes of files except below one folder. Empty folders can still be removed, so that the
+/// process can remove its own.
 bool keep_files(const std::filesystem::path& writable) {
   landlock_ruleset_attr rules{};
   rules.handled_access_fs =

@@ -18,7 +18,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// What the started process does with its open files.
+/// The actions on open files at the start of a process.
 class FileActions {
  public:
   explicit FileActions(const Spawn& program) {

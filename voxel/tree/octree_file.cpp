@@ -262,7 +262,7 @@ class Reader {
     throw Error(ErrorCode::Input, source_ + ": " + why);
   }
   [[noreturn]] void refuse_damaged(const std::string& what) const {
-    refuse(what + ": the file is damaged, take it again from where it came");
+    refuse(what + ": the file is damaged, copy it again from its source");
   }
   std::string named(std::size_t number) const {
     return "section " + std::to_string(number + 1) + " of " + std::to_string(section_count_) + ", " +

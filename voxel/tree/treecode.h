@@ -14,9 +14,9 @@ namespace octotomy::voxel {
 /// Cost: a character a node, two more a Partial node.
 std::string treecode(const Octree& octree);
 
-/// The inverse. Spaces and line ends may stand between nodes. Throws std::invalid_argument with the position
-/// of the character if the text is no treecode, is deeper than the universe, or is not condensed (eight
-/// children all Full or all Empty are one node). Memory: the octree's.
+/// The inverse. Spaces and line ends are allowed between nodes. Throws std::invalid_argument with the
+/// position of the character if the text is no treecode, is deeper than the universe, or is not condensed
+/// (eight children all Full or all Empty are one node). Memory: the octree's.
 Octree octree_of_treecode(const Universe& universe, std::string_view text);
 
 }  // namespace octotomy::voxel

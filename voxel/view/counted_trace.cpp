@@ -92,7 +92,7 @@ class NodeTracer {
   ColumnDepths& columns_;
 };
 
-/// A node of a grey octree that knows its samples only if they are all equal.
+/// A node of a grey octree whose samples are used only if they are all equal.
 class PlainGreyNode {
  public:
   PlainGreyNode() = default;
@@ -117,9 +117,9 @@ class PlainGreyNode {
   Status status_ = Status::Empty;
 };
 
-/// Node tracing in a general view: a quadtree node's ray is a beam with a square section. Octree nodes do not
-/// project onto quadtree nodes, so that a beam carries the nodes that it meets, front to back, instead of
-/// stepping from neighbour to neighbour.
+/// Node tracing in a general view: a quadtree node's ray is a beam with a square section. Octree nodes do
+/// not project onto quadtree nodes. So a beam keeps a list of the nodes that it meets, front to back,
+/// instead of stepping from neighbour to neighbour.
 template <typename Node, typename Counter>
 class BeamTracer {
  public:

@@ -107,8 +107,7 @@ struct Steps {
 
   glm::dvec3 at(int i) const { return start + (near_mm + i * length_mm) * per_mm; }
 
-  /// The first step after i that may lie outside of the aligned cube of cells about step i's cell; never one
-  /// after that.
+  /// A step after i, at most the first one that lies outside the aligned cube of cells about step i's cell.
   int leaving(int i, const glm::ivec3& cell, int edge) const {
     double exit_mm = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
@@ -312,8 +311,7 @@ class AttenuationOfRay {
     }
   }
 
-  /// The first plane after one that may lie outside of the aligned cube of cells about a cell; never one after
-  /// that.
+  /// A plane of voxels' centres, at most the first one outside the aligned cube of cells about a cell.
   int leaving(int plane, const glm::ivec3& cell, int edge, double u_at_0, double v_at_0) const {
     double exit = (cell[axis] & -edge) + edge;
     const auto leave_along = [&](int along, double slope, double at_0) {
@@ -399,7 +397,8 @@ RayImage maximum_intensity(const GreyOctree& grey, const ImagePlane& plane, cons
         most = sample;
         most_at_mm = steps.near_mm + i * steps.length_mm;
       };
-      // The maximum is often as deep as the last ray's: with it first, most cubes cannot matter.
+      // The maximum often lies as deep as that of the last ray. If that cube is read first, most other
+      // cubes cannot raise the maximum.
       const int likely =
           std::clamp(static_cast<int>((most_at_mm - steps.near_mm) / steps.length_mm + 0.5), 0, steps.count);
       const glm::dvec3 p = steps.at(likely);

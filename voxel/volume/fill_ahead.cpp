@@ -25,7 +25,7 @@ class PartsAhead {
   PartsAhead(const PartsAhead&) = delete;
   PartsAhead& operator=(const PartsAhead&) = delete;
   ~PartsAhead() {
-    // Claims every part, so that tasks that have not begun have nothing to do.
+    // Claims all parts, so that tasks that have not begun do nothing.
     for (std::size_t part = 0; part < asked_; ++part) own(part);
     tasks_.wait();
   }

@@ -38,7 +38,7 @@ PageState& page_state() {
 
 extern "C" {
 
-/// Room for the samples of a scan, x fastest; the scan before it is gone.
+/// Allocates the samples of a new scan, x fastest, and frees the scan before it.
 [[clang::export_name("new_scan")]] std::int16_t* new_scan(int x, int y, int z) {
   page_state() = PageState();
   page_state().scene.lattice.dims = {x, y, z};
@@ -51,7 +51,7 @@ extern "C" {
   return &page_state().scene.lattice.lps_from_voxel[0][0];
 }
 
-/// Takes the samples and the matrix that were written. Voxels keep the scan's lattice.
+/// Uses the samples and the matrix that were written. Voxels keep the scan's lattice.
 [[clang::export_name("open_scan")]] void open_scan() {
   Scene& scene = page_state().scene;
   check(scene);

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <optional>
 
 #include "planner/cli/program/verbs.h"
 #include "planner/cli/verb/verb.h"
@@ -36,7 +37,7 @@ struct CohortText {
   fs::path in, out, plan, against;
   std::string level, engine = "serial";
   std::vector<std::string> labels, slurm;
-  int jobs = 0;
+  std::optional<int> jobs;
   bool again = false, reports = false, dry_run = false;
 };
 
@@ -186,7 +187,7 @@ int dry_run(const Program& program, const CohortText& text, const std::vector<Su
     seconds += forecast.seconds.of(size);
     peak_mb = std::max(peak_mb, forecast.peak_mb.of(size));
   }
-  const int jobs = std::max(1, text.jobs);
+  const int jobs = text.jobs.value_or(1);
   Json json = answer({});
   const bool knows = forecast.learnt_from > 0;
   json["subjects"] = subjects.size();
@@ -320,10 +321,11 @@ void add_cohort(Program& program) {
   verb.add_option("--engine", text->engine, "serial, parallel (GNU parallel) or slurm")
       ->check(CLI::IsMember({"serial", "parallel", "slurm"}));
   verb.add_option("--jobs", text->jobs,
-                  "Processes at a time with --engine parallel; with --dry-run, those on the partition")
+                  "Number of processes at a time with --engine parallel; with --dry-run, the number that the "
+                  "partition runs")
       ->check(CLI::Range(1, 100000));
   verb.add_option("--slurm", text->slurm, "Options for sbatch, such as --slurm=--mem=8G");
-  verb.add_flag("--again", text->again, "Evaluates what is done, too");
+  verb.add_flag("--again", text->again, "Also evaluates subjects that are done");
   verb.add_flag("--reports", text->reports, "Writes each subject's report and files as well");
   verb.add_flag("--dry-run", text->dry_run,
                 "Only estimates time and memory, from the subjects that are done");

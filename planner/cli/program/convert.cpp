@@ -264,16 +264,15 @@ void add_convert(Program& program) {
       ->required()
       ->check(scan_path());
   verb.add_option("-o,--out", text->out,
-                  "A .nrrd, .nii.gz or .mha file, or a folder for DICOM; of an .octree, a label map, a "
-                  "surface or a PDF "
-                  "a .dcm")
+                  "A .nrrd, .nii.gz or .mha file, or a folder for DICOM; for an .octree, a label map, a "
+                  "surface or a PDF a .dcm")
       ->required();
   verb.add_option(
           "--as", text->as,
           "The kind of .dcm: segmentation (default), labelmap (a segmentation of numbers, for objects that "
           "share no voxel and readers of 2025 or later), structures (contours on the images of --source), "
-          "fractions (the share of each voxel that is filled), or, of a "
-          "surface, stl or obj (default: its own)")
+          "fractions (the share of each voxel that is filled), or, for a surface, stl or obj (default: that "
+          "of the file)")
       ->check(CLI::IsMember({"segmentation", "labelmap", "structures", "fractions", "stl", "obj"}));
   verb.add_option("--planes", text->planes,
                   "Planes of the contours of --as structures: the images' (default) or the voxels'")

@@ -133,7 +133,7 @@ void add_shares(const std::string& label, const std::vector<Share>& from, Shares
   voxel::DicomFractions made{label, std::vector<std::uint8_t>(shares.lattice.sample_count())};
   double sum = 0.0;
   std::uint64_t partly = 0;
-  // Sums of lengths end this near to a whole voxel.
+  // Sums of lengths that end this near to a whole voxel count as ending on it.
   constexpr double rounding = 1e-9;
   for (std::size_t i = 0; i < made.fractions.size(); ++i) {
     const auto share = static_cast<double>(from[i]);
@@ -146,8 +146,8 @@ void add_shares(const std::string& label, const std::vector<Share>& from, Shares
   shares.segments.push_back(std::move(made));
 }
 
-/// Adds an object by its voxels' exact shares; where its axes are turned against the lattice's, by those of
-/// digitise_partial(), whose volume a finding compares.
+/// Adds an object by its voxels' exact shares; where its axes are turned against the lattice's, by the
+/// shares of digitise_partial(), with a finding on its volume.
 void add_object(const voxel::DicomSegment& object, const voxel::Progress& progress, Shares& shares,
                 std::vector<std::string>& findings) {
   if (const auto exact = voxel::occupancy(object.object, shares.lattice, progress)) {
@@ -199,7 +199,7 @@ std::pair<voxel::Lattice, glm::ivec3> lattice_around(const voxel::Octree& object
   return {lattice, first};
 }
 
-/// The objects' shares of the voxels of the source's images; of an octree of shares its own.
+/// The objects' shares of the voxels of the source's images; for an octree of shares, its own shares.
 class ShareMaker {
  public:
   ShareMaker(const Program& program, const ConvertText& text, Timings& timings,
@@ -446,7 +446,7 @@ int convert_model(const Program& program, const ConvertText& text) {
   options.source = source_around(program, text, {}, triangles.points_mm, "surface", timings, findings);
   {
     const Stopwatch watch(timings, "write");
-    // Written anew, so that its coordinates are LPS millimetres whatever the file's own were.
+    // Written again, because the file's own coordinates may not be LPS millimetres.
     const voxel::StagedFiles staging(text.out.parent_path());
     const fs::path file = staging.folder() / (is_obj ? "model.obj" : "model.stl");
     brep::write_mesh(triangles, file);

@@ -98,7 +98,7 @@ class OperationRun {
   }
 
  private:
-  /// What the operation finds out once for both kernels.
+  /// Computes the operation's values that both kernels share.
   void settle(Object& made) {
     if (!operation_.settle) return;
     settled_ = operation_.settle(
@@ -164,7 +164,7 @@ class OperationRun {
     return std::max({extent.x, extent.y, extent.z});
   }
 
-  /// Voxels of --voxel, or a 128th of `shown_mm`.
+  /// Voxels of the size --voxel, or a 128th of `shown_mm`.
   voxel::Universe universe_around(const voxel::Box& box, double shown_mm) const {
     return voxel::universe_around(box, text_.voxel_mm.value_or(shown_mm / 128.0));
   }
@@ -233,7 +233,7 @@ class OperationRun {
         object.id + ": reaches " + three_figures(beyond_mm) + " mm beyond the voxels of the octree";
     if (text_.certify)
       throw std::runtime_error(what + ", so that the kernels cannot be compared there: leave --certify out");
-    beyond_.push_back(what + ": the answer has no voxels there; write a mesh, which is whole");
+    beyond_.push_back(what + ": the answer has no voxels there; write a mesh to keep all of the object");
   }
 
   void answer_by_mesh(Object& made) {

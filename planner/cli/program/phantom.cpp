@@ -261,7 +261,7 @@ void add_phantom(Program& program) {
   text->verb = &verb;
   verb.add_option("kind", text->kind, kinds_said())->required()->check(CLI::IsMember(kind_names()));
   verb.add_option("-o,--out", text->out,
-                  "A .octree file; of head and leg a .nrrd, .nii.gz or .mha file, or a folder for DICOM")
+                  "A .octree file; for head and leg a .nrrd, .nii.gz or .mha file, or a folder for DICOM")
       ->required();
   verb.add_option("--voxel", text->head.voxel_mm, "Edge of a voxel, mm")
       ->check(between(0.1, 20.0))

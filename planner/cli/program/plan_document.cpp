@@ -215,8 +215,8 @@ void add_plan_document(Program& program) {
       "octotomy plan merge base.plan.json mine.plan.json theirs.plan.json -o merged.plan.json",
       [&program, paths] { return merge_plans(program, *paths); });
   add_plan(merged, "base", paths->base, "The common original .plan.json");
-  add_plan(merged, "a", paths->a, "A .plan.json changed from it");
-  add_plan(merged, "b", paths->b, "Another changed .plan.json");
+  add_plan(merged, "a", paths->a, "A .plan.json changed from the original");
+  add_plan(merged, "b", paths->b, "Another .plan.json changed from the original");
   merged
       .add_option("-o,--out", paths->out,
                   "The merged .plan.json; relative paths in it name the same files from its folder")

@@ -85,7 +85,7 @@ void check_outputs(const PrepareText& text) {
   std::vector<fs::path> read{text.in};
   for (const std::string& step : text.steps) read.push_back(read_by(step));
   if (!text.picture.empty() && text.picture.extension() != ".png")
-    throw std::runtime_error(text.picture.string() + ": the picture of what is removed is a .png file");
+    throw std::runtime_error(text.picture.string() + ": the picture of the removed samples is a .png file");
   need_outputs({text.out, text.removed, text.picture}, read);
 }
 
@@ -204,9 +204,11 @@ void add_prepare(Program& program) {
       ->check(scan_path());
   verb.add_option("-o,--out", text->out, "A .nrrd, .nii.gz or .mha file")->required();
   verb.add_option("--step", text->steps, "Again for more: " + forms)->required()->expected(1)->take_all();
-  verb.add_option("--removed", text->removed, "The .octree file that keeps what remove_headrest takes out");
-  verb.add_option("--picture", text->picture, "A .png file that shows in red what remove_headrest takes out");
-  verb.add_option("--keep", text->keep, "X,Y,Z in mm of a part that remove_headrest leaves, again for more")
+  verb.add_option("--removed", text->removed,
+                  "The .octree file that keeps the samples that remove_headrest removes");
+  verb.add_option("--picture", text->picture,
+                  "A .png file that shows in red the samples that remove_headrest removes");
+  verb.add_option("--keep", text->keep, "X,Y,Z in mm of a part that remove_headrest keeps; may be repeated")
       ->expected(1)
       ->take_all();
   add_scan_options(verb, text->scan);

@@ -140,7 +140,7 @@ int procedure(Program& program, const ProcedureText& text) {
   std::string lines_of_landmarks;
   if (!text.after.empty()) json["carried_landmarks"] = carried;
   for (const std::string& name : carried)
-    lines_of_landmarks += "landmark " + name + ": lies on a piece that has moved, and goes with it\n";
+    lines_of_landmarks += "landmark " + name + ": lies on a piece that has moved, and moves with it\n";
   program.say(json, lines_of_landmarks + "written: " + text.out.string() + "; octotomy run " +
                         text.out.string() + " -o FOLDER\n");
   return done;
@@ -164,19 +164,19 @@ void add_procedure(Program& program) {
       [&program, text] { return procedure(program, *text); });
   verb.add_option("name", text->name, "The procedure, or a .json file of one");
   verb.add_option("--scan", text->scan, "The scan")->check(scan_path());
-  verb.add_option("--donor", text->donor, "The scan of a donor bone, of a flap")->check(scan_path());
+  verb.add_option("--donor", text->donor, "For a flap: the scan of the donor bone")->check(scan_path());
   verb.add_option("--after", text->after,
-                  "A plan that stands before: the procedure acts on its step 'planned' or 'rebuilt', and its "
-                  "landmarks go along with the pieces that they lie on")
+                  "An earlier plan: the procedure acts on its step 'planned' or 'rebuilt', and its landmarks "
+                  "move with the pieces on which they lie")
       ->check(CLI::ExistingFile)
       ->excludes("--scan");
   verb.add_option("--landmarks", text->landmarks,
-                  "Named points: JSON, or 3D Slicer's .mrk.json or .fcsv; repeated, as one file a scan")
+                  "Named points: JSON, or 3D Slicer's .mrk.json or .fcsv; may be repeated, one file per scan")
       ->expected(1)
       ->take_all()
       ->allow_extra_args(false)
       ->check(CLI::ExistingFile);
-  verb.add_option("--set", text->values, "NAME=NUMBER, repeated: a value of the procedure")
+  verb.add_option("--set", text->values, "NAME=NUMBER: a value of the procedure; may be repeated")
       ->expected(1)
       ->take_all()
       ->allow_extra_args(false)

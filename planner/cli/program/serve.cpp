@@ -122,7 +122,7 @@ void add_serve(Program& program) {
                                 "  octotomy serve le_fort_i.plan.json",
                                 [&program, text] { return run(program, *text); });
   verb.add_option("paths", text->paths,
-                  "A plan or a scan to begin with, and folders that the page may open files of")
+                  "A plan or a scan to begin with, and folders whose files the page may open")
       ->check(CLI::ExistingPath);
   verb.add_option("--port", text->options.port, "Port to listen on; default: a free one")
       ->check(CLI::Range(0, 65535));

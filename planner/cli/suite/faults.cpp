@@ -38,7 +38,7 @@ std::vector<verify::ScanToAlter> scans_to_alter(Program& program, const VerifyTe
   for (const std::string& named : text.scans) {
     const std::size_t at = named.find('=');
     if (at == std::string::npos || at == 0)
-      throw CLI::ValidationError("--scan", "NAME=PATH is wanted, not '" + named + "'");
+      throw CLI::ValidationError("--scan", "NAME=PATH is expected, not '" + named + "'");
     const std::filesystem::path path = named.substr(at + 1);
     if (!std::filesystem::exists(path))
       throw CLI::ValidationError("--scan", "no such file: " + path.string());

@@ -291,7 +291,7 @@ std::vector<Question> questions_of_file(const fs::path& path) {
   return all;
 }
 
-/// The one file of a folder with this name, whatever its extension.
+/// The only file of a folder with this name and any extension.
 std::optional<fs::path> file_called(const fs::path& folder, const std::string& stem) {
   std::vector<fs::path> found;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))

@@ -104,9 +104,9 @@ void add_drawn(const std::vector<verify::IntervalCoverage>& table,
     const std::string subject =
         row.quantity + " of drawn solids, " + (all ? "all classes" : row.group) + ", " + row.sampling;
     if (all || !held)
-      rows.emplace_back(held ? "holds" : "DOES NOT HOLD", "interval of the " + subject + ", at least " +
-                                                              three_figures(100.0 * least) +
-                                                              " % as far as this many solids show: " + found);
+      rows.emplace_back(held ? "holds" : "DOES NOT HOLD",
+                        "interval of the " + subject + ", at least " + three_figures(100.0 * least) +
+                            " %, allowing for the chance in this number of solids: " + found);
     else
       rows.emplace_back(subject, found);
   }

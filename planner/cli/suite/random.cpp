@@ -75,7 +75,7 @@ SuiteAnswer run_random(Program& program, const VerifyText& text) {
   answer.worst = std::move(suite.worst);
   if (suite.bounded.no_answer > 0)
     answer.not_covered.push_back(std::to_string(suite.bounded.no_answer) +
-                                 " results that the mesh kernel has no answer to, and says so");
+                                 " results for which the mesh kernel reports that it has no answer");
   if (suite.bounded.refused > 0)
     answer.not_covered.push_back(std::to_string(suite.bounded.refused) +
                                  " plans that were refused: a window or mask without a voxel");

@@ -65,10 +65,9 @@ SuiteAnswer run_thesis(Program&, const VerifyText&) {
 }
 
 CLI::Option* add_thesis(CLI::App& verb, VerifyText& text) {
-  return verb.add_flag(
-      "--thesis", text.thesis,
-      "A suite: compares the thesis's tables and worked examples with computed ones; what depends on "
-      "its patient's scan stands beside the same of the head phantom");
+  return verb.add_flag("--thesis", text.thesis,
+                       "A suite: compares the thesis's tables and worked examples with computed ones; rows "
+                       "that depend on its patient's scan are shown beside those of the head phantom");
 }
 
 }  // namespace

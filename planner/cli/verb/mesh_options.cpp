@@ -29,9 +29,9 @@ void add_mesh_options(CLI::App& verb) {
       "Directions of x, y and z of mesh files, overriding the files' own statements: LPS, RAS, or three "
       "other letters of L "
       "or "
-      "R, A or P, S or I; of one file as FILE=RAS");
+      "R, A or P, S or I; for one file as FILE=RAS");
   add("--unit",
-      "Unit of mesh files, overriding their own statements: um, mm, cm, m, inch or foot; of one file as "
+      "Unit of mesh files, overriding their own statements: um, mm, cm, m, inch or foot; for one file as "
       "FILE=inch");
 }
 

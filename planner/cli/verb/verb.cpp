@@ -195,7 +195,7 @@ void warn_finding(const std::string& finding) {
 
 FindingsOfRun::~FindingsOfRun() {
   if (findings > most_findings)
-    warn(std::to_string(findings - most_findings) + " more findings: --json gives them all");
+    warn(std::to_string(findings - most_findings) + " more findings: --json lists them all");
   findings = 0;
   choose_mesh_reading({}, {});
 }

@@ -20,15 +20,15 @@ glm::dmat3 least_turn(const glm::dvec3& from, const glm::dvec3& to) {
   if (sine > 0.0) return glm::dmat3(glm::rotate(glm::dmat4(1.0), std::atan2(sine, cosine), axis / sine));
   if (cosine > 0.0) return glm::dmat3(1.0);
   throw voxel::InvalidInput(
-      "the direction between the two points is wanted the other way round, which leaves the turn open: add a "
-      "third point");
+      "the two points would exchange their direction, which does not determine the rotation: add a third "
+      "point");
 }
 
 glm::dmat4 motion_of_two(const WantedPoint& a, const WantedPoint& b, PointFit fit) {
   const glm::dvec3 from = b.from_mm - a.from_mm, to = b.to_mm - a.to_mm;
   if (glm::length(from) == 0.0 || glm::length(to) == 0.0)
     throw voxel::InvalidInput("'" + a.name + "' and '" + b.name +
-                              "' are, or come to, one place: choose two that are apart");
+                              "' coincide before or after the motion: choose two that are apart");
   const glm::dmat3 turn = least_turn(glm::normalize(from), glm::normalize(to));
   const double share = fit == PointFit::Best ? 0.5 : 0.0;  // of the way to the second point
   glm::dmat4 motion(turn);

@@ -41,7 +41,8 @@ void check_held(const Deck& deck, const FieldLocation& place) {
                                  "', which moves nothing: name the result of a step that moves an object, or "
                                  "list it as fixed");
   if ((deck.element_mm || deck.material) && !deck.is_held())
-    place.refuse("'element_mm' and 'material' are of an object that others hold: add 'moved' or 'fixed'");
+    place.refuse(
+        "'element_mm' and 'material' apply only to an object that others hold: add 'moved' or 'fixed'");
 }
 
 void check_regions(const Deck& deck, const FieldLocation& place) {
@@ -83,13 +84,14 @@ void check(const Deck& deck, const FieldLocation& place) {
   check_output_path(deck.path, {".inp", ".vtu", ".feb", ".msh", ".node"}, place.at("path"));
   check_held(deck, place);
   if (deck.fallback && deck.is_held() && !deck.smooth_mm)
-    place.at("fallback").refuse("what others hold is made of its voxels anyhow: leave it out");
+    place.at("fallback").refuse("an object that others hold is always made of its voxels: leave it out");
   if (deck.order == 2 && deck.path.extension() == ".node")
     place.at("order").refuse("applies only to tetrahedra in .inp, .feb, .vtu or .msh: leave it out");
   check_regions(deck, place);
   if (deck.stiffness && (deck.is_held() || !deck.regions.empty()))
     place.at("stiffness")
-        .refuse("applies only to one object that is filled: leave it out, or 'regions' and holders");
+        .refuse(
+            "applies only to a single filled object: leave it out, or leave out 'regions' and the holders");
   if (!deck.finer.empty() && !deck.smooth_mm && (deck.is_held() || !deck.regions.empty()))
     place.at("finer").refuse("does not apply to voxels' elements: add 'smooth_mm', or leave it out");
 }
@@ -111,7 +113,7 @@ void add_midline(const convert::Tetrahedra& tetrahedra, const Deck& deck, conver
   convert::NodeSet set{"MIDLINE",
                        convert::midline_nodes(tetrahedra, deck.midline->point_mm, deck.midline->normal)};
   if (set.nodes.empty())
-    made.findings.push_back("the plane of 'midline' passes the deck nowhere: there is no set MIDLINE");
+    made.findings.push_back("the plane of 'midline' does not meet the deck: there is no set MIDLINE");
   else
     options.node_sets.push_back(std::move(set));
 }
@@ -277,7 +279,7 @@ Operation deck_operation() {
       .takes(
           field("path", &Deck::path, "The file within the result's folder: .inp, .feb, .vtu, .msh or .node.")
               .required())
-      .takes(field("moved", &Deck::moved, "Moved objects; the elements on them take their motion."))
+      .takes(field("moved", &Deck::moved, "Moved objects; the elements on them move with them."))
       .takes(field("fixed", &Deck::fixed, "Objects that hold the elements on them."))
       .takes(field("element_mm", &Deck::element_mm,
                    "Edge of the smallest elements of an object that others hold. Default: the voxels'.")
@@ -286,7 +288,7 @@ Operation deck_operation() {
       .takes(record("material", &Deck::material,
                     "Material of an object that others hold. Default: soft tissue.", material_fields()))
       .takes(field("fallback", &Deck::fallback,
-                   "Take the voxels' own elements, marked, where no mesher succeeds."))
+                   "If no mesher succeeds, use the voxels' own elements, marked as such."))
       .takes(records(
                  "finer", &Deck::finer, "Smaller elements at points or along objects.",
                  {field("at", &Deck::Finer::at, "A point [x, y, z], LPS mm, or an object's name.").required(),

@@ -158,9 +158,10 @@ void check_set_names(const std::vector<std::string>& words) {
       throw std::runtime_error("--nodes: '" + word + "' names no set: for example CUT=0,0,-40,0,0,1");
     const std::string name = word.substr(0, equals);
     if (!convert::is_solver_name(name))
-      throw std::runtime_error("--nodes: '" + name +
-                               "' is no name that solvers take: a letter, then letters, digits, '_', '-', at "
-                               "most 80 in all");
+      throw std::runtime_error(
+          "--nodes: '" + name +
+          "' is no name that solvers accept: a letter, then letters, digits, '_', '-', at "
+          "most 80 in all");
     if (convert::is_own_node_set_name(name))
       throw std::runtime_error("--nodes: '" + name +
                                "' is the name of a set that every deck has, in small or capital letters: "
@@ -168,11 +169,11 @@ void check_set_names(const std::vector<std::string>& words) {
                                name);
     const auto [earlier, is_new] = known.emplace(voxel::lower_case(name), name);
     if (!is_new)
-      throw std::runtime_error("--nodes: " + name +
-                               (earlier->second == name ? " comes twice"
-                                                        : " and " + earlier->second +
-                                                              " are one name for solvers, which do not tell "
-                                                              "capitals apart: choose another"));
+      throw std::runtime_error(
+          "--nodes: " + name +
+          (earlier->second == name ? " comes twice"
+                                   : " and " + earlier->second +
+                                         " are one name for solvers, which ignore capitals: choose another"));
   }
 }
 

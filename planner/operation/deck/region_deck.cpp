@@ -74,7 +74,7 @@ void fill_by_voxels(const Regions& regions, const Deck& step, const voxel::Progr
   const double shared_mm3 = regions.voxels_mm3 - volume_mm3;
   if (shared_mm3 > 1e-6 * volume_mm3)
     deck.findings.push_back("regions overlap by " + grouped(shared_mm3, 1) +
-                            " mm\u00b3: what is in several is the first's");
+                            " mm\u00b3: voxels in several belong to the first");
 }
 
 void fill(const Objects& objects, const Regions& regions, const Deck& step, const voxel::Progress& progress,

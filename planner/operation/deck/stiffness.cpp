@@ -11,18 +11,18 @@ std::vector<Field> stiffness_fields() {
   std::vector<std::string> laws;
   for (const convert::StiffnessLaw& law : convert::stiffness_laws()) laws.push_back(law.name);
   return {field("density", &Stiffness::density,
-                "Slope and intercept: g/cm3 = intercept + slope HU, as the scan's calibration phantom says.")
+                "Slope and intercept: g/cm3 = intercept + slope HU, by the scan's calibration phantom.")
               .from(2)
               .to(2)
               .comma_separated()
               .for_example("[0.0009, 0.05]"),
           field("law", &Stiffness::law, "Stiffness of a density.").one_of(laws),
-          field("bins", &Stiffness::bins, "Materials that elements are gathered into, by stiffness.")
+          field("bins", &Stiffness::bins, "Number of materials into which elements are grouped by stiffness.")
               .from(1)
               .to(1000),
           field("surface_depth_mm", &Stiffness::surface_depth_mm,
-                "Takes what is nearer to the surface from this depth, as voxels there hold bone and what is "
-                "beside it; 0: from where it is.")
+                "Points nearer to the surface take the stiffness at this depth if it is larger, because "
+                "voxels at the surface hold bone and its surroundings; 0: every point has its own.")
               .from(0.0)
               .to(20.0),
           field("poisson_ratio", &Stiffness::poisson_ratio, "Poisson's ratio of them.")
@@ -60,8 +60,9 @@ std::vector<std::string> add_stiffness(const Stiffness& stiffness, const convert
                              ") mm: give the scan that the solid was made of");
   }
   deck.notes.push_back("stiffness: " + std::to_string(made.materials.size()) +
-                       " materials in steps of one ratio; an element's own is at most " +
-                       three_figures(made.worst_ratio) + " times its material's or that share of it");
+                       " materials at equal ratios; an element's own stiffness differs from its material's "
+                       "by a factor of at most " +
+                       three_figures(made.worst_ratio));
   deck.materials = std::move(made.materials);
   deck.material_of_tet = std::move(made.material_of_tet);
   deck.fields = {{"HU", std::move(made.hu)},

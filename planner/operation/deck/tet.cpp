@@ -71,7 +71,7 @@ std::vector<convert::Refinement> refinements(const Tet& asked) {
         equals == std::string::npos ? std::vector<double>{} : comma_numbers(word.substr(equals + 1));
     if (size_mm.size() != 1 || size_mm[0] <= 0.0)
       throw std::runtime_error("--finer: '" + word +
-                               "' says no size: for example 12,-80,4=0.5 or cut.stl=0.5");
+                               "' states no size: for example 12,-80,4=0.5 or cut.stl=0.5");
     const std::string where = word.substr(0, equals);
     const auto landmark = std::find_if(landmarks.begin(), landmarks.end(),
                                        [&](const brep::Landmark& known) { return known.name == where; });
@@ -107,7 +107,7 @@ convert::TetOptions options_of(const Tet& asked, const FileBench& bench) {
   return options;
 }
 
-/// What a deck is made of, and how it came about.
+/// The contents of a deck, and how they were made.
 struct TetResult {
   convert::Tetrahedra tetrahedra;
   std::size_t regions = 1;
@@ -134,8 +134,8 @@ voxel::Octree voxels_of(const Tet& asked, const brep::Triangles& triangles, bool
                : convert::voxelise_by_winding_number(universe, brep::joined_surface(triangles).surface);
 }
 
-/// Elements as they are made, or why the fallback is to be taken. Without --fallback throws where none are
-/// made, and keeps unfit ones with a finding.
+/// Makes the elements. If there are none or their shapes are unfit: with --fallback records the reason for
+/// the fallback; without it throws, or keeps the unfit elements with a finding.
 void fill(const Tet& asked, bool is_of_voxels, TetResult& filled,
           const std::function<convert::Tetrahedra()>& make) {
   try {
@@ -160,7 +160,7 @@ void fill(const Tet& asked, bool is_of_voxels, TetResult& filled,
   }
 }
 
-/// In place of smooth elements those of an octree.
+/// Replaces smooth elements by those of an octree.
 void fall_back(TetResult& filled, convert::Tetrahedra tetrahedra, const voxel::Universe& universe) {
   filled.tetrahedra = std::move(tetrahedra);
   filled.findings = {"fallback: " + *filled.fallback +
@@ -174,7 +174,7 @@ struct CheckedMesh {
   brep::Health health;
 };
 
-/// Appends to the findings what mending did.
+/// Appends findings on the mending.
 CheckedMesh checked_mesh(const FileBench& bench, const Tet& asked, std::vector<std::string>& findings) {
   CheckedMesh surface;
   if (asked.mend) {
@@ -190,8 +190,8 @@ CheckedMesh checked_mesh(const FileBench& bench, const Tet& asked, std::vector<s
   surface.health = brep::health(surface.triangles);
   if (!surface.health.solid() && !asked.fallback)
     throw std::runtime_error(asked.file.name + ": is not a solid: " + surface.health.findings.front() +
-                             "; let it be mended by --mend, octotomy info tells all; or take an octree's "
-                             "elements by --fallback, which need none");
+                             "; octotomy info lists all defects; mend it with --mend, or use an octree's "
+                             "elements with --fallback");
   return surface;
 }
 
@@ -231,7 +231,7 @@ voxel::Octree octree_in(const std::string& name, const FileBench& bench) {
   return std::move(*octree);
 }
 
-/// The octree and the regions beside it: smooth elements where a size is asked for, or else the voxels' own.
+/// The octree and the regions beside it: smooth elements if a size is requested, else the voxels' own.
 TetResult of_octrees(const FileBench& bench, const Tet& asked) {
   std::vector<voxel::Octree> octrees;
   for (const std::string& name : asked.inputs()) octrees.push_back(octree_in(name, bench));
@@ -297,7 +297,7 @@ void check(const Tet& asked, const FieldLocation& place) {
   if (place.scope == nullptr) return;
   check_output_path(asked.out, {".inp", ".feb", ".vtu", ".msh", ".node"}, place.at("path"));
   if (!asked.of_voxels && (!asked.regions.empty() || asked.size_mm || asked.contact))
-    place.refuse("'regions', 'size_mm' and 'contact' are of voxels: add 'of_voxels' true");
+    place.refuse("'regions', 'size_mm' and 'contact' apply only to voxels: add 'of_voxels' true");
 }
 
 FileAnswer on_files(const Tet& asked, const FileBench& bench) {
@@ -307,8 +307,8 @@ FileAnswer on_files(const Tet& asked, const FileBench& bench) {
   need_folder_of(asked.out);
   convert::need_own_deck_files(asked.out);
   if (!of_voxels && (!asked.regions.empty() || asked.size_mm || asked.contact))
-    throw std::runtime_error("--region, --size and --contact are of octrees: make one of " + asked.file.name +
-                             " by octotomy voxelise");
+    throw std::runtime_error("--region, --size and --contact apply only to octrees: make one of " +
+                             asked.file.name + " by octotomy voxelise");
   refinements(asked);
   check_set_names(asked.nodes);
   if (!asked.finer.empty() && of_voxels && !asked.size_mm)
@@ -326,7 +326,7 @@ FileAnswer on_files(const Tet& asked, const FileBench& bench) {
     deck.progress = bench.progress("writing");
     convert::write_deck(tetrahedra, asked.out, deck);
   }
-  // Of the deck as written: sides of order 2 have nodes that the linear elements lack.
+  // Counts are those of the written deck: elements of order 2 have nodes that the linear elements lack.
   std::size_t nodes = tetrahedra.nodes_mm.size();
   std::vector<convert::NodeSet> written_sets = deck.node_sets;
   if (asked.order == 2) {
@@ -361,7 +361,8 @@ FileAnswer on_files(const Tet& asked, const FileBench& bench) {
 
 Operation tet_operation() {
   return Describe<Tet>("tet", "Fills a solid with quality tetrahedra for finite elements.", Makes::File)
-      .takes(field("object", &Tet::file, "The object; of the verb a closed mesh, or a binary .octree file.")
+      .takes(field("object", &Tet::file,
+                   "The object; on the command line a closed mesh, or a binary .octree file.")
                  .required()
                  .positional("file"))
       .takes(
@@ -375,11 +376,10 @@ Operation tet_operation() {
                    "degrees, but parts thinner than a cell are lost. best: tetgen; mesh3 where angles stay "
                    "below --dihedral; stuffing where they stay below 5 degrees.")
                  .one_of({"tetgen", "mesh3", "stuffing", "best"}))
-      .takes(field("dihedral_deg", &Tet::dihedral_deg, "Smallest dihedral angle that is aimed at.")
-                 .from(0.0)
-                 .to(30.0))
+      .takes(
+          field("dihedral_deg", &Tet::dihedral_deg, "Smallest dihedral angle to reach.").from(0.0).to(30.0))
       .takes(field("radius_edge", &Tet::radius_edge,
-                   "TetGen's largest circumradius by shortest edge; 1.2 is hard, 2 is easy.")
+                   "TetGen's largest ratio of circumradius to shortest edge; 1.2 is hard, 2 is easy.")
                  .from(1.1)
                  .to(10.0))
       .takes(field("max_volume_mm3", &Tet::max_volume_mm3, "Largest tetrahedron.").greater_than(0.0))
@@ -412,17 +412,18 @@ Operation tet_operation() {
                  .to(86400.0))
       .verb_takes(
           field("mend", &Tet::mend, "A mesh that is no solid is mended first, as repair --solid does."))
-      .takes(
-          field("fallback", &Tet::fallback,
-                "Where the meshers fail or leave flat elements, or the mesh is no solid, takes an octree's "
-                "elements, marked as such."))
-      .takes(field("voxel_mm", &Tet::voxel_mm, "Edge of their smallest. Default: about 200 000 voxels.")
+      .takes(field("fallback", &Tet::fallback,
+                   "If the meshers fail or leave flat elements, or the mesh is no solid, uses an octree's "
+                   "elements, marked as such."))
+      .takes(field("voxel_mm", &Tet::voxel_mm,
+                   "Edge of the octree's voxels for --fallback. Default: that of about 200 000 voxels.")
                  .greater_than(0.0))
       .takes(field("regions", &Tet::regions,
                    "A further octree of the same universe, a region of its own; repeated.")
                  .repeated()
                  .called("region"))
-      .takes(field("of_voxels", &Tet::of_voxels, "Fills the object's voxels; else its mesh.").in_plans_only())
+      .takes(field("of_voxels", &Tet::of_voxels, "Fills the object's voxels instead of its mesh.")
+                 .in_plans_only())
       .takes(field("size_mm", &Tet::size_mm,
                    "Smooth quality elements of about this size, in place of the voxels' own.")
                  .greater_than(0.0))

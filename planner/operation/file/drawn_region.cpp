@@ -67,13 +67,13 @@ PictureFrame frame_of_drawing(const SvgPicture& picture, const fs::path& drawing
   if (const std::string data = "data:image/png;base64,"; picture.link.starts_with(data))
     return read_frame(decoded_base64(std::string_view(picture.link).substr(data.size())), where);
   if (picture.link.starts_with("data:") || voxel::extension_of(unescaped(picture.link)) != ".png")
-    refuse(where, "is no .png, which alone says what its pixels show");
+    refuse(where, "is no .png, the only kind of picture that states what its pixels show");
   const fs::path path = drawing.parent_path() / unescaped(picture.link);
-  if (!fs::exists(path)) refuse(where, "links to " + path.string() + ", which is not there");
+  if (!fs::exists(path)) refuse(where, "links to " + path.string() + ", which does not exist");
   return read_frame(path);
 }
 
-/// From user units to places in the picture, which count from its top left corner.
+/// Maps user units to positions in the picture, counted from its top left corner.
 glm::dmat3 pixel_from_user(const SvgPicture& picture, const glm::ivec2& size_px) {
   glm::dvec2 units_per_pixel = picture.shown_units / glm::dvec2(size_px), first(0.0);
   if (picture.keeps_aspect) {
@@ -101,12 +101,12 @@ DrawnRegion of_svg(const std::optional<voxel::View>& view, const fs::path& path)
       path,
       [&](double mm_per_unit, const std::optional<SvgPicture>& picture) {
         if (!view && !picture)
-          refuse(path.string(), "holds no picture: say the view it is drawn in, as anterior:" +
+          refuse(path.string(), "holds no picture: name the view in which it is drawn, as anterior:" +
                                     path.filename().string() + ", or draw over a .png of octotomy render");
         if (view) return glm::dmat3({mm_per_unit, 0, 0}, {0, -mm_per_unit, 0}, {0, 0, 1});
         const PictureFrame frame = frame_of_drawing(*picture, path);
         seen = frame.view();
-        // Whole numbers are pixels' centres there, and their corners here.
+        // In the frame, whole numbers are the centres of pixels; in the drawing, their corners.
         const glm::dmat3 centres({1, 0, 0}, {0, 1, 0}, {-0.5, -0.5, 1});
         return frame.view_mm_from_pixel() * centres * pixel_from_user(*picture, frame.size_px);
       },

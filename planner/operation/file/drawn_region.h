@@ -6,8 +6,8 @@
 
 #include "voxel/solid/region_mask.h"
 
-// Regions as people say them on the command line: a view and a file, a drawing over a picture, or the pixels
-// of a picture.
+// Regions as users write them on the command line: a view and a file, a drawing over a picture, or the
+// pixels of a picture.
 namespace octotomy::planner {
 
 /// A region, as plans hold it: points in the view's millimetres, rounded to a ten-thousandth of one.
@@ -22,8 +22,8 @@ inline constexpr double curve_tolerance_mm = 0.02;
 
 /// VIEW:FILE, or FILE alone of an SVG drawing over a picture. The file is
 /// - JSON of polygons (region_file.h);
-/// - an SVG drawing (svg_outlines.h): with an image in it that a .png of `render` or `slice` is, linked or
-///   embedded, its outlines are of that picture and have its view; else x is u and -y is v, in millimetres;
+/// - an SVG drawing (svg_outlines.h). If it contains an image that `render` or `slice` wrote, linked or
+///   embedded, its outlines lie in that picture and have its view; else x is u and -y is v, in millimetres;
 /// - 3D Slicer's markups (.mrk.json): closed curves, LPS or RAS, projected along the view.
 /// Throws std::runtime_error saying what was given, the place in the file and what is expected there.
 DrawnRegion read_drawn_region(const std::string& text);

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A label; "3.0" as tables of floats have it, too.
+/// The label that a text states; also "3.0", because some tables have labels as floats.
 std::optional<int> whole(const std::string& text) {
   std::string digits = voxel::trimmed(text);
   if (digits.ends_with(".0")) digits.resize(digits.size() - 2);
@@ -37,7 +37,7 @@ std::optional<int> whole(const std::string& text) {
   return number;
 }
 
-/// A whole number that is no label, such as -1 or 100000.
+/// Whether a text is a whole number that cannot be a label, such as -1 or 100000.
 bool is_beyond_labels(const std::string& text) {
   std::string digits = voxel::trimmed(text);
   if (digits.ends_with(".0")) digits.resize(digits.size() - 2);
@@ -46,7 +46,8 @@ bool is_beyond_labels(const std::string& text) {
          !whole(text);
 }
 
-/// "0.5" or "1e3": a value and no name. Whole numbers can be names, as teeth have them.
+/// Whether a text is a number with a fraction or an exponent, such as "0.5" or "1e3", and therefore no
+/// name. Whole numbers can be names, for example of teeth.
 bool is_decimal(const std::string& text) {
   double number = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -77,7 +78,7 @@ class Names {
     if (++passed_over_count_ <= most_told)
       passed_over_.push_back(where + ": the row is passed over, as " + why);
   }
-  /// Reports what is doubtful of the whole table.
+  /// Reports a doubt about the whole table.
   void note(std::string text) { notes_.push_back(std::move(text)); }
   LabelTable table(const fs::path& path) && {
     if (passed_over_count_ > passed_over_.size())
@@ -94,8 +95,8 @@ class Names {
   std::map<std::string, int> labels_;
 };
 
-/// A heading or key as tables of all programs agree on it: "Label Value", "LabelValue" and "label_value" are
-/// "labelvalue"; "#No." is "no".
+/// A heading or key without capitals, blanks and punctuation, in which programs differ: "Label Value",
+/// "LabelValue" and "label_value" become "labelvalue"; "#No." becomes "no".
 std::string plain_word(const std::string& text) {
   std::string word;
   for (const unsigned char c : text)
@@ -111,7 +112,7 @@ const std::vector<std::string>& words_of_labels() {
   return words;
 }
 
-/// The same of names. A column "label" can have them where another has the numbers.
+/// The same for names. A column "label" can hold the names if another column holds the numbers.
 const std::vector<std::string>& words_of_names() {
   static const std::vector<std::string> words{
       "name",        "labelname",  "segmentname", "segmentlabel", "structurename",
@@ -120,7 +121,8 @@ const std::vector<std::string>& words_of_names() {
   return words;
 }
 
-/// The value of the first of the words that an object has as a key and that `fits`; null where it has none.
+/// The value of the first of these keys that the object has and whose value passes `fits`; null if there is
+/// none.
 template <typename Fits>
 const SortedJson* one_of(const SortedJson& object, const std::vector<std::string>& words, const Fits& fits) {
   if (!object.is_object()) return nullptr;
@@ -130,7 +132,7 @@ const SortedJson* one_of(const SortedJson& object, const std::vector<std::string
   return nullptr;
 }
 
-/// A number of JSON as text; what a text holds; empty of anything else.
+/// A JSON number as text, or a JSON string's text; empty for other values.
 std::string number_text(const SortedJson& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_number()) return value.dump();
@@ -200,7 +202,7 @@ std::string cell_of(const std::vector<std::string>& row, std::size_t column) {
   return column < row.size() ? voxel::trimmed(row[column]) : std::string();
 }
 
-/// The columns below a heading that have one of the words, the likeliest word's first.
+/// The columns whose heading is one of the words, in the order of the words.
 std::vector<std::size_t> columns_of(const std::vector<std::string>& heading,
                                     const std::vector<std::string>& words) {
   std::vector<std::size_t> found;
@@ -234,8 +236,8 @@ struct Columns {
   std::size_t label = 0, name = 1, first_row = 0;
 };
 
-/// The columns of labels and names. Of a .tsv the labels are in "index", as BIDS has it, whatever else has
-/// numbers; a second column of other numbers is reported.
+/// Finds the columns of labels and of names. In a .tsv the column "index" has the labels (BIDS), even if
+/// other columns have numbers. Reports a second column with other numbers.
 Columns columns_in(Names& table, const Rows& rows, const std::string& where, bool is_tsv) {
   if (whole(rows[0][0]) || is_beyond_labels(rows[0][0])) {
     const bool has_words = std::any_of(rows.begin(), rows.end(), [](const auto& row) {
@@ -296,8 +298,9 @@ void add_rows(Names& table, const Rows& rows, const std::string& where, bool is_
   }
 }
 
-/// "left kidney" of "left kidney 255 0 0 255": the words before a colour of three or four numbers; without
-/// one those before the first number; of "0.9 0.9 0.9 left kidney", as FSL has it, those behind the colour.
+/// The name in a line of words. "left kidney 255 0 0 255": the words before a colour of three or four
+/// numbers. Without a colour: the words before the first number. "0.9 0.9 0.9 left kidney", as FSL writes
+/// it: the words behind the colour.
 std::string name_before_colour(const std::string& text) {
   const auto is_number = [](const std::string& word) { return whole(word) || is_decimal(word); };
   std::istringstream in(text);
@@ -317,8 +320,8 @@ std::string name_before_colour(const std::string& text) {
   return name;
 }
 
-/// "Label Name R G B A", "#No. Label Name": two words and more, none of which is a number, one of them a
-/// column's of labels.
+/// Whether a line is a heading, such as "Label Name R G B A" or "#No. Label Name": it has at least two
+/// words, none of them is a number, and one of them heads a column of labels.
 bool is_heading(const std::string& text) {
   const std::vector<std::string>& columns = words_of_labels();
   std::istringstream in(text);
@@ -331,7 +334,8 @@ bool is_heading(const std::string& text) {
   return any && count > 1;
 }
 
-/// "5 255 0 0 1 1 1 "liver"" of ITK-SNAP, "5 liver 255 0 0 255" of 3D Slicer and FreeSurfer.
+/// Reads lines such as "5 255 0 0 1 1 1 "liver"" of ITK-SNAP, and "5 liver 255 0 0 255" of 3D Slicer and
+/// FreeSurfer.
 void add_lines(Names& table, std::istream& in, const std::string& where) {
   std::string line;
   bool is_first = true;
@@ -381,7 +385,7 @@ int LabelTable::label(const std::string& name) const {
   if (known.empty())
     throw std::runtime_error("there is no label '" + name +
                              "': the label map has no names, and no table beside it that could be read has "
-                             "them; say its number, or see what info says of the table");
+                             "them; give its number, or see what info reports about the table");
   throw std::runtime_error(file.string() + ": has no label '" + name + "'" + suggestion(name, known));
 }
 
@@ -420,7 +424,7 @@ std::vector<std::string> findings_of_labels(const std::vector<voxel::Label>& lab
   }
   if (count == 0) return {};
   return {"labels are stored up to " + three_figures(off) +
-          " off whole numbers, and taken as the nearest: " + numbers + (count > 8 ? " and more" : "")};
+          " off whole numbers, and read as the nearest: " + numbers + (count > 8 ? " and more" : "")};
 }
 
 }  // namespace octotomy::planner

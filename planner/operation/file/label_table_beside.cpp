@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether a key is the name of a number that files beside scans state of the acquisition (BIDS, dcm2niix):
-/// one word of several parts in capitals, the last of which is a quantity.
+/// Whether a key names a quantity of an acquisition, as files beside scans state them (BIDS, dcm2niix): a
+/// single word of several capitalised parts, the last of which is a quantity.
 bool is_of_acquisition(const std::string& key) {
   static const std::set<std::string> known{"KVP",
                                            "KVp",
@@ -73,8 +73,8 @@ std::set<std::string> entities_of(const std::string& stem) {
   return parts;
 }
 
-/// The "dseg.tsv" of a folder and those above whose entities are all the label map's, the nearest and most
-/// particular first.
+/// The files "dseg.tsv" in a folder and the folders above whose entities all occur in the label map's name.
+/// The nearest folder comes first; within a folder, the file with most entities.
 std::vector<fs::path> inherited_tables(const fs::path& label_map, const std::string& stem) {
   std::vector<fs::path> found;
   const std::set<std::string> own = entities_of(stem);
@@ -118,7 +118,7 @@ std::vector<fs::path> tables_beside(const fs::path& label_map) {
   return found;
 }
 
-/// A table, or why the file is none of this label map's.
+/// Reads a table; if the file is not this label map's table, returns the reason.
 LabelTable table_or_why(const fs::path& path, const std::set<int>& occurring, std::string& why) {
   LabelTable table;
   try {
@@ -139,7 +139,7 @@ LabelTable table_or_why(const fs::path& path, const std::set<int>& occurring, st
   return table;
 }
 
-/// A name or number that two tables give differently; empty where they agree.
+/// A name or number in which two tables differ; empty if they agree.
 std::string disagreement(const LabelTable& taken, const LabelTable& other) {
   std::map<std::string, int> numbers;
   for (const auto& [number, name] : other.names) numbers.emplace(name, number);

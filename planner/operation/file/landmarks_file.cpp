@@ -63,7 +63,7 @@ std::vector<brep::Landmark> own_landmarks(const SortedJson& list) {
   return landmarks;
 }
 
-/// What a coordinate system multiplies by to be LPS; Slicer writes it as a word or a number.
+/// The factors that convert coordinates of a system to LPS. Slicer writes the system as a word or a number.
 glm::dvec3 lps_of_system(const std::string& system) {
   if (system == "LPS" || system == "1") return glm::dvec3(1.0);
   if (system == "RAS" || system == "0") return {-1.0, -1.0, 1.0};
@@ -76,7 +76,8 @@ double mm_of_unit(const std::string& unit) {
   return known->mm;
 }
 
-/// "mm"; or one for all or for each axis as ["mm", "UCUM", "millimeter"], whose first word is the unit.
+/// The length of a unit in mm. The unit is a text such as "mm", a list of one unit per axis, or a coded
+/// unit such as ["mm", "UCUM", "millimeter"], whose first word counts.
 double mm_of_units(const SortedJson& units) {
   if (units.is_string()) return mm_of_unit(units.get<std::string>());
   if (!units.is_array() || units.empty())
@@ -95,7 +96,7 @@ void assume(const char* check, const std::string& what, Audit& audit) {
   audit.push_back({check, brep::MeshVerdict::Warn, what});
 }
 
-/// Control points of every list in the file.
+/// The control points of all lists in the file.
 std::vector<brep::Landmark> slicer_landmarks(const SortedJson& markups, Audit& audit) {
   std::vector<brep::Landmark> landmarks;
   for (const SortedJson& list : markups) {
@@ -117,7 +118,7 @@ std::vector<brep::Landmark> slicer_landmarks(const SortedJson& markups, Audit& a
   return landmarks;
 }
 
-/// "# CoordinateSystem = LPS" as its key and value; none where the line is no such comment.
+/// The key and value of a line such as "# CoordinateSystem = LPS"; none for other lines.
 std::optional<std::pair<std::string, std::string>> fcsv_fact(const std::string& line) {
   const std::size_t middle = line.find('=');
   if (!line.starts_with("#") || middle == std::string::npos) return std::nullopt;
@@ -135,8 +136,9 @@ double fcsv_number(const std::string& cell, const std::string& name) {
   return number;
 }
 
-/// Slicer's points as lines of commas. Since its version 4 a line is id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,
-/// ..., before label,x,y,z,...; the file says which.
+/// Reads Slicer's points, one a line, separated by commas. Since version 4 the columns are
+/// id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label, ...; before, they were label,x,y,z,... The file states the
+/// version.
 std::vector<brep::Landmark> fcsv_landmarks(const std::string& text, Audit& audit) {
   std::vector<std::string> columns{"id", "x",  "y",   "z",   "ow",   "ox",
                                    "oy", "oz", "vis", "sel", "lock", "label"};

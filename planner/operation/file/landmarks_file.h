@@ -24,9 +24,9 @@ std::vector<brep::Landmark> read_landmarks(const std::filesystem::path& path);
 /// Whether a file holds landmarks by its extension: .json or .fcsv.
 bool is_landmarks_file(const std::filesystem::path& path);
 
-/// What positions of one of Slicer's markups are multiplied by, to be LPS millimetres: its "coordinateSystem"
-/// (LPS where it is absent; 0 is RAS, 1 LPS) and "coordinateUnits" (mm where absent). Throws
-/// std::runtime_error where they are not known.
+/// The factors that convert positions of one of Slicer's markups to LPS millimetres, by its
+/// "coordinateSystem" (0 is RAS, 1 is LPS; default: LPS) and "coordinateUnits" (default: mm). Throws
+/// std::runtime_error if either is unknown.
 glm::dvec3 lps_mm_of_markup(const nlohmann::json& markup);
 
 }  // namespace octotomy::planner

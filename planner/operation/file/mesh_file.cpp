@@ -33,8 +33,8 @@ brep::Linked joined(const std::filesystem::path& path, std::vector<std::string>&
   }
 }
 
-/// The solid of triangles whose sheets share points or sides, which files write as one point or one side: each
-/// sheet gets its own, and the surface stays as it is. None if that is not all that is wrong.
+/// The solid of triangles whose sheets share points or sides because the file stores these only once. Each
+/// sheet gets its own copies; the surface does not change. None if the triangles have any other fault.
 std::optional<brep::Solid> solid_of_sheets(const brep::Triangles& triangles) {
   try {
     const brep::SplitFans split = brep::split_fans(triangles);

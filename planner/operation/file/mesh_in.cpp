@@ -12,7 +12,7 @@ namespace {
 
 using AuditsByPath = std::map<std::filesystem::path, std::vector<brep::MeshFinding>>;
 
-/// Of the process, as a run of the program is one verb.
+/// One for the process, because a run of the program executes one verb.
 struct MeshReading {
   std::mutex mutex;
   std::vector<std::string> frames, units;

@@ -17,8 +17,9 @@ struct MeshRecord {
   std::vector<brep::MeshFinding> audit;
 };
 
-/// Chooses frames and units for the meshes of this process, each as "RAS" or for one file as "box.stl=RAS",
-/// and forgets the files read so far. Throws std::runtime_error where one is no frame or no unit.
+/// Chooses frames and units for the meshes of this process, each as "RAS" or, for one file, as
+/// "box.stl=RAS". Clears the lists of files read so far. Throws std::runtime_error if a word names no frame
+/// or no unit.
 void choose_mesh_reading(const std::vector<std::string>& frames, const std::vector<std::string>& units);
 
 /// Reads a mesh as chosen and keeps its audit for meshes_read(); any thread may call. Throws as
@@ -27,21 +28,21 @@ brep::Triangles read_mesh_in(const std::filesystem::path& path);
 /// The same with a frame and unit of its own.
 brep::Triangles read_mesh_in(const std::filesystem::path& path, const brep::MeshReadOptions& options);
 
-/// The meshes read since the last choice, each path once, by path.
+/// The meshes read since the last choice, sorted by path, each path once.
 std::vector<MeshRecord> meshes_read();
 
 /// Choices that name a file, as "box.stl=RAS", of which none was read.
 std::vector<std::string> unused_choices();
 
-/// Keeps what was assumed of a file of landmarks for landmark_files_read(); any thread may call.
+/// Records an assumption about a file of landmarks for landmark_files_read(); any thread may call.
 void keep_landmark_audit(const std::filesystem::path& path, std::vector<brep::MeshFinding> audit);
-/// The files of landmarks read since the last choice that left something to be assumed, by path.
+/// The files of landmarks read since the last choice for which something was assumed, sorted by path.
 std::vector<MeshRecord> landmark_files_read();
 
 /// The audit as a list of check, verdict and detail.
 Json to_json(const std::vector<brep::MeshFinding>& audit);
 
-/// What the audit warns of, one line a finding: "frame: the file names no frame".
+/// The audit's warnings, one line a finding: "frame: the file names no frame".
 std::vector<std::string> warnings_of(const std::vector<brep::MeshFinding>& audit);
 
 }  // namespace octotomy::planner

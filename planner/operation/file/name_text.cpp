@@ -27,7 +27,7 @@ void append_utf8(std::string& text, std::uint32_t code) {
   byte(0x80 | (code & 0x3f));
 }
 
-/// Bytes of the character that begins there; none where it is not valid (RFC 3629).
+/// The number of bytes of the UTF-8 character that begins at `at`; none if it is not valid (RFC 3629).
 std::optional<std::size_t> length_at(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char lead = byte(at);
@@ -72,7 +72,8 @@ std::string of_utf16(std::string_view bytes, bool is_big) {
   return text;
 }
 
-/// Each mark with the letters that it joins, a letter before what both become (Unicode, UnicodeData.txt).
+/// For each combining mark, pairs of a letter and the character that the letter and the mark become
+/// (Unicode, UnicodeData.txt).
 constexpr std::array<std::pair<std::string_view, std::string_view>, 12> marks{{
     {"\u0300", "AÀEÈIÌOÒUÙNǸaàeèiìoòuùnǹ"},
     {"\u0301", "AÁEÉIÍOÓUÚYÝCĆLĹNŃRŔSŚZŹaáeéiíoóuúyýcćlĺnńrŕsśzź"},
@@ -89,7 +90,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 12> marks{{
 }};
 constexpr std::pair<std::string_view, std::string_view> ogonek{"\u0328", "AĄEĘIĮUŲaąeęiįuų"};
 
-/// What a letter and the mark behind it become; empty where they stay two.
+/// The character that a letter and the mark behind it become; empty if there is none.
 std::string_view joined(char letter, std::string_view mark) {
   const auto in = [&](const std::pair<std::string_view, std::string_view>& entry) -> std::string_view {
     for (std::size_t at = 0; entry.first == mark && at < entry.second.size();) {

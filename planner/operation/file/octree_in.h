@@ -9,9 +9,10 @@
 
 namespace octotomy::planner {
 
-/// What an .octree file holds.
+/// The kind of octree in an .octree file.
 enum class OctreeKind { Binary, Grey, Partial };
-/// By its header alone; none if the file cannot be read or is none, which its reader reports.
+/// The kind of an .octree file by its header alone; none if the file cannot be read or is no .octree file,
+/// which its reader reports.
 std::optional<OctreeKind> octree_kind(const std::filesystem::path& path);
 
 /// Reads an .octree file; "read" in the timings.

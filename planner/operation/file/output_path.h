@@ -14,11 +14,11 @@ namespace octotomy::planner {
 void check_output_path(const std::filesystem::path& path, const std::vector<std::string>& extensions,
                        const FieldLocation& place);
 
-/// The file that a path names below a result's folder; makes the folders that it leads through, and the
-/// result's own folder never: where that was removed, nothing brings it back.
+/// The file that a path names below a result's folder. Makes the folders on the way, but never the result's
+/// own folder: if that was removed, it must not reappear.
 std::filesystem::path output_file(const std::filesystem::path& folder, const std::filesystem::path& path);
 
-/// The path without "." and "..", as it is written and told.
+/// The path without "." and "..", as it is written and reported.
 std::filesystem::path output_path(const std::filesystem::path& path);
 
 }  // namespace octotomy::planner

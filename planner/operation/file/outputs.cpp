@@ -26,7 +26,8 @@ std::string renamed(std::string message, const std::string& hidden, const std::s
   return message;
 }
 
-/// Whether a file begins as the surfaces that Octotomy writes: with a comment, in .glb with its generator.
+/// Whether a file begins like a surface written by Octotomy: with its comment, or in .glb with its
+/// generator.
 bool is_own_surface(const fs::path& file) {
   if (!fs::is_regular_file(fs::symlink_status(file))) return false;
   std::string head(128, '\0');

@@ -13,12 +13,13 @@ bool is_mesh(const std::filesystem::path& path);
 /// Whether a path is an octree's by its extension.
 bool is_octree(const std::filesystem::path& path);
 
-/// What a verb makes at a path.
+/// What a verb writes to a path.
 enum class OutputKind { File, Folder };
 
-/// Throws std::runtime_error or voxel::Error where a file or folder cannot be made at `out`, or would replace
-/// what is none, or a file beside it (voxel::need_own_data_file()): before the work, so that none is lost.
-/// Tries it with a hidden folder beside the path.
+/// Throws std::runtime_error or voxel::Error if no file or folder can be made at `out`, if it would replace
+/// something of another kind, or if the data file beside it belongs to another header
+/// (voxel::need_own_data_file()). Called before the work, so that no work is lost. Tests this with a hidden
+/// folder beside the path.
 void need_folder_of(const std::filesystem::path& out, OutputKind kind);
 /// The same of a file.
 void need_folder_of(const std::filesystem::path& out);

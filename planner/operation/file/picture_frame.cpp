@@ -74,10 +74,10 @@ PictureFrame read_frame(std::string_view png, const std::string& where) {
     refuse(where, error.what());
   }
   if (!found.text)
-    refuse(
-        where,
-        "does not say what its pixels show: only a .png of octotomy render or slice does, in true scale and "
-        "as it was written");
+    refuse(where,
+           "does not state what its pixels show: only a .png of octotomy render or slice does, in true scale "
+           "and "
+           "as it was written");
   const SortedJson json = SortedJson::parse(*found.text, nullptr, false);
   PictureFrame frame;
   try {
@@ -92,7 +92,7 @@ PictureFrame read_frame(std::string_view png, const std::string& where) {
   const double right_mm = glm::length(frame.lps_from_pixel[0]),
                down_mm = glm::length(frame.lps_from_pixel[1]);
   if (!(right_mm > 0.0) || !(down_mm > 0.0) || !voxel::is_frame(frame.view()))
-    refuse(where, "holds a frame that is none: draw the picture again");
+    refuse(where, "holds an invalid frame: draw the picture again");
   if (frame.size_px != found.size_px)
     refuse(where, "was " + std::to_string(frame.size_px.x) + " x " + std::to_string(frame.size_px.y) +
                       " pixels when it was drawn and is " + std::to_string(found.size_px.x) + " x " +
@@ -114,7 +114,7 @@ std::string name_of(const voxel::View& view) {
   for (const char* name : {"anterior", "posterior", "left", "right", "superior", "inferior"})
     if (same(voxel::parse_view(name), view)) return name;
   const double elevation_deg = glm::degrees(std::asin(std::clamp(-view.look.z, -1.0, 1.0)));
-  // Straight from above or below only `up` tells the azimuth.
+  // Seen straight from above or below, only `up` determines the azimuth.
   const glm::dvec3 ahead =
       std::abs(view.look.z) < 1.0 - same_direction ? view.look : -std::copysign(1.0, view.look.z) * view.up;
   const double azimuth_deg = glm::degrees(std::atan2(-ahead.x, ahead.y));

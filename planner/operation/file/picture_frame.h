@@ -27,16 +27,16 @@ struct PictureFrame {
 /// The frame of an orthographic picture, in the plane of depth 0.
 PictureFrame frame_of(const voxel::ImagePlane& plane);
 
-/// What a PNG holds of its frame; `size_px` is that of the whole picture, with a grid's margin.
+/// The frame as text for a PNG; `size_px` is that of the whole picture, with a grid's margin.
 std::optional<voxel::ImageText> image_text(const std::optional<PictureFrame>& frame);
 
-/// The frame that a PNG's bytes hold. Throws std::runtime_error beginning with `where` if they are no PNG,
+/// The frame stored in a PNG's bytes. Throws std::runtime_error beginning with `where` if they are no PNG,
 /// hold no frame, or have another size than when they were drawn.
 PictureFrame read_frame(std::string_view png, const std::string& where);
 PictureFrame read_frame(const std::filesystem::path& path);
 
-/// The name by which parse_view() knows a view, "AZ,EL" where it has none; empty where that looks otherwise,
-/// as of a picture turned in its own plane.
+/// The name with which parse_view() makes this view, or "AZ,EL" if it has no name. Empty if parse_view()
+/// cannot make it, such as a view that is rotated in its own plane.
 std::string name_of(const voxel::View& view);
 
 }  // namespace octotomy::planner

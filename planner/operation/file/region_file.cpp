@@ -60,14 +60,15 @@ voxel::SliceMask slices_of(const SortedJson& json, const std::string& source) {
   return mask;
 }
 
-/// Points of one plane may be this far apart along its normal, where planes are ten times as far apart: some
-/// programs turn or resample contours and write what single precision left of their planes.
+/// Points of one plane may be this far apart along its normal, if planes are ten times as far apart. Some
+/// programs rotate or resample contours and write them with single precision.
 constexpr double jitter_mm() {
   return 0.1;
 }
 
-/// The area that the triangles from a contour's first point cover together, along its normal: more than the
-/// contour's own where it is not convex, and above zero where it crosses itself and its parts cancel.
+/// The summed areas of the triangles from a contour's first point, along its normal. The sum exceeds the
+/// contour's area if the contour is not convex, and stays above zero if the contour crosses itself and its
+/// parts cancel.
 glm::dvec3 area_of(const std::vector<glm::dvec3>& contour) {
   glm::dvec3 largest(0.0), area(0.0);
   const auto triangle = [&](std::size_t i) {
@@ -82,7 +83,7 @@ glm::dvec3 area_of(const std::vector<glm::dvec3>& contour) {
   return area;
 }
 
-/// Looking along the normal of a contour, which is taken along the axis that it is within a thousandth of.
+/// The view along a contour's normal. A normal within a thousandth of an axis is replaced by that axis.
 voxel::View view_across(const glm::dvec3& area) {
   voxel::View view;
   view.look = glm::normalize(area);
@@ -109,7 +110,7 @@ std::string too_near(double gap_mm) {
          " mm count as one: draw it on planes that are further apart, or check that positions are in mm";
 }
 
-/// A contour's places along the view.
+/// The range of a contour's positions along the view.
 struct Span {
   double low_mm = std::numeric_limits<double>::infinity(), high_mm = -low_mm;
 
@@ -132,7 +133,8 @@ struct PlaneDistances {
   double one_plane_mm = 2.0 * off_plane_mm();                 ///< places that are no farther apart are one
 };
 
-/// Of the planes of all structures that lie across the view; infinite where there is but one.
+/// The distances between the planes of all structures that lie across the view; infinite if there is only
+/// one plane.
 PlaneDistances distances_of_planes(const std::vector<voxel::Structure>& structures, const voxel::View& view) {
   std::vector<double> positions;
   for (const voxel::Structure& structure : structures)
@@ -238,9 +240,9 @@ double usual_distance_mm(const Slices& planes) {
 /// A gap of one and a half distances misses a plane.
 constexpr double misses_plane = 1.5;
 
-/// The planes with empty ones where the set has one and the structure has no contour. Gaps that are bridged
-/// are left to be interpolated. Beyond an end the region is as thick as its end plane states, and at least
-/// half a distance of planes.
+/// The structure's planes, and an empty plane wherever the set has a plane without a contour of the
+/// structure. Gaps that are bridged are left to be interpolated. Beyond an end the region is as thick as
+/// its end plane states, and at least half a distance of planes.
 Slices with_empty(const Slices& planes, double apart_mm, const Bridges& bridges) {
   const double usual_mm = usual_distance_mm(planes);
   const double least_mm = usual_mm > apart_mm && usual_mm <= bridges.all_mm() ? usual_mm : apart_mm;
@@ -340,7 +342,7 @@ Slices joined_parts(const std::vector<Slices>& parts, const Bridges& bridges) {
   std::sort(borders.begin(), borders.end());
   const auto are_one = [](double low_mm, double high_mm) { return high_mm - low_mm < 0.1 * off_plane_mm(); };
   borders.erase(std::unique(borders.begin(), borders.end(), are_one), borders.end());
-  // Planes on both sides of each border, nearer than combine() moves centres off a border.
+  // The distance of planes on both sides of each border. combine() moves centres off a border by more.
   constexpr double beside_mm = 0x1p-22;
   Slices all{{borders.front() - beside_mm, {}}};
   for (std::size_t k = 1; k < borders.size(); ++k) {
@@ -358,7 +360,7 @@ Slices joined_parts(const std::vector<Slices>& parts, const Bridges& bridges) {
   return all;
 }
 
-/// The largest gap that the file says to be interpolated, or that is asked for; with a hundredth more, as
+/// The largest gap to interpolate, as requested or as the file states; larger by a hundredth, because
 /// positions are rounded.
 double bridge_of(const voxel::Structure& structure, const std::optional<double>& asked_mm) {
   if (asked_mm) return Bridges::rounding * *asked_mm;
@@ -366,7 +368,7 @@ double bridge_of(const voxel::Structure& structure, const std::optional<double>&
   return Bridges::rounding * structure.slab_mm;
 }
 
-/// Tells of planes of the set that lie between the structure's and have none of its contours.
+/// Reports planes of the set that lie between the structure's planes and have none of its contours.
 void tell_gaps(const Slices& planes, double apart_mm, const Bridges& bridges, const std::string& where,
                std::vector<std::string>& findings) {
   std::size_t gaps = 0, first = 0;
@@ -408,7 +410,7 @@ std::string list_of(const std::vector<voxel::Structure>& structures) {
 const voxel::Structure& chosen(const std::vector<voxel::Structure>& structures, const std::string& name,
                                const std::string& source) {
   if (name.empty() && structures.size() > 1)
-    refuse(source, "holds several structures: say which by 'structure', one of " + list_of(structures));
+    refuse(source, "holds several structures: choose by 'structure' one of " + list_of(structures));
   if (name.empty()) return structures.front();
   std::vector<const voxel::Structure*> named, numbered;
   for (const voxel::Structure& structure : structures) {
@@ -419,7 +421,7 @@ const voxel::Structure& chosen(const std::vector<voxel::Structure>& structures, 
   if (numbered.size() == 1) return *numbered.front();
   if (named.empty() && !numbered.empty())
     refuse(source, "has " + std::to_string(numbered.size()) + " structures of the ROI number " + name +
-                       ": say which by its name, one of " + list_of(structures));
+                       ": choose by its name one of " + list_of(structures));
   if (named.empty()) {
     std::vector<std::string> names;
     for (const voxel::Structure& structure : structures) names.push_back(structure.name);
@@ -444,7 +446,7 @@ glm::dvec3 normal_of(const voxel::Structure& structure) {
   return sum;
 }
 
-/// What a structure has beside contours, for people: "2 points or lines".
+/// Counts a structure's items other than contours, for people: "2 points or lines".
 std::string others_of(const voxel::Structure& structure) {
   std::string text;
   if (structure.others > 0) text = std::to_string(structure.others) + " points or lines";
@@ -490,8 +492,8 @@ DrawnSlices slices_of(const voxel::StructureSet& set, const SlicesOptions& optio
                              plain(found.slab_mm) + " mm");
   else if (!std::isfinite(distances.nearest_mm))
     refuse(where,
-           "lies in one plane, as the whole set does, and states no ContourSlabThickness: how thick it is "
-           "cannot be told; draw it on the next plane, too");
+           "lies in one plane, as the whole set does, and states no ContourSlabThickness: its thickness is "
+           "unknown; draw it on the next plane, too");
   if (!is_slab && !std::isfinite(distances.least_mm))
     refuse(where, "lies in planes, as the whole set does, that are " + too_near(distances.nearest_mm));
   drawn.mask.slices = std::move(planes);
@@ -529,9 +531,9 @@ voxel::Region read_region(const voxel::View& view, const std::filesystem::path& 
 DrawnSlices read_slices(const std::filesystem::path& path, const SlicesOptions& options) {
   const bool is_set = voxel::is_rtstruct(path);
   if (!is_set && !options.structure.empty())
-    refuse(path.string(), "is no DICOM structure set, which 'structure' chooses of");
+    refuse(path.string(), "is no DICOM structure set, so 'structure' has nothing to choose from");
   if (!is_set && options.bridge_mm)
-    refuse(path.string(), "is no DICOM structure set, whose gaps 'bridge_mm' fills");
+    refuse(path.string(), "is no DICOM structure set, so 'bridge_mm' has no gaps to fill");
   try {
     if (is_set) return slices_of(voxel::read_rtstruct(path), options, path.string());
     DrawnSlices drawn{slices_of(read_json(path), path.string())};

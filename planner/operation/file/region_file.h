@@ -13,8 +13,8 @@
 // Regions drawn elsewhere, as JSON files and structure sets. Points are [u, v] in the view's millimetres.
 namespace octotomy::planner {
 
-/// {"polygons_mm": [[[u, v], ...], ...]}, or that list alone. Throws std::runtime_error saying file, place
-/// and what is expected there.
+/// Reads {"polygons_mm": [[[u, v], ...], ...]}, or that list alone. Throws std::runtime_error with the
+/// file, the place and the expected content.
 voxel::Region read_region(const voxel::View& view, const std::filesystem::path& path);
 
 /// {"view": "inferior", "between": "shape_based" or "nearest", "slices": [{"position_mm": p . look,
@@ -37,17 +37,17 @@ voxel::Region read_region(const voxel::View& view, const std::filesystem::path& 
 /// far apart, points up to 0.1 mm off a plane belong to it.
 voxel::SliceMask read_slices(const std::filesystem::path& path, const std::string& structure = {});
 
-/// The same; adds to `findings` a line on contours that are drawn again, one on contours that cross another
-/// of their plane or themselves, so that the even-odd rule leaves a part out: how many, in which planes and
-/// where; and of structure sets one on planes without a contour between others, on contours that enclose
-/// nothing and on points off their plane.
+/// The same. Adds to `findings` a line on contours that occur twice, and one on contours that cross
+/// themselves or another contour of their plane, so that the even-odd rule leaves a part out: their number,
+/// planes and places. For structure sets also one line each on planes without a contour between others, on
+/// contours that enclose nothing, and on points off their plane.
 voxel::SliceMask read_slices(const std::filesystem::path& path, const std::string& structure,
                              std::vector<std::string>& findings);
 
 struct SlicesOptions {
   std::string structure = {};  ///< of a structure set
-  /// Of a structure set: neighbouring planes of the region up to this distance are interpolated between, and
-  /// not left empty. None: as the file says.
+  /// For a structure set: neighbouring planes of the region up to this distance apart are interpolated, so
+  /// that the space between them is not empty. None: as the file states.
   std::optional<double> bridge_mm = std::nullopt;
 };
 struct DrawnSlices {
@@ -55,7 +55,7 @@ struct DrawnSlices {
   std::optional<voxel::Identity> identity = std::nullopt;  ///< of a structure set
   std::vector<std::string> findings = {};
 };
-/// The same with all that is known of the file.
+/// The same with everything read from the file.
 DrawnSlices read_slices(const std::filesystem::path& path, const SlicesOptions& options);
 
 }  // namespace octotomy::planner

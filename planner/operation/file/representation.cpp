@@ -129,7 +129,7 @@ std::string represented(const std::vector<voxel::Octree>& objects, std::string_v
   if (objects.size() == 1) return known.encode(objects.front());
   if (name != multivalued)
     throw voxel::InvalidInput("the form " + std::string(name) +
-                              " has one object; several are of multivalued");
+                              " holds one object; several objects need the form multivalued");
   return closed(text(voxel::multivalued_octree(objects)));
 }
 

@@ -19,8 +19,8 @@ std::vector<std::string> representation_names();
 /// the universe is too deep for a representation that holds every voxel, with the largest depth.
 std::string represented(const std::vector<voxel::Octree>& objects, std::string_view name);
 
-/// The inverse. The representation does not state the universe, so the caller passes it. Of a multivalued
-/// code, returns the object of this number. Throws std::invalid_argument with the position of what is wrong.
+/// The inverse. The representation does not state the universe, so the caller passes it. From a multivalued
+/// code, returns the object of this number. Throws std::invalid_argument with the position of the fault.
 voxel::Octree octree_of_representation(const voxel::Universe& universe, std::string_view name,
                                        std::string_view content, int number = 1);
 

@@ -52,7 +52,7 @@ void set_bounds(const SortedJson& list, const std::string& where, double mm, Mar
       refuse(where + ".planeBounds", "must be a list of 4 numbers");
     std::array<double, 4> numbers{};
     for (std::size_t i = 0; i < 4; ++i) numbers[i] = mm * number_of(bounds[i], where + ".planeBounds");
-    // Slicer writes a size of its own choice's bounds as empty.
+    // Slicer writes empty bounds if it chose the size itself.
     if (numbers[0] < numbers[1] && numbers[2] < numbers[3]) {
       plane.low_mm = {numbers[0], numbers[2]};
       plane.high_mm = {numbers[1], numbers[3]};
@@ -90,7 +90,7 @@ MarkupPlane plane_of(const SortedJson& list, const glm::dvec3& lps_mm, SlicerMar
     const std::vector<glm::dvec3>& p = markup.points_mm;
     const glm::dvec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
     if (!(glm::length(across) > 1e-3 * glm::length(p[1] - p[0]) * glm::length(p[2] - p[0])))
-      refuse(markup.where, "has its three points on one line, through which no plane is fixed");
+      refuse(markup.where, "has its three points on one line, which does not determine a plane");
     plane.origin_mm = p[0];
     plane.right = glm::normalize(p[1] - p[0]);
     plane.normal = glm::normalize(across);

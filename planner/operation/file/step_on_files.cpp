@@ -11,8 +11,8 @@
 namespace octotomy::planner {
 namespace {
 
-/// The text with the paths of the result's folder as they are within it: results are written to a folder of
-/// another name first.
+/// Replaces paths in the temporary folder by paths within the result's folder. Results are first written to
+/// a folder of another name.
 std::string within(std::string text, const std::filesystem::path& folder) {
   const std::string beginning = (folder / "").string();
   for (std::size_t at = 0; (at = text.find(beginning, at)) != std::string::npos;)

@@ -11,8 +11,8 @@
 #include "planner/operation/table/bench.h"
 #include "voxel/tree/octree_file.h"
 
-// A verb that makes a file, and the step of plans that makes the same file of earlier objects, by one function.
-// FileBench::step distinguishes them: names are paths of files, or objects of the plan.
+// A verb that makes a file and the step of plans that makes the same file from earlier objects share one
+// function. FileBench::step distinguishes them: names are paths of files, or objects of the plan.
 namespace octotomy::planner {
 
 /// Whether a name stands for an octree: an .octree file, or any object of the plan.

@@ -23,11 +23,11 @@
 namespace octotomy::planner {
 namespace {
 
-/// The parser counts bytes in 32 bits; a picture in the file is some ten million.
+/// The parser counts bytes in 32 bits. An embedded picture has about ten million.
 constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 28;
 
-/// Pixels an inch of the program that wrote a drawing, by its comment or its root. CSS has 96; Illustrator
-/// counts points, Inkscape changed from 90 with its version 0.92.
+/// Pixels per inch of the program that wrote a drawing, according to its comment or its root. CSS has 96;
+/// Illustrator counts points; Inkscape changed from 90 in version 0.92.
 struct PixelLength {
   int per_inch = 96;
   std::string program;  ///< empty where it is none of these
@@ -46,7 +46,8 @@ PixelLength pixel_of(const std::string& text) {
   return version < 0.915 ? PixelLength{90, "Inkscape before 0.92"} : PixelLength{96, "Inkscape"};
 }
 
-/// The value of a property, which an element's style may state before its attribute; empty without one.
+/// The value of a property. An element's style takes precedence over its attribute; empty if neither states
+/// it.
 std::string property_of(const XmlTag& element, const std::string& name) {
   if (const auto style = element.attributes.find("style"); style != element.attributes.end()) {
     std::istringstream declarations(style->second);
@@ -60,7 +61,8 @@ std::string property_of(const XmlTag& element, const std::string& name) {
   return attribute == element.attributes.end() ? "" : voxel::trimmed(attribute->second);
 }
 
-/// "the clip-path of <g> (line 3)" of an element that shows a part of its shapes only; empty of others.
+/// Text on the clip path or mask of an element, which hides parts of its shapes: "the clip-path of <g>
+/// (line 3)"; empty if there is none.
 std::string cut_of(const XmlTag& element) {
   for (const char* property : {"clip-path", "mask"})
     if (const std::string value = property_of(element, property); !value.empty() && value != "none")
@@ -75,7 +77,7 @@ class Drawing {
   Drawing(std::string file, const std::string& text)
       : pixel_(pixel_of(text)), elements_(std::move(file), text) {}
 
-  /// Calls `each` for what is displayed, with the transform that holds there.
+  /// Calls `each` for every displayed element, with the element's transform.
   template <typename Each>
   void walk(const Each& each) {
     const XmlTags& elements = elements_;
@@ -157,7 +159,7 @@ class Drawing {
       const bool is_bare = found->second.find_first_not_of("0123456789+-.eE ") == std::string::npos;
       const bool is_pixels = is_bare || found->second.find("px") != std::string::npos;
       (is_pixels ? is_in_pixels_ : has_length_) = true;
-      // Of a bare number the scale is 1.
+      // A bare number has the scale 1.
       const double value =
           length_of(elements, root, key, 0.0, is_pixels && !is_bare ? mm_per_css_pixel : 1.0);
       return is_pixels ? value * pixel_.mm() : value;
@@ -172,8 +174,8 @@ class Drawing {
     const double across = width_mm ? *width_mm / size.x : *height_mm / size.y;
     const double down = height_mm ? *height_mm / size.y : across;
     if (!(across > 0.0) || std::abs(down / across - 1.0) > 1e-3)
-      elements.refuse_at(root.line,
-                         "width and height do not have the shape of viewBox: a unit's length cannot be told");
+      elements.refuse_at(
+          root.line, "width and height do not have the shape of viewBox: the length of a unit is unknown");
     mm_per_unit_ = across;
   }
 
@@ -200,7 +202,7 @@ SvgPicture picture_of(const XmlTags& elements, const XmlTag& element, const glm:
   return picture;
 }
 
-/// Without points that repeat the one before, or the first.
+/// Adds a polygon without points that equal the point before them or the first point.
 void add_polygon(std::vector<glm::dvec2> polygon, std::size_t line, SvgOutlines& made) {
   polygon.erase(std::unique(polygon.begin(), polygon.end()), polygon.end());
   while (polygon.size() > 1 && glm::distance(polygon.front(), polygon.back()) < 1e-9) polygon.pop_back();

@@ -20,7 +20,7 @@ struct SvgPicture {
   std::size_t line = 0;
 };
 
-/// Where user units lie: a map to millimetres of a view, affine.
+/// Places user units: an affine map to millimetres of a view.
 using SvgPlacement = std::function<glm::dmat3(double mm_per_unit, const std::optional<SvgPicture>& picture)>;
 
 struct SvgOutlines {
@@ -31,10 +31,11 @@ struct SvgOutlines {
 /// The closed outlines of an SVG file: path, polygon, polyline, rect, circle and ellipse with their
 /// transforms, of all groups that are displayed. Open outlines close as they do when filled; curves become
 /// lines that are nowhere farther than `tolerance_mm` from them. User units are the length that the root's
-/// width and viewBox give them; a pixel is 1/96 inch, of Adobe Illustrator 1/72 and of Inkscape before 0.92
-/// 1/90, which is an assumption and a finding, as is a root without a width. Clip paths and masks are not
-/// read: each that holds an outline is a finding. Throws std::runtime_error saying
-/// file, line and reason for what is no SVG, for shapes that cannot be read, and where there is no outline.
+/// width and viewBox give them; a pixel is 1/96 inch, or 1/72 in files of Adobe Illustrator, or 1/90 in
+/// those of Inkscape before 0.92. This is an assumption and therefore a finding, and so is a root without a
+/// width. Clip paths and masks are not read: each that holds an outline is a finding. Throws
+/// std::runtime_error with file, line and reason if the file is no SVG, a shape cannot be read, or there is
+/// no outline.
 SvgOutlines read_svg_outlines(const std::filesystem::path& path, const SvgPlacement& place,
                               double tolerance_mm);
 

@@ -13,7 +13,7 @@ namespace octotomy::planner {
 namespace {
 
 constexpr double mm_per_inch = 25.4;
-/// More lines than that in one curve say that its numbers are wrong.
+/// A curve that needs more lines than this has wrong numbers.
 constexpr double most_lines = 100000.0;
 
 /// Numbers and letters of a path, a list of points or a transform.
@@ -43,7 +43,7 @@ class Words {
   }
   double number() {
     skip();
-    // std::strtod would take "inf", "nan" and hexadecimal numbers, too.
+    // std::strtod would also accept "inf", "nan" and hexadecimal numbers.
     const std::size_t end = std::min(text_.find_first_not_of("0123456789+-.eE", at_), text_.size());
     const std::string digits = text_.substr(at_, end - at_);
     char* rest = nullptr;
@@ -52,7 +52,7 @@ class Words {
     at_ += static_cast<std::size_t>(rest - digits.c_str());
     return value;
   }
-  /// 0 or 1, which may stand without a blank behind it.
+  /// Reads 0 or 1, which need not be followed by a blank.
   bool flag() {
     skip();
     if (at_ >= text_.size() || (text_[at_] != '0' && text_[at_] != '1')) refuse_here("a flag, 0 or 1");
@@ -127,7 +127,7 @@ class Pencil {
       polygons_.back().push_back(q[0]);
     }
   }
-  /// Of an ellipse with semi-axes along its own directions, from one angle over `by`.
+  /// Draws an arc of an ellipse from one angle over `by`. The map takes the unit circle to the ellipse.
   void arc(const glm::dmat3& user_from_circle, double largest_radius, double from, double by) {
     const int parts = std::max(3, parts_of(by * by * largest_radius * stretch_));
     for (int part = 1; part <= parts; ++part) {
@@ -267,7 +267,7 @@ void draw_rectangle(Pencil& pencil, const glm::dvec2& corner, const glm::dvec2& 
   pencil.line({corner.x, corner.y + radii.y}), turn(corner + radii, 2.0);
 }
 
-/// Draws an element that is an outline.
+/// Draws an element if it is an outline.
 void draw(Pencil& pencil, const XmlTags& elements, const XmlTag& element) {
   const auto length = [&](const char* key, double otherwise = 0.0) {
     return length_of(elements, element, key, otherwise, mm_per_css_pixel);
@@ -349,7 +349,7 @@ double length_of(const XmlTags& elements, const XmlTag& element, const std::stri
     elements.refuse_at(element.line, "<" + element.name + "> " + key + "='" + found->second +
                                          "' is no length in px, mm, cm, "
                                          "in, pt or pc");
-  // A unit within the drawing is one of CSS: a pixel is a user unit.
+  // A length within the drawing has CSS's units, in which a pixel is a user unit.
   return value * known->second / mm_per_unit;
 }
 

@@ -41,7 +41,7 @@ std::map<int, std::string> spelled(const std::map<int, std::string>& names) {
   return made;
 }
 
-/// Whether a file is byte for byte what label_table_text() makes of its names.
+/// Whether a file is byte for byte the text that label_table_text() makes of its names.
 bool is_written_here(const fs::path& table) {
   const std::map<int, std::string> names = names_in(table);
   if (names.empty() || !fs::is_regular_file(fs::symlink_status(table))) return false;
@@ -75,8 +75,8 @@ void need_label_table(const fs::path& label_map, const std::map<int, std::string
   if (!fs::exists(fs::symlink_status(table)) || holds_names(table, names)) return;
   if (fs::exists(label_map) && is_written_here(table)) return;
   throw std::runtime_error(table.string() +
-                           ": is there already and does not hold the names of the label map's labels, which "
-                           "are written to it: move it away, or choose another name for the label map");
+                           ": is there already and does not hold the names of this label map's labels: move "
+                           "it away, or choose another name for the label map");
 }
 
 std::vector<std::string> write_label_table(const fs::path& label_map,
@@ -93,7 +93,7 @@ std::vector<std::string> write_label_table(const fs::path& label_map,
                        "breaks became blanks");
   if (label_table_of(label_map).names != spelled(names))
     findings.push_back(table.string() +
-                       ": names are read back otherwise than they were: compare them with the source, and "
+                       ": names change when they are read back: compare them with the source, and "
                        "name the labels by a table of your own (--names)");
   return findings;
 }

@@ -15,11 +15,11 @@
 namespace octotomy::planner {
 namespace {
 
-/// Drawings nest some ten deep.
+/// Drawings nest about ten deep.
 constexpr std::size_t most_nested = 1000;
 
-/// With "&amp;" for an '&' that begins none of XML's own entities nor a character's number: what a file
-/// declares stands as it is written.
+/// Replaces by "&amp;" each '&' that begins neither one of XML's own entities nor a character's number.
+/// References to entities that a file declares then stay as written.
 std::string without_entities(std::string_view text) {
   std::string made;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -37,7 +37,7 @@ std::string local_name(std::string_view name) {
   return std::string(name.find(':') == std::string_view::npos ? name : "foreign");
 }
 
-/// What the parser's callbacks write to. None may throw through the parser, which is C.
+/// The state that the parser's callbacks write. Callbacks must not throw, because the parser is C.
 struct Reading {
   XML_Parser parser = nullptr;
   std::vector<XmlTag> tags;
@@ -75,7 +75,7 @@ void ended(void* reading, const XML_Char* name) {
   });
 }
 
-/// What is wrong at the rest of a text.
+/// The reason for an error at the beginning of `rest`.
 std::string reason(XML_Error error, std::string_view rest) {
   const auto name_at = [&](std::size_t from) {
     return std::string(rest.substr(from, rest.find_first_of(" />", from) - from));
@@ -110,7 +110,8 @@ XmlTags::XmlTags(std::string file, const std::string& text) : file_(std::move(fi
   reading.parser = parser.get();
   XML_SetUserData(parser.get(), &reading);
   XML_SetElementHandler(parser.get(), begun, ended);
-  // Without a handler for them nothing outside of the file is read, and by default no parameter entity is.
+  // Without a handler for external entities the parser reads nothing outside the file. By default it reads
+  // no parameter entity either.
   const XML_Status status = XML_Parse(parser.get(), plain.data(), static_cast<int>(plain.size()), XML_TRUE);
   if (reading.thrown) std::rethrow_exception(reading.thrown);
   if (status != XML_STATUS_OK) {

@@ -16,11 +16,11 @@ struct XmlTag {
   std::size_t line = 1;
 };
 
-/// The tags of an XML file in their order; text between them is passed over. Entities but XML's own five are
-/// not expanded, nothing outside of the file is read, and elements nest at most 1000 deep.
+/// The tags of an XML file in their order; text between them is skipped. Only XML's own five entities are
+/// expanded, nothing outside the file is read, and elements nest at most 1000 deep.
 class XmlTags {
  public:
-  /// Throws std::runtime_error saying file, line and reason for what is not well-formed.
+  /// Throws std::runtime_error with file, line and reason if the text is not well-formed.
   XmlTags(std::string file, const std::string& text);
 
   auto begin() const { return tags_.begin(); }

@@ -121,7 +121,7 @@ std::vector<FlapSegment> flap_segments(const FlapPlan& plan) {
   check(plan);
   const double corner_mm = flap_corner_mm(plan.reach_mm);
   const glm::dvec3 axis_mm = plan.donor_to_mm - plan.donor_from_mm;
-  if (!(glm::length(axis_mm) > 1e-3)) throw voxel::InvalidInput("the donor's two points are one");
+  if (!(glm::length(axis_mm) > 1e-3)) throw voxel::InvalidInput("the donor's two points coincide");
   const glm::dvec3 axis = glm::normalize(axis_mm);
   const glm::dvec3 face = square_to(axis, plan.donor_face_mm - plan.donor_from_mm,
                                     "the point on the donor's face lies on its axis");

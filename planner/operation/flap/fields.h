@@ -50,7 +50,7 @@ std::vector<Field> flap_fields() {
               .to(2),
           field("face", of(&FlapFields::face), "A point off that axis, on the face of the bone to be turned.")
               .required(),
-          field("facing", of(&FlapFields::facing), "Where that face looks in the first segment, LPS.")
+          field("facing", of(&FlapFields::facing), "The direction of that face in the first segment, LPS.")
               .direction(),
           field("roll_deg", of(&FlapFields::roll_deg), "A further turn of all segments about their axes.")
               .from(-180)
@@ -60,8 +60,8 @@ std::vector<Field> flap_fields() {
               .to(500),
           field("kerf_mm", of(&FlapFields::kerf_mm), "The width of a saw cut on the donor.").from(0).to(5),
           field("reach_mm", of(&FlapFields::reach_mm),
-                "The donor bone reaches this far from its axis; what lies further, as its neighbour, is left "
-                "out.")
+                "The donor bone's largest distance from its axis. Bone farther away, such as its neighbour, "
+                "is left out.")
               .greater_than(0)
               .to(60)};
 }

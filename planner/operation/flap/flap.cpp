@@ -97,16 +97,15 @@ Json measure(const Flap& flap, const AnswerBench& bench) {
 }  // namespace
 
 Operation flap_operation() {
-  Describe<Flap> entry("flap", "Tells a free flap's segments, their order, cuts and contacts.",
+  Describe<Flap> entry("flap", "Reports a free flap's segments, their order, cuts and contacts.",
                        Makes::Measurement);
   for (Field& each : flap_fields<Flap>()) std::move(entry).takes(std::move(each));
   return std::move(entry)
       .takes(field("segments", &Flap::segments, "The placed segments, in order along the curve.").required())
-      .takes(
-          field("contacts", &Flap::contacts,
-                "What both bones share in each osteotomy's slab, in order along the curve; without the last "
-                "where the new bone ends free, as in a joint.")
-              .required())
+      .takes(field("contacts", &Flap::contacts,
+                   "The common volume of both bones in each osteotomy's slab, in order along the curve; "
+                   "without the last slab where the new bone ends free, as in a joint.")
+                 .required())
       .takes(field("slab_mm", &Flap::slab_mm, "The thickness of these slabs.").greater_than(0).to(10))
       .example(R"({"id": "flap", "do": "flap", "segments": ["skull"], "contacts": ["skull", "skull"],
         "curve": [[-30, -60, -80], [0, -80, -85]],

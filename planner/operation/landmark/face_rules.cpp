@@ -26,7 +26,8 @@ constexpr double least_orbit = 18.0, most_orbit = 42.0;  ///< from the mid-plane
 constexpr double orbit_height = 32.0;
 constexpr double two_rims = 8.0;  ///< largest distance between two rules' results for a rim
 constexpr double crest = 6.0;     ///< below a rim's crest nothing stands before it for so long
-/// Within which places are as far out as the outermost, by noise, and as far down and back, by pitch.
+/// Places within these distances of the outermost count as equally far out, because of noise, and as
+/// equally far down and back, because of pitch.
 constexpr double as_far_out = 0.25, as_far_down = 1.0;
 constexpr double arch_begin = 15.0, arch_end = 78.0;  ///< behind the nasal spine
 constexpr double arch_beyond = 16.0;                  ///< the arch of a large head may extend by this much
@@ -65,7 +66,8 @@ class Face {
   const HeadMap& from_side() const { return side_.second > 0.0 ? maps_.left : maps_.right; }
   double step() const { return maps_.front.step_mm(); }
 
-  /// From the mid-line outwards: the first bone as far in front as the rim; and where its surface ends.
+  /// Searches from the mid-line outwards for the first bone as far in front as the rim, and for the end of
+  /// its surface.
   void piriform_and_buttress() {
     const glm::dvec3* ans = found_.find("ans");
     if (ans == nullptr) {
@@ -86,8 +88,8 @@ class Face {
     const int row = maps_.front.row(ans->z + above_spine + higher_mm_);
     const double rim = rim_at(row);
     if (rim < 0.0) {
-      miss("piriform", "no rim stands out before the inside of the nose");
-      return miss("buttress", "no rim stands out before the inside of the nose");
+      miss("piriform", "no rim projects in front of the inside of the nose");
+      return miss("buttress", "no rim projects in front of the inside of the nose");
     }
     // A second rule: the largest backward step of the surface within 1.5 mm.
     double step_back = rim, most = 0.0;
@@ -98,7 +100,7 @@ class Face {
       if (std::isfinite(next) && rise > most) most = rise, step_back = out + 1.5;
     }
     if (std::abs(step_back - rim) > two_rims)
-      miss("piriform", "two rules for the rim of the nose's opening answer more than 8 mm apart");
+      miss("piriform", "two rules for the rim of the nose's opening have results more than 8 mm apart");
     else {
       place("piriform", {side_.second * rim, front(rim, row), maps_.front.y_mm(row)});
       doubt("piriform", 0.7 * std::abs(step_back - rim));

@@ -95,7 +95,8 @@ brep::Mesh surface_of(const std::filesystem::path& file, const voxel::DrawnObjec
   if (is_mesh(file)) return read_surface(file, bench.timings);
   if (!bone.grey)
     throw std::runtime_error(
-        file.string() + ": has no samples, of whose surface the mid-plane is found: give the scan or a mesh");
+        file.string() +
+        ": has no samples, and the mid-plane is fitted to their surface: give the scan or a mesh");
   const Stopwatch watch(bench.timings, "surface");
   return brep::mesh_of(convert::isosurface(
       *bone.grey, bone.threshold, std::numeric_limits<double>::infinity(), bench.progress("surface")));
@@ -139,16 +140,18 @@ FileAnswer on_files(const FindLandmarks& asked, const FileBench& bench) {
 }  // namespace
 
 Operation find_landmarks_operation() {
-  return Describe<FindLandmarks>("find_landmarks",
-                                 "Guesses where a skull's landmarks are, from its symmetry and its foremost, "
-                                 "lowest and outermost "
-                                 "points; each is to be confirmed.",
-                                 Makes::Measurement)
-      .takes(field("object", &FindLandmarks::object, "The skull: an object; of the verb a scan or a mesh.")
+  return Describe<FindLandmarks>(
+             "find_landmarks",
+             "Guesses the positions of a skull's landmarks from its symmetry and its foremost, "
+             "lowest and outermost "
+             "points; each is to be confirmed.",
+             Makes::Measurement)
+      .takes(field("object", &FindLandmarks::object,
+                   "The skull: an object; on the command line a scan or a mesh.")
                  .required()
                  .positional("file"))
       .verb_takes(field("window", &FindLandmarks::window,
-                        "Of a scan: LOW:HIGH or LOW: in sample units, or a tissue."))
+                        "For a scan: LOW:HIGH or LOW: in sample units, or a tissue."))
       .verb_takes(
           field("out", &FindLandmarks::out,
                 "The .json of the guesses. Look at each, correct it, and set its 'confirmed' to true: "

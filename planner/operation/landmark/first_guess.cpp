@@ -38,15 +38,16 @@ constexpr double coarse_mm = 1.0;  ///< step of the maps of other trials
 /// Pitches in degrees at which a face is sought, nearest first; how often its pitch is corrected.
 constexpr std::array<double, 5> first_pitches{0.0, 12.0, -12.0, 24.0, -24.0};
 constexpr int corrections = 2;
-/// In a head held by its Frankfurt plane: the direction from spine to nasion leans back from upright; the way
-/// from the orbit's rim back to the arch's outermost point falls, by some 4 mm on 45; and more than that is
-/// no face's.
+/// Angles in a head that is level by its Frankfurt plane: by `nose_lean_deg` the line from spine to nasion
+/// leans back from upright; by `arch_fall_deg` the line from the orbit's rim back to the arch's outermost
+/// point falls, about 4 mm over 45. No face leans by more than `most_lean_deg`.
 constexpr double nose_lean_deg = 1.0, arch_fall_deg = 5.0, most_lean_deg = 35.0;
-/// For the doubt: the head's pitch in degrees, the profile's half width and the rules' heights in mm.
+/// Changes of the other trials: of the head's pitch in degrees, of the profile's half width and of the
+/// rules' heights in mm.
 constexpr std::array<std::array<double, 3>, 4> other_ways{
     {{6.0, 1.0, 1.5}, {3.0, 3.0, -1.0}, {-3.0, 1.0, 1.0}, {-6.0, 3.0, -1.5}}};
 constexpr double threshold_share = 1.25;  ///< a higher threshold over the usual one, from -150 on
-/// Factors of the interval: on the scatter, and on the coarsest voxel edge.
+/// Factors of the error interval: on the scatter of the trials, and on the edge of the coarsest voxel.
 constexpr double of_scatter = 1.3, of_voxel = 0.7;
 constexpr double scan_end_mm = 2.0;      ///< a voxel and more, as with skull_profile.cpp's
 constexpr double most_within_mm = 15.0;  ///< a landmark with a larger error is not reported
@@ -268,8 +269,8 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
   FoundPlaces first = pitch ? apply(usual, frame) : FoundPlaces();
   if (first.places.empty())
     throw std::runtime_error(
-        "no nasal opening beside an orbit is seen from the front, from which the rules count: is it a skull, "
-        "with its face in the scan, and the window that of bone?");
+        "no nasal opening beside an orbit is seen from the front, and all rules start from it: is it a "
+        "skull, is its face in the scan, and is the window that of bone?");
 
   // The trials: other pitches, widths, heights, thresholds and mid-planes.
   std::vector<Trial> trials;
@@ -316,7 +317,8 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
   for (const auto& [name, place] : first.places) {
     const glm::dvec3 p_mm = frame.lps_mm(place);
     const double moved = scatter(name, p_mm, others, plane.normal);
-    // A middle beside the mid-plane is a separate finding: the face is crooked, or bone is on one side only.
+    // A middle beside the mid-plane is a separate finding: the face is crooked, or there is bone on one
+    // side only.
     const bool is_of_middle =
         name.find("_left") == std::string::npos && name.find("_right") == std::string::npos;
     const double aside = is_of_middle ? 0.5 * std::abs(place.x) : 0.0;
@@ -327,11 +329,11 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
     else if (first.doubt_mm[name] > most_within_mm)
       missing[name] = "the bone is so flat there that its extremal point is not known to 15 mm";
     else if (!(within_mm <= most_within_mm))
-      missing[name] = "it is found elsewhere or not at all where the head is held a little otherwise";
+      missing[name] = "a slightly different position of the head moves it far or loses it";
     else
       guess.found.push_back({name, p_mm, within_mm});
   }
-  // As in keep_plausible(): of the two buttresses neither is known without the other.
+  // As in keep_plausible(): a buttress is removed if the other side's buttress is missing.
   for (const auto& [one, other] :
        {std::pair("buttress_left", "buttress_right"), {"buttress_right", "buttress_left"}})
     if (missing.contains(other) &&
@@ -344,7 +346,7 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
   if (head.removed_count > 0)
     guess.findings.push_back(
         std::to_string(head.removed_count) +
-        " other dense parts lie beside the skull and were left out, as of a couch or a marker");
+        " other dense parts lie beside the skull and were left out, such as a couch or a marker");
   return guess;
 }
 

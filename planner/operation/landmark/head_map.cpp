@@ -84,8 +84,8 @@ HeadMaps map_head(const voxel::DrawnObject& bone, const HeadFrame& frame, double
   const HeadMap front = depths(bone, {frame.back, frame.up, frame.left}, step_mm);
   const HeadMap from_left = depths(bone, {-frame.left, frame.up, frame.back}, step_mm);
   const HeadMap from_right = depths(bone, {frame.left, frame.up, -frame.back}, step_mm);
-  // Depths grow away from the observer: to the right in the view from the left, and the other way about; the
-  // view from the right has the back on its left.
+  // Depths grow away from the observer: in the view from the left towards the patient's right, and in the
+  // view from the right towards the left. The view from the right has the back on its left.
   const int last = from_right.size().x - 1;
   return {
       frame, filled(front, front.x_mm(0) - frame.mid_mm, [&](int i, int j) { return front.at(i, j); }),

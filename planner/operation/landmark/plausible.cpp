@@ -35,7 +35,8 @@ constexpr std::array<Relation, 14> relations{{
     {"nasion", "midline_front", Relation::Behind, false, -14.0, 14.0},
 }};
 
-/// Both sides' distances from the middle, and how far they may differ across, and along and up.
+/// The allowed distances of both sides from the middle, and the allowed differences between the sides:
+/// across, and in the plane along and up.
 struct Pair {
   const char* name;
   double least_out, most_out, most_across, most_along;
@@ -68,7 +69,7 @@ void keep_related(FoundPlaces& found) {
       const std::string where = relation.of == Relation::Below ? "below" : "behind";
       wrong[second] = "it would lie farther or nearer " + where + " " + relation.first + " than in any face";
       // It is not known which of the two is wrong.
-      wrong[relation.first] = "it and " + second + " would lie as in no face";
+      wrong[relation.first] = "it and " + second + " would lie as they do in no face";
     }
   }
   for (const auto& [name, why] : wrong) take_out(found, name, why);

@@ -153,7 +153,7 @@ class Reader {
       if (before(k) > before(second)) second = k;
     const bool is_prominent = before(second) >= 1.0;
     if (first < 0 && !is_prominent)
-      return miss("ans", "no spine stands before the bone below the nose's opening");
+      return miss("ans", "no spine projects in front of the bone below the nose's opening");
     // The tip of a spine that continues into the bone below it is its upper end.
     const int lies = first < 0 ? foremost_row : first;
     int tip = lies;
@@ -178,8 +178,8 @@ class Reader {
   int incisor_below(int tip, int last) const {
     const int over = rows_of(tooth_step_over);
     const int first = tip + rows_of(least_alveolar), lowest = std::min(last, tip + rows_of(most_alveolar));
-    // In an open mouth the profile falls back as far as the cervical spine; a deeper fall does not make it
-    // more of an edge.
+    // In an open mouth the profile falls back as far as the cervical spine; so a deeper fall is no stronger
+    // sign of an edge.
     const auto fall = [&](int k) { return std::min(back(k + over) - back(k), edge); };
     double most = 0.0;
     for (int k = first; k <= lowest; ++k) most = std::max(most, fall(k));
@@ -208,8 +208,8 @@ class Reader {
     if (is_notched_)
       for (const char* name : {"menton", "pogonion"})
         miss(name,
-             "the chin's lower border rises in the middle: bone is missing, or was not told from what is "
-             "beside");
+             "the chin's lower border rises in the middle: bone is missing, or was not separated from its "
+             "surroundings");
     else
       place_end("menton", last);
     int first = above + 1;

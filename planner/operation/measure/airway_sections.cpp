@@ -118,7 +118,7 @@ RawLine raw_line(const voxel::Octree& octree, const glm::dvec3& from_mm, const g
   ways.walk_from(ways.nearest(from_mm));
   const double length_mm = ways.way_mm(end);
   if (!std::isfinite(length_mm))
-    throw std::runtime_error("no way through the passage leads from one end to the other");
+    throw std::runtime_error("no path through the passage leads from one end to the other");
   RawLine line;
   const glm::dvec3 spacing_mm = lattice.spacing_mm();
   line.apart_mm = 1.5 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
@@ -136,7 +136,7 @@ RawLine raw_line(const voxel::Octree& octree, const glm::dvec3& from_mm, const g
     if (voxels[i] > 0.0) line.points_mm.push_back(sums[i] / voxels[i]), all += voxels[i];
   line.width_mm = 2.0 * std::sqrt(all * lattice.voxel_mm3() / (std::numbers::pi * std::max(length_mm, 1e-9)));
   if (line.points_mm.size() < 4 || length_mm < line.width_mm)
-    throw std::runtime_error("the way between the ends is shorter than the passage is wide");
+    throw std::runtime_error("the path between the ends is shorter than the passage is wide");
   return line;
 }
 
@@ -261,7 +261,7 @@ AirwaySections airway_sections(const voxel::Octree& octree, const std::optional<
     if (section.area_mm2() < least) least = section.area_mm2(), made.narrowest = i;
   }
   if (!std::isfinite(least))
-    throw std::runtime_error("the way between the ends is shorter than the passage is wide");
+    throw std::runtime_error("the path between the ends is shorter than the passage is wide");
   return made;
 }
 

@@ -78,7 +78,7 @@ Json definitions(const brep::Difference& difference, const std::optional<Dice>& 
       {"hausdorff95_mm", "larger of the two directed, area-weighted 95th percentiles, point to triangle"},
       {"mean_mm", "area-weighted mean of absolute distances, point to triangle, over both surfaces"},
       {"signed", "positive where A lies outside B (a_to_b), or B outside A (b_to_a)"},
-      {"dice", "twice the common volume by the sum of both volumes, by their lengths on " +
+      {"dice", "twice the common volume divided by the sum of both volumes, from lengths along " +
                    std::to_string(dice ? dice->lines : 0) + " parallel lines"}};
 }
 

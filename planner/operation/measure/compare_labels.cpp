@@ -178,7 +178,8 @@ Json definitions() {
           {"mean_mm",
            "of a label: area-weighted mean of absolute distances, point to triangle, over both surfaces; of "
            "all: the mean of the labels"},
-          {"dice", "twice the common samples by the sum of both, at A's samples; of all: of all labels"}};
+          {"dice",
+           "twice the common samples divided by the sum of both, at A's samples; of all: over all labels"}};
 }
 
 using Names = std::map<int, std::string>;

@@ -58,7 +58,7 @@ MeasuredContacts measured(const ContactMap& asked, const AnswerBench& bench) {
       bench.universe.lattice().voxel_mm3();
   made.estimator = found.by_mesh ? "vertices of the first mesh to the second's nearest triangle"
                                  : "voxels of the first's boundary to the second's nearest voxel";
-  if (!found.by_mesh) made.findings.push_back("there is no mesh of both: areas are not told");
+  if (!found.by_mesh) made.findings.push_back("not both objects have a mesh: areas are not reported");
   return made;
 }
 
@@ -69,10 +69,12 @@ Json measure(const ContactMap& asked, const AnswerBench& bench) {
 }  // namespace
 
 Operation contacts_operation() {
-  return Describe<ContactMap>("contacts", "Tells where two objects touch, as paper between teeth does.",
+  return Describe<ContactMap>("contacts",
+                              "Reports where two objects touch, as articulating paper does between teeth.",
                               Makes::Measurement)
-      .takes(field("object", &ContactMap::object, "The object whose surface is marked, as the lower teeth.")
-                 .required())
+      .takes(
+          field("object", &ContactMap::object, "The object whose surface is marked, such as the lower teeth.")
+              .required())
       .takes(field("against", &ContactMap::against, "What it touches.").required())
       .takes(field("within_mm", &ContactMap::within_mm, "Surfaces nearer than this are in contact.")
                  .greater_than(0.0)

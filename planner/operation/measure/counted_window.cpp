@@ -230,7 +230,7 @@ double cut_mm2(const voxel::Scene& scan, double low, double high) {
 std::optional<std::string> cut_finding(double cut_mm2, double area_mm2) {
   if (!(cut_mm2 > 0.001 * area_mm2)) return std::nullopt;
   return "the scan's border cuts the object off over " + three_figures(cut_mm2) +
-         " mm²: what lies beyond is in no number";
+         " mm²: no number includes what lies beyond";
 }
 
 std::optional<Thickness> thickness_of(const voxel::Scene& scan, double low, double high) {

@@ -55,7 +55,7 @@ std::optional<std::string> too_coarse_finding(const Object& object, const HalfWi
   const double seen_mm3 = object.mesh.within->size().volume_mm3;
   if (object.certificate && object.certificate->verdict == verify::Verdict::Fail)
     return "volume_mm3: the mesh encloses " + grouped(seen_mm3, 1) +
-           " mm\u00b3, more than three half-widths off: its certificate tells where the kernels disagree";
+           " mm\u00b3, more than three half-widths off: its certificate shows where the kernels disagree";
   return too_coarse_finding(object.voxel.octree.universe().lattice().spacing_mm(), "the mesh encloses",
                             seen_mm3, smaller_voxels);
 }

@@ -20,7 +20,7 @@ double count_mm3(const voxel::Measures& measures, const glm::dvec3& cell_mm) {
   return 3.0 * 0.26 * cell_mm3 * std::sqrt(faces);
 }
 
-/// Adds up terms by their squares.
+/// Adds terms in quadrature.
 HalfWidth sum_of(std::vector<Doubt> terms) {
   HalfWidth found;
   double squares = 0.0;

@@ -227,10 +227,10 @@ std::vector<std::string> findings_of(const verify::SizeIntervals& found, bool is
         " mm\u00b3 lies outside of both kernels' answers (voxels " + grouped(*voxels_mm3, 1) + ", mesh " +
         grouped(*mesh_mm3, 1) + " mm\u00b3): " +
         (!is_of_phases ? "labels are counted in the scan's own samples"
-         : has_core    ? "the threshold's surface loses what is thin or sharp under the scan's blur, the sum "
-                         "of the samples does not"
-                       : "no part is thicker than the scan's blur; the sum of the samples is taken, with the "
-                         "window's bound as the half level"));
+         : has_core ? "the threshold's surface loses parts that are thin or sharp compared with the scan's "
+                      "blur, and the sum of the samples does not"
+                    : "no part is thicker than the scan's blur; the sum of the samples is taken, with the "
+                      "window's bound as the half level"));
   constexpr double far_off = 0.1;
   const double area = found.area_mm2.value;
   if (const auto& [voxels_mm2, mesh_mm2] = kernels_mm2;
@@ -240,7 +240,7 @@ std::vector<std::string> findings_of(const verify::SizeIntervals& found, bool is
     findings.push_back("WARN area: the recommended " + grouped(area, 1) +
                        " mm\u00b2 lies over a tenth outside of both kernels' answers (voxels " +
                        grouped(*voxels_mm2, 1) + ", mesh " + grouped(*mesh_mm2, 1) +
-                       " mm\u00b2): it allows for what the scan's blur rounds off");
+                       " mm\u00b2): it allows for edges that the scan's blur rounds off");
   for (const auto& [name, interval] :
        {std::pair("volume", &found.volume_mm3), std::pair("area", &found.area_mm2)}) {
     if (interval->half_width <= interval->value || interval->sources.empty()) continue;

@@ -17,7 +17,7 @@ nlohmann::ordered_json measure(const Trials& asked, const AnswerBench&) {
 
 Operation trials_operation() {
   return Describe<Trials>("trials",
-                          "Tells how far errors of landmarks, saw, segmentation and seating reach into the "
+                          "Reports the effect of errors of landmarks, saw, segmentation and seating on the "
                           "plan's displacements, gaps, overlaps, distances and angles.",
                           Makes::Measurement)
       .takes(field("landmark_mm", &Trials::landmark_mm,
@@ -26,7 +26,7 @@ Operation trials_operation() {
                  .to(20.0))
       .takes(field("kerf_mm", &Trials::kerf_mm, "Standard deviation of a saw's width.").from(0.0).to(5.0))
       .takes(field("segmentation_mm", &Trials::segmentation_mm,
-                   "Standard deviation of where bone ends, outward everywhere alike.")
+                   "Standard deviation of the bone's border, the same distance outward everywhere.")
                  .from(0.0)
                  .to(5.0))
       .takes(field("seating_mm", &Trials::seating_mm,
@@ -38,7 +38,9 @@ Operation trials_operation() {
                  .from(0.0)
                  .to(30.0))
       .takes(field("trials", &Trials::trials, "How many.").from(100).to(1000000))
-      .takes(field("seed", &Trials::seed, "Of chance: the same seed gives the same numbers.").from(0).to(1e9))
+      .takes(field("seed", &Trials::seed, "Seed of the random errors: the same seed gives the same numbers.")
+                 .from(0)
+                 .to(1e9))
       .example(R"({"id": "doubt", "do": "trials", "seating_mm": 0.5, "trials": 10000})")
       .measure(measure);
 }

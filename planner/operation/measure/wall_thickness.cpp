@@ -14,11 +14,11 @@ namespace {
 using WeightedValues = std::vector<std::pair<double, double>>;
 
 constexpr const char* wall_rule =
-    "only where the ball touches the surface at a second place whose direction from its centre encloses at "
-    "least 150 degrees with that to the first: edges are left out unless their sides converge by 30 degrees "
+    "only where the ball touches the surface at a second place, at least 150 degrees from the first as seen "
+    "from its centre: edges are left out unless their sides converge by 30 degrees "
     "or less";
 
-/// Of what both kernels find over a volume.
+/// The results over a volume, with the same keys for both kernels.
 template <typename Found>
 Json volume_json(const Found& found, std::vector<std::string> sources) {
   return {{"average",
@@ -33,8 +33,8 @@ Json volume_json(const Found& found, std::vector<std::string> sources) {
           {"max_mm", found.largest_mm}};
 }
 
-/// Of the surface's points that are of walls, the thinnest of them, and the share of the surface that they
-/// stand for; null where there are none.
+/// Summarises the surface's points that lie on walls, with the thinnest of them and their share of the
+/// surface; nulls if there are none.
 Json wall_json(WeightedValues walls, double whole, const std::optional<glm::dvec3>& thinnest_mm) {
   double share = 0.0;
   for (const auto& [value, weight] : walls) share += weight;
@@ -62,7 +62,8 @@ std::vector<double> at_vertices_of(const brep::Solid& solid,
       sums[vertex] += weight * surface[i].thickness_mm;
       weights[vertex] += weight;
     }
-  // Of large meshes not every triangle has a sample: such a vertex takes the nearest one of its triangles'.
+  // In large meshes not every triangle has a sample. A vertex without a sample takes the value of a
+  // neighbour.
   for (int round = 0; round < 8; ++round)
     for (const auto& face : triangles.faces)
       for (std::size_t corner = 0; corner < 3; ++corner) {

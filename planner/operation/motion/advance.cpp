@@ -82,14 +82,14 @@ Operation advance_operation() {
   return Describe<Advance>("advance", "Moves an object in one direction until it meets another one.",
                            Makes::Object)
       .takes(field("object", &Advance::object, "The object, or its part.").required())
-      .takes(field("against", &Advance::against, "What it is to meet.").required())
-      .takes(field("towards", &Advance::towards, "The direction, in words of the head as it is held.")
+      .takes(field("against", &Advance::against, "The object to meet.").required())
+      .takes(field("towards", &Advance::towards, "The direction, relative to the head as it is held.")
                  .one_of({"forward", "back", "left", "right", "up", "down"}))
       .takes(
           field("direction", &Advance::direction, "The direction instead, LPS; its length does not count."))
       .takes(field("gap_mm", &Advance::gap_mm, "How far before contact it stops.").from(0.0).to(100.0))
       .takes(field("most_mm", &Advance::most_mm,
-                   "The largest distance that is tried; it goes back where they overlap at first.")
+                   "The largest distance to try. If the objects overlap at first, the object moves back.")
                  .greater_than(0.0)
                  .to(500.0))
       .example(R"({"id": "met", "do": "advance", "object": "maxilla", "against": "rest",

@@ -94,14 +94,15 @@ Operation autorotate_operation() {
   return Describe<Autorotate>("autorotate", "Turns the mandible about its condyles to first contact.",
                               Makes::Object)
       .takes(field("object", &Autorotate::object, "The mandible, or its part.").required())
-      .takes(field("against", &Autorotate::against, "What it is to meet.").required())
+      .takes(field("against", &Autorotate::against, "The object to meet.").required())
       .takes(field("condyles", &Autorotate::condyles,
                    "The right and the left condyle's centres: [x, y, z] or landmarks.")
                  .required()
                  .from(2)
                  .to(2))
       .takes(field("most_deg", &Autorotate::most_deg,
-                   "The largest turn that is tried; it closes, or opens where they overlap at first.")
+                   "The largest rotation to try. It closes the mandible, or opens it if the objects overlap "
+                   "at first.")
                  .greater_than(0.0)
                  .to(60.0))
       .example(R"({"id": "closed", "do": "autorotate", "object": "rest", "against": "advanced",

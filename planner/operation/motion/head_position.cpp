@@ -31,7 +31,7 @@ glm::dmat3 of_frankfort(const std::vector<Mark>& marks, const FieldLocation& pla
   const glm::dvec3 to_left = direction(left - right, place, "each other");
   const glm::dvec3 to_front = front - 0.5 * (left + right);
   const glm::dvec3 forward = direction(to_front - glm::dot(to_front, to_left) * to_left, place,
-                                       "one line, so that the plane is open");
+                                       "one line, so that the plane is undetermined");
   if (to_left.x <= 0.0)
     place.refuse(
         "the second point lies to the patient's right of the first: give the right porion, the left "
@@ -51,7 +51,7 @@ glm::dmat3 along_midline(const glm::dmat3& frame, const std::vector<Mark>& marks
       between -= glm::dot(between, up) * up;
       back += glm::dot(between, frame[1]) < 0.0 ? -between : between;
     }
-  back = direction(back, place, "one line upwards, so that the mid-plane is open");
+  back = direction(back, place, "one line upwards, so that the mid-plane is undetermined");
   return {glm::cross(back, up), back, up};
 }
 
@@ -60,7 +60,7 @@ void check(const HeadPosition& position, const FieldLocation& place) {
     for (const Mark& mark : *marks)
       if (!mark.object.empty())
         place.refuse("'" + mark.landmark + "@" + mark.object +
-                     "' goes with an object: the head is held by landmarks of the scan");
+                     "' moves with an object: the head is held by landmarks of the scan");
   glm::dmat3 frame(1.0);
   if (!position.frankfort.empty()) frame = of_frankfort(position.frankfort, place.at("frankfort"));
   if (!position.midline.empty()) frame = along_midline(frame, position.midline, place.at("midline"));
@@ -74,9 +74,9 @@ void check(const HeadPosition& position, const FieldLocation& place) {
 }  // namespace
 
 Operation head_position_operation() {
-  return Describe<HeadPosition>("head_position",
-                                "Holds the head: later views, and words as forward, are as it is held.",
-                                Makes::Names)
+  return Describe<HeadPosition>(
+             "head_position",
+             "Sets the head's position, to which later views and words such as forward refer.", Makes::Names)
       .takes(field("frankfort", &HeadPosition::frankfort,
                    "The Frankfort plane, held level: right porion, left porion, one or both orbitales. "
                    "Default: as the scan holds the head.")
@@ -86,15 +86,18 @@ Operation head_position_operation() {
                    "Two or more points of the mid-plane, held upright from front to back: nasion, basion. "
                    "Default: square to the line of the porions.")
                  .from(2))
-      .takes(field("pitch_deg", &HeadPosition::pitch_deg, "The front is held higher by this, over the plane.")
+      .takes(field("pitch_deg", &HeadPosition::pitch_deg,
+                   "The front is held higher than the plane by this angle.")
                  .from(-90)
                  .to(90))
-      .takes(field("yaw_deg", &HeadPosition::yaw_deg, "The front is held to the patient's left by this.")
-                 .from(-180)
-                 .to(180))
-      .takes(field("roll_deg", &HeadPosition::roll_deg, "The patient's left side is held higher by this.")
-                 .from(-180)
-                 .to(180))
+      .takes(
+          field("yaw_deg", &HeadPosition::yaw_deg, "The front is held to the patient's left by this angle.")
+              .from(-180)
+              .to(180))
+      .takes(
+          field("roll_deg", &HeadPosition::roll_deg, "The patient's left side is held higher by this angle.")
+              .from(-180)
+              .to(180))
       .example(R"({"id": "held", "do": "head_position",
         "frankfort": [[-60, 0, 10], [60, 0, 10], [-32, -75, 8], [32, -75, 8]], "pitch_deg": 4.5})")
       .check(check);

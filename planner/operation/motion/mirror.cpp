@@ -71,7 +71,7 @@ void check(const Mirror& mirror, const FieldLocation& place) {
   if (!mirror.plane.empty() && mirror.plane[1] == glm::dvec3(0.0))
     place.at("plane").refuse("its normal has no length");
   if (!mirror.through.empty() && (mirror.point_mm || mirror.normal))
-    place.at("through").refuse("says the plane, as 'point_mm' and 'normal' do: keep one of the two");
+    place.at("through").refuse("states the plane, as 'point_mm' and 'normal' do: keep one of the two");
 }
 
 /// Stores the plane through three marks. Throws std::runtime_error where they are collinear.
@@ -80,7 +80,7 @@ void take_plane_through(const std::array<glm::dvec3, 3>& p_mm, Mirror& mirror) {
   // 1/100 of the sides is 0.1 mm in 10 mm. Nobody places marks more precisely.
   if (!(glm::length(across) > 0.01 * glm::length(a) * glm::length(b)))
     throw std::runtime_error(
-        "the three points of 'through' stand on one line: take one that is farther off it");
+        "the three points of 'through' lie on one line: choose one that is farther off it");
   mirror.point_mm = p_mm[0];
   mirror.normal = glm::normalize(across);
 }
@@ -197,16 +197,18 @@ Operation mirror_operation() {
                  .to(3)
                  .in_plans_only())
       .takes(field("fit", &Mirror::fit,
-                   "Takes the plane that fits the object best, near the one given or about its own axes.")
+                   "Uses the plane that fits the object best, near the one given or about its own axes.")
                  .in_plans_only())
-      .takes(field("overlap", &Mirror::overlap, "Share of the surface that has a counterpart, of a fit.")
+      .takes(field("overlap", &Mirror::overlap, "For a fit: the share of the surface that has a counterpart.")
                  .from(0.0)
                  .to(1.0))
-      .takes(field("rounds", &Mirror::rounds, "Of a fit's two refinements, each at most.").from(1).to(100000))
-      .takes(
-          field("rest_mm", &Mirror::rest_mm,
-                "A round that moves the samples by no more ends a fit. Default: a millionth of their spread.")
-              .greater_than(0.0))
+      .takes(field("rounds", &Mirror::rounds, "Largest number of rounds of each of a fit's two refinements.")
+                 .from(1)
+                 .to(100000))
+      .takes(field("rest_mm", &Mirror::rest_mm,
+                   "A fit ends with a round that moves the samples by at most this. Default: a millionth of "
+                   "their spread.")
+                 .greater_than(0.0))
       .verb_takes(
           field("plane", &Mirror::plane,
                 "A point X,Y,Z and a normal X,Y,Z near the plane; else the surface's own axes are tried.")

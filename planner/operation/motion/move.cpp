@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A rigid motion, stated in one of four ways:
-//   a turn, then a translation: numbers in LPS, in words of the head, or from one mark to another;
+//   a turn, then a translation: numbers in LPS, along the directions of the head, or from one mark to another;
 //   points and their target positions (Ong 1992, 8.3);
 //   a matrix, as `register` prints it;
 //   the motion of an earlier step.
@@ -81,7 +81,7 @@ glm::dmat3 directions_of(const Move& move, const MarkPlaces& places) {
   const glm::dvec3 front = places.mark_mm(move.along[0]) - 0.5 * (right + left);
   const glm::dvec3 up = glm::cross(front, left - right);
   if (!(glm::length(up) > 1e-3 * glm::length(front) * glm::length(left - right)))
-    throw voxel::InvalidInput("'along' has its three points on one line, through which no plane is fixed");
+    throw voxel::InvalidInput("'along' has its three points on one line, which does not determine a plane");
   const glm::dvec3 forward = glm::normalize(front);
   return {glm::cross(glm::normalize(up), forward), -forward, glm::normalize(up)};
 }
@@ -148,9 +148,11 @@ void check_ways(const Move& move, const FieldLocation& place) {
     place.refuse("states its motion twice: 'points', 'matrix' and 'with' each exclude all others; keep one");
   if (move.from.has_value() != move.to.has_value())
     place.refuse(std::string("'") + (move.from ? "to" : "from") +
-                 "' is missing: marks go from one to another");
-  if (!move.along.empty() && !move.by) place.at("along").refuse("says along which plane 'by' goes: add 'by'");
-  if (move.rotate && move.turn) place.refuse("says its turn twice, as 'rotate' and 'turn': keep one of them");
+                 "' is missing: the motion goes from one mark to another");
+  if (!move.along.empty() && !move.by)
+    place.at("along").refuse("states the plane along which 'by' goes: add 'by'");
+  if (move.rotate && move.turn)
+    place.refuse("states its rotation twice, as 'rotate' and 'turn': keep one of them");
 }
 
 void check(const Move& move, const FieldLocation& place) {
@@ -158,7 +160,7 @@ void check(const Move& move, const FieldLocation& place) {
   if (move.rotate) {
     const FieldLocation rotate = place.at("rotate");
     if (move.rotate->axis.has_value() == !move.rotate->through.empty())
-      rotate.refuse(move.rotate->axis ? "says its axis twice, as 'axis' and 'through': keep one of them"
+      rotate.refuse(move.rotate->axis ? "states its axis twice, as 'axis' and 'through': keep one of them"
                                       : "'axis' is missing: add it, or 'through', two points");
   }
   if (move.matrix && !is_rigid(*move.matrix))
@@ -168,8 +170,7 @@ void check(const Move& move, const FieldLocation& place) {
     const Move::Point& point = move.points[i];
     const bool is_typed = point.forward_mm != 0.0 || point.left_mm != 0.0 || point.up_mm != 0.0;
     if (point.to && is_typed)
-      place.at("points[" + std::to_string(i) + "]")
-          .refuse("is wanted in two places: keep 'to', or the millimetres");
+      place.at("points[" + std::to_string(i) + "]").refuse("has two targets: keep 'to', or the millimetres");
   }
   if (move.with && place.scope != nullptr) {
     const Operation& maker = place.scope->maker_of(move.with->name);
@@ -311,8 +312,7 @@ Operation move_operation() {
             static_cast<double Point::*>(&Point::up_mm));
   point.insert(point.begin(),
                field("at", &Point::at, "The point before: [x, y, z] or a landmark.").required());
-  point.push_back(
-      field("to", &Point::to, "Where it is wanted: [x, y, z] or a landmark, in place of millimetres."));
+  point.push_back(field("to", &Point::to, "Its target: [x, y, z] or a landmark, instead of millimetres."));
   return Describe<Move>("move", "Moves an object: rotates it, then translates it.", Makes::Object)
       .takes(field("object", &Move::object, "The object.").required())
       .takes(field("translate_mm", &Move::translate_mm, "The translation [x, y, z], LPS."))
@@ -325,7 +325,7 @@ Operation move_operation() {
                         "In place of 'axis': two points that the axis passes, for example both condyles.")
                       .from(2)
                       .to(2)}))
-      .takes(record("by", &Move::by, "The translation in words of the head.",
+      .takes(record("by", &Move::by, "The translation along the directions of the head.",
                     along(&Displacement::forward_mm, &Displacement::left_mm, &Displacement::up_mm)))
       .takes(
           field("along", &Move::along,
@@ -333,26 +333,25 @@ Operation move_operation() {
                 "front point, then one to the right and one to the left.")
               .from(3)
               .to(3))
-      .takes(record("turn", &Move::turn,
-                    "The rotation in words of the head, which is done first: roll, then pitch, then yaw.",
-                    {field("pitch_deg", static_cast<double Turn::*>(&Turn::pitch_deg), "The front goes up."),
-                     field("yaw_deg", static_cast<double Turn::*>(&Turn::yaw_deg),
-                           "The front goes to the patient's left."),
-                     field("roll_deg", static_cast<double Turn::*>(&Turn::roll_deg),
-                           "The patient's left side goes up."),
-                     field("about_mm", &Turn::about_mm, "The pivot: [x, y, z] or a landmark.").required()}))
+      .takes(record(
+          "turn", &Move::turn,
+          "The rotation about the directions of the head, which is done first: roll, then pitch, then yaw.",
+          {field("pitch_deg", static_cast<double Turn::*>(&Turn::pitch_deg), "The front goes up."),
+           field("yaw_deg", static_cast<double Turn::*>(&Turn::yaw_deg),
+                 "The front goes to the patient's left."),
+           field("roll_deg", static_cast<double Turn::*>(&Turn::roll_deg),
+                 "The patient's left side goes up."),
+           field("about_mm", &Turn::about_mm, "The pivot: [x, y, z] or a landmark.").required()}))
       .takes(
           field("from", &Move::from, "With 'to': the translation from this mark, [x, y, z] or a landmark."))
       .takes(field("to", &Move::to, "The mark to which 'from' is brought."))
-      .takes(records("points", &Move::points,
-                     "Points and where each is wanted; the motion that does it best.", point))
+      .takes(records("points", &Move::points, "Points and their targets; the motion fits them best.", point))
       .takes(field("fit", &Move::fit,
                    "How points are weighed: best, the default, is the least squares; first_point brings the "
-                   "first one where "
-                   "it is wanted, then turns.")
+                   "first one to its target, then turns.")
                  .one_of({"best", "first_point"}))
-      .takes(
-          field("matrix", &Move::matrix, "The motion as four rows of four numbers, LPS, as register tells."))
+      .takes(field("matrix", &Move::matrix,
+                   "The motion as four rows of four numbers, LPS, as register prints it."))
       .takes(field("with", &Move::with, "The motion of this earlier move or register step."))
       .example(R"({"id": "advanced", "do": "move", "object": "maxilla", "translate_mm": [0, -6, 2],
         "rotate": {"degrees": 5, "axis": [1, 0, 0], "about_mm": [0, -40, -30]}})")

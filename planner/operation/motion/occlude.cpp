@@ -174,17 +174,17 @@ void bound(const Occlude& asked, const BoundBench& bench, Object& made) {
 Operation occlude_operation() {
   return Describe<Occlude>("occlude", "Seats an object on another one so that it touches at given places.",
                            Makes::Object)
-      .takes(field("object", &Occlude::object, "The object that is moved, as the mandible.").required())
-      .takes(field("against", &Occlude::against, "What it is to touch, as the upper jaw.").required())
+      .takes(field("object", &Occlude::object, "The object to move, such as the mandible.").required())
+      .takes(field("against", &Occlude::against, "The object to touch, such as the upper jaw.").required())
       .takes(field("places", &Occlude::places,
                    "Where it is to touch: points or landmarks on the object. One slides it along the "
                    "direction, two also tilt it, three seat it.")
                  .required()
                  .from(1)
                  .to(16))
-      .takes(field("towards", &Occlude::towards, "The direction, in words of the head as it is held.")
+      .takes(field("towards", &Occlude::towards, "The direction, relative to the head as it is held.")
                  .one_of({"up", "down"}))
-      .takes(field("about_mm", &Occlude::about_mm, "How far about a place its contact may lie.")
+      .takes(field("about_mm", &Occlude::about_mm, "The largest distance of a contact from its place.")
                  .greater_than(0.0)
                  .to(50.0))
       .takes(field("gap_mm", &Occlude::gap_mm, "How far before contact it stops.").from(0.0).to(20.0))

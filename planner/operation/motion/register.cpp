@@ -259,7 +259,7 @@ void check(const Register& asked, const FieldLocation& place) {
   if (asked.landmarks_only && asked.landmarks.empty())
     place.at("landmarks_only").refuse("takes the motion of landmarks: add 'landmarks', two files");
   if (place.scope != nullptr && asked.motion == "similarity")
-    place.at("motion").refuse("scales, and an object's voxels cannot: use rigid or three_points");
+    place.at("motion").refuse("scales, which an object's voxels cannot do: use rigid or three_points");
 }
 
 Register settle(const Register& asked, const SettleBench& bench) {
@@ -317,7 +317,7 @@ FileAnswer answer_of(const Register& asked, const Laid& laid, const Json& detail
   FileAnswer answer;
   answer.json = {{"transform", to_json(laid.onto_from_object)},
                  {"rms_mm", laid.rms_mm ? Json(*laid.rms_mm) : Json(nullptr)},
-                 {"definition", "transform takes A's points, LPS mm, to B's place; row by row"}};
+                 {"definition", "transform maps A's points, LPS mm, to B's frame; row by row"}};
   answer.json.update(details);
   answer.findings = laid.findings;
   const glm::dvec3 shift(laid.onto_from_object[3]);
@@ -362,7 +362,7 @@ FileAnswer scans_on_files(const Register& asked, const FileBench& bench) {
   }
   FileAnswer answer = answer_of(asked, laid, fitted.details);
   answer.json["definition"] =
-      "transform takes A's points, LPS mm, to B's place; row by row; rms_mm is null, because scans have no "
+      "transform maps A's points, LPS mm, to B's frame; row by row; rms_mm is null, because scans have no "
       "points to "
       "be apart";
   answer.rows.insert(answer.rows.begin(), {"verdict", fitted.summary});
@@ -423,7 +423,7 @@ FileAnswer on_files(const Register& asked, const FileBench& bench) {
   return answer;
 }
 
-// Conditions of fields. A folder of DICOM cannot be told from a plan's object by its name.
+// Conditions of fields. A name does not show whether it is a folder of DICOM or an object of a plan.
 bool is_of_samples(const Register& asked) {
   return is_by_samples(asked) || (asked.by.empty() && voxel::volume_format(asked.object.name));
 }
@@ -443,44 +443,48 @@ constexpr const char* of_samples =
 Operation register_operation() {
   return Describe<Register>(
              "register",
-             "Lays an object on another one, by surfaces, named landmarks or the samples of two scans.",
+             "Registers an object to another one, by surfaces, named landmarks or the samples of two scans.",
              Makes::Object)
       .takes(field("object", &Register::object,
-                   "What moves: an object; of the verb a mesh, a scan or a .json of landmarks.")
+                   "What moves: an object; on the command line a mesh, a scan or a .json of landmarks.")
                  .required()
                  .positional("a"))
       .takes(field("onto", &Register::onto, "What stays.").required().positional("b"))
-      .takes(field("landmarks", &Register::landmarks,
-                   "Two files, the landmarks of what moves and of what stays, with which the search begins.")
-                 .from(2)
-                 .to(2)
-                 .a_file()
-                 .read_if<Register>(is_of_surfaces, of_surfaces))
-      .takes(field("landmarks_only", &Register::landmarks_only, "Takes the landmarks' motion as it is.")
+      .takes(
+          field(
+              "landmarks", &Register::landmarks,
+              "Two files, the landmarks of the moving and of the fixed object, with which the search begins.")
+              .from(2)
+              .to(2)
+              .a_file()
+              .read_if<Register>(is_of_surfaces, of_surfaces))
+      .takes(field("landmarks_only", &Register::landmarks_only, "Uses the landmarks' motion unchanged.")
                  .read_if<Register>(is_of_surfaces, of_surfaces))
       .takes(field("motion", &Register::motion,
-                   "Of landmarks: rigid, three_points, which trusts the first most, or similarity, of meshes "
-                   "only.")
+                   "For landmarks: rigid; three_points, which matches the first pair exactly; or similarity, "
+                   "for meshes only.")
                  .one_of({"rigid", "similarity", "three_points"})
                  .read_if<Register>(is_of_surfaces, of_surfaces))
-      .takes(field("overlap", &Register::overlap, "Share of the moving surface that the other has too.")
+      .takes(field("overlap", &Register::overlap,
+                   "Share of the moving surface that has a counterpart in the other.")
                  .from(0.05)
                  .to(1.0)
                  .read_if<Register>(is_of_surfaces, of_surfaces))
-      .takes(field("samples", &Register::samples, "Points of the moving surface that are compared.")
+      .takes(field("samples", &Register::samples, "Number of points of the moving surface that are compared.")
                  .from(100)
                  .to(1000000)
                  .read_if<Register>(is_of_surfaces, of_surfaces))
-      .takes(field("rounds", &Register::rounds, "Of each of the last two refinements at most.")
-                 .from(1)
-                 .to(100000)
-                 .read_if<Register>(is_of_surfaces, of_surfaces))
       .takes(
-          field("rest_mm", &Register::rest_mm,
-                "A round that moves the samples by no more ends a refinement. Default: a millionth of their "
-                "spread.")
-              .greater_than(0.0)
+          field("rounds", &Register::rounds, "Largest number of rounds of each of the last two refinements.")
+              .from(1)
+              .to(100000)
               .read_if<Register>(is_of_surfaces, of_surfaces))
+      .takes(field("rest_mm", &Register::rest_mm,
+                   "A refinement ends with a round that moves the samples by at most this. Default: a "
+                   "millionth of their "
+                   "spread.")
+                 .greater_than(0.0)
+                 .read_if<Register>(is_of_surfaces, of_surfaces))
       .takes(
           field(
               "by", &Register::by,
@@ -497,10 +501,9 @@ Operation register_operation() {
                  .from(0.5)
                  .to(8.0)
                  .read_if<Register>(may_be_of_samples, of_samples))
-      .verb_takes(
-          field("out", &Register::out,
-                "A moved to B: a .stl, .ply, .obj, .off, .vtp or .glb file; of scans .nrrd, .nhdr, .nii, "
-                ".nii.gz, .mha or .mhd, with the samples as they are in another frame."))
+      .verb_takes(field("out", &Register::out,
+                        "A moved to B: a .stl, .ply, .obj, .off, .vtp or .glb file; for scans a .nrrd, "
+                        ".nhdr, .nii, .nii.gz, .mha or .mhd file with unchanged samples in a new frame."))
       .verb_takes(
           field("watch", &Register::watch,
                 "A new folder for a picture of the difference of two scans at each step of the search: what "

@@ -126,7 +126,7 @@ FittedScans fit_scans(const voxel::Scene& moving, const voxel::Scene& fixed, con
   std::unique_ptr<Watched> watched;
   if (!asked.watch.empty()) {
     if (fs::exists(asked.watch))
-      throw std::runtime_error("--watch: " + asked.watch.string() + " is there: name a new folder");
+      throw std::runtime_error("--watch: " + asked.watch.string() + " exists already: name a new folder");
     watched = std::make_unique<Watched>(moving, fixed, asked.watch);
     options.watch = [&](const voxel::ScanFitStep& step) { watched->draw(step); };
   }

@@ -104,7 +104,9 @@ void triangles(const Warp& warp, const MeshBench& bench, MeshSide& made) {
   made.whole =
       brep::trusted_solid(convert::warped(bench.object(warp.object.name), by.field), brep::Proof::Connection);
   made.details = std::move(by.details);
-  made.lineage = "vertices of a mesh, displaced as the elements about them, fading beyond their box";
+  made.lineage =
+      "vertices of a mesh, displaced with the elements around them; the displacement fades outside the "
+      "elements' box";
 }
 
 void bound(const Warp& warp, const BoundBench& bench, Object& made) {
@@ -173,7 +175,7 @@ FileAnswer on_files(const Warp& warp, const FileBench& bench) {
 Operation warp_operation() {
   return Describe<Warp>("warp", "Moves an object as a solved deck moved: the face after the operation.",
                         Makes::Object)
-      .takes(field("object", &Warp::object, "An object; of the verb a mesh or a scan.")
+      .takes(field("object", &Warp::object, "An object; on the command line a mesh or a scan.")
                  .required()
                  .positional("file"))
       .takes(field("result", &Warp::result, "CalculiX's .frd file of a deck of linear tetrahedra.")

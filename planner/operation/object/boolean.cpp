@@ -83,8 +83,8 @@ Json proven(const MeshBench& bench, const brep::Solid& a, brep::Operation operat
           {"rounded_points", exact.points}};
 }
 
-/// Whether a solid is no thicker than what the points' last places leave open: what exact numbers find between
-/// faces that lie on one plane but for rounding.
+/// Whether a solid is so thin that the rounding of its points may have produced it. Exact arithmetic finds
+/// such slivers between faces that coincide except for rounding.
 bool is_film(const brep::Solid& solid) {
   const brep::Size& size = solid.size();
   double reach_mm = 0.0;
@@ -116,7 +116,8 @@ void triangles(const Boolean& asked, const MeshBench& bench, MeshSide& made) {
     try {
       proof = proven(bench, operands[0], asked.kind(), operands[1], result);
     } catch (const brep::Error& error) {
-      // Exact numbers see gaps and overlaps between faces that coincide but for rounding; these are no solids.
+      // Exact arithmetic finds gaps and overlaps between faces that coincide except for rounding. These are
+      // no solids.
       if (error.code() != brep::ErrorCode::Geometry) throw;
       result.findings.emplace_back("empty, but for what is thinner than the rounding of points");
     }
@@ -139,7 +140,7 @@ void triangles(const Boolean& asked, const MeshBench& bench, MeshSide& made) {
 void bound(const Boolean& asked, const BoundBench& bench, Object& made) {
   const std::vector<std::string> names = asked.operands();
   bound_of_operands(names, bench, made);
-  // Names of files are no names of an expression, so the operands are numbered.
+  // Names of files are no valid names in an expression, so the operands are numbered.
   std::string text = "_0";
   for (std::size_t i = 1; i < names.size(); ++i)
     text += std::string(" ") + asked.sign() + " _" + std::to_string(i);
@@ -152,8 +153,9 @@ void bound(const Boolean& asked, const BoundBench& bench, Object& made) {
 
 Operation boolean_operation() {
   return Describe<Boolean>("boolean", "Makes the Boolean of two or more objects.", Makes::Object)
-      .takes(
-          field("a", &Boolean::a, "An object; of the verb a mesh or an octree.").required().positional("a"))
+      .takes(field("a", &Boolean::a, "An object; on the command line a mesh or an octree.")
+                 .required()
+                 .positional("a"))
       .takes(field("op", &Boolean::operation, "union, intersection or difference.")
                  .required()
                  .one_of({"union", "intersection", "difference"})

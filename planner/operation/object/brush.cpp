@@ -54,7 +54,8 @@ SlabFrame frame_of(const Stroke& stroke) {
   return {normal, glm::normalize(across - normal * normal[least])};
 }
 
-/// The strokes in a kernel's or the witness's words; `slab` is the member that has a slab's frame and thickness.
+/// The strokes in the types of a kernel or of the witness; `slab` is the member for a slab's frame and
+/// thickness.
 template <typename Made, typename Slab>
 std::vector<Made> strokes_of(const Brush& brush, std::optional<Slab> Made::*slab) {
   std::vector<Made> made;
@@ -82,9 +83,10 @@ void check_stroke(const Stroke& stroke, const FieldLocation& place) {
     if (!stroke.normal) place.at("normal").refuse("is missing: a slab has one");
     if (!stroke.thickness_mm) place.at("thickness_mm").refuse("is missing: a slab has one");
   } else {
-    if (stroke.normal) place.at("normal").refuse("is of a slab: set 'shape' to \"slab\", or leave it out");
+    if (stroke.normal)
+      place.at("normal").refuse("applies only to a slab: set 'shape' to \"slab\", or leave it out");
     if (stroke.thickness_mm)
-      place.at("thickness_mm").refuse("is of a slab: set 'shape' to \"slab\", or leave it out");
+      place.at("thickness_mm").refuse("applies only to a slab: set 'shape' to \"slab\", or leave it out");
   }
   for (std::size_t i = 0; i < stroke.points_mm.size(); ++i)
     if (!(glm::length(stroke.points_mm[i]) <= most_mm))
@@ -165,8 +167,8 @@ double reach_mm(const Stroke& stroke, int axis) {
          0.5 * *stroke.thickness_mm * std::abs(frame.normal[axis]);
 }
 
-/// The planes of walls normal to an axis: a piece of a stroke that is itself normal to the axis leaves one on
-/// either side, and a slab that is normal to it at each of its points.
+/// The planes of walls that are normal to an axis. A piece of a stroke that is normal to the axis leaves a
+/// wall on either side; a slab that is normal to the axis leaves one at each of its points.
 std::vector<CutPlane> walls_of(const std::vector<Stroke>& strokes) {
   constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
   std::array<std::set<double>, 3> offsets_mm;
@@ -244,7 +246,8 @@ std::vector<Field> stroke_fields() {
 }  // namespace
 
 Operation brush_operation() {
-  return Describe<Brush>("brush", "Takes away from an object along the strokes of a brush, or adds to it.",
+  return Describe<Brush>("brush",
+                         "Removes material from an object along the strokes of a brush, or adds material.",
                          Makes::Object)
       .takes(field("object", &Brush::object, "The object.").required().positional("solid"))
       .takes(records("strokes", &Brush::strokes,
@@ -252,11 +255,9 @@ Operation brush_operation() {
                  .from(1)
                  .to(500)
                  .in_plans_only())
-      .takes(
-          field(
-              "mode", &Brush::mode,
-              "Whether the strokes take away from the object or add to it. No scan measures what is painted.")
-              .one_of({"erase", "paint"}))
+      .takes(field("mode", &Brush::mode,
+                   "Whether the strokes remove or add material. No scan measures added material.")
+                 .one_of({"erase", "paint"}))
       .verb_takes(&Brush::drawn, stroke_fields())
       .example(
           R"({"id": "clean", "do": "brush", "object": "skull", "strokes": [

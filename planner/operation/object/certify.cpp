@@ -38,7 +38,7 @@ void lower_by_caveats(Object& made) {
   for (const Caveat& caveat : made.caveats) verify::lower(*made.certificate, caveat.verdict, caveat.reason);
 }
 
-/// Certifies, but for the time that it takes.
+/// Computes the certificate, without the time that this takes.
 void judge(Object& made, const std::string& title, const voxel::Progress& progress) {
   if (!made.mesh.within) {
     made.certificate = verify::certify_alone(

@@ -12,16 +12,16 @@ namespace octotomy::planner {
 inline constexpr const char* mesh_alone =
     "no certificate: only the mesh kernel computes this object, and its voxels are digitised from that mesh";
 
-/// Whether certify() can judge an object: it has a mesh within its universe, or a witness that judges its
-/// voxels.
+/// Whether certify() can judge an object: it has a mesh within its universe, or a witness for its voxels.
 inline bool has_certificate(const Object& made) {
   return made.mesh.within || made.witness;
 }
 
-/// Holds both kernels' answers to one another, within what the object's bound terms allow; of an object
-/// without a mesh the voxels to their witness (verify::certify_alone()); of what the mesh kernel alone makes
-/// of an object's surface the mesh to what the step must make (verify::judge_reach()). Preconditions: the operation's
-/// bound() has run, and has_certificate(). Throws Stopped.
+/// Certifies an object, within the tolerances of its bound terms. An object of both kernels: compares their
+/// answers. An object without a mesh: compares the voxels with their witness (verify::certify_alone()). A
+/// surface that only the mesh kernel changed: compares the mesh with the step's specification
+/// (verify::judge_reach()). Preconditions: the operation's bound() has run, and has_certificate(). Throws
+/// Stopped.
 void certify(Object& made, const std::string& title, const voxel::Progress& progress = {});
 
 }  // namespace octotomy::planner

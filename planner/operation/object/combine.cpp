@@ -86,7 +86,7 @@ void bound(const Combine& combine, const BoundBench& bench, Object& made) {
     made.findings.push_back("'" + combine.expression + "' is empty for all objects: check the expression");
   else if (made.voxel.octree.is_empty())
     made.findings.push_back("no voxel is in '" + combine.expression +
-                            "': it is empty, or thinner than the voxels are apart");
+                            "': it is empty, or thinner than the distance between voxels");
   made.witness = verify::witness_of_expression(
       combine.expression, [&](const std::string& name) { return bench.objects.at(name).witness; });
 }

@@ -67,7 +67,7 @@ brep::Mesh fewer(const Decimate& decimate, const brep::Mesh& mesh, Json& details
                        " mm: allow a larger one");
   else if (decimate.faces && made.n_faces() > options.faces)
     findings.push_back(std::to_string(made.n_faces()) +
-                       " triangles are left, more than were asked for: fewer would be off by more than " +
+                       " triangles are left, more than requested: fewer would deviate by more than " +
                        three_figures(options.max_error_mm) + " mm");
   if (is_closed(mesh) && std::abs(after_mm3 - before_mm3) > told_share() * std::abs(before_mm3))
     findings.push_back("WARN volume: it went from " + three_figures(before_mm3) + " to " +

@@ -79,7 +79,7 @@ glm::dmat4 parse_motion(const std::string& name, const std::string& text) {
   return voxel::moved_from_still(motion);
 }
 
-/// Of a step: the expression names objects of the plan and motions of its own.
+/// Checks a step, whose expression names objects of the plan and motions of its own.
 void check(const Eval& asked, const FieldLocation& place) {
   if (place.scope == nullptr) return;
   check_output_path(asked.out, {".octree"}, place.at("path"));
@@ -120,7 +120,7 @@ Operand operand_of(const FileBench& bench, const std::string& name, const fs::pa
   const auto window = windows.find(name);
   if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
     if (window == windows.end())
-      throw std::runtime_error(path.string() + ": is grey, say which object '" + name + "' is: --window " +
+      throw std::runtime_error(path.string() + ": is grey: choose which object '" + name + "' is: --window " +
                                name + "=LOW:HIGH, for example --window " + name + "=300:");
     return {window_on(*grey, parse_sample_window(window->second)), grey->universe(), std::nullopt};
   }
@@ -224,7 +224,7 @@ FileAnswer on_files(const Eval& asked, const FileBench& bench) {
   const voxel::Universe universe = operands.at(used.front()).universe;
   for (const std::string& name : used)
     if (!(operands.at(name).universe == universe))
-      findings.push_back(name + ": lives in another universe than " + used.front() +
+      findings.push_back(name + ": has another universe than " + used.front() +
                          ", whose voxels the result has: it is resampled there");
   voxel::OctreeFile result{voxel::Octree::empty(universe), asked.expression, ""};
   Json more = Json::object();
@@ -280,10 +280,11 @@ Operation eval_operation() {
                  .repeated()
                  .called("motion"))
       .verb_takes(field("grey", &Eval::grey,
-                        "Keeps samples: each voxel has that of the first operand with samples that holds it, "
-                        "moved with it."))
+                        "Keeps samples: each voxel gets the sample of the first operand that holds it and "
+                        "has samples. Samples move with their operand."))
       .takes(field("digitise", &Eval::digitise,
-                   "Which voxels a moved octree becomes: those whose centre it holds, or fills to the half.")
+                   "The voxels of a moved octree: those whose centre it contains, or those that it fills at "
+                   "least half.")
                  .one_of({"centre", "half"}))
       .verb_takes(field("interpolate", &Eval::interpolate,
                         "How samples of a moved grey octree are read: nearest, linear or cubic.")

@@ -80,9 +80,10 @@ Operation import_operation() {
       .takes(field("frame", &Import::frame,
                    "Directions of x, y and z in the file, in place of what the file states: LPS, RAS, or "
                    "three other letters of "
-                   "L or R, A or P, S or I. Default: what the file says, else LPS."))
+                   "L or R, A or P, S or I. Default: what the file states, else LPS."))
       .takes(field("unit", &Import::unit,
-                   "The file's unit, in place of the one that the file states. Default: the file's, else mm.")
+                   "The unit of the file's lengths, in place of what the file states. Default: what the file "
+                   "states, else mm.")
                  .one_of({"um", "mm", "cm", "m", "inch", "foot"}))
       .check(check)
       .example(R"({"id": "plate", "do": "import", "path": "plate.stl"})")

@@ -66,7 +66,7 @@ std::vector<std::string> files_of(const Mask& mask) {
   return files;
 }
 
-/// The name of a view that looks along a plane: level, or from in front where the plane is.
+/// The name of a horizontal view that sees the plane edge-on; "anterior" if the plane is horizontal.
 std::string view_along(const glm::dvec3& normal) {
   const double level = std::hypot(normal.x, normal.y);
   if (level < 1e-12) return "anterior";
@@ -94,7 +94,7 @@ Mask::Region region_of(const glm::dvec3& origin_mm, const glm::dvec3& normal) {
 }
 
 void check(const Mask& mask, const FieldLocation& place) {
-  const char* const of_set = "is about a structure set: add the set as 'slices'";
+  const char* const of_set = "applies only to a structure set: add the set as 'slices'";
   if (mask.slices.empty() && !mask.structure.empty()) place.at("structure").refuse(of_set);
   if (mask.slices.empty() && mask.bridge_mm) place.at("bridge_mm").refuse(of_set);
   if (mask.slices.empty() && mask.other_identity) place.at("other_identity").refuse(of_set);
@@ -309,8 +309,8 @@ Operation mask_operation() {
               .a_file()
               .in_plans_only())
       .takes(field("views_of", &Mask::views_of,
-                   "Whose views they are: of the head as it is held, or of the scan as it lies, which a head "
-                   "position does not turn.")
+                   "The frame of the views: that of the head as it is held, or that of the scan, which a "
+                   "head position does not turn.")
                  .one_of({"head", "scan"})
                  .in_plans_only())
       .takes(field("slices", &Mask::slices,
@@ -325,9 +325,10 @@ Operation mask_operation() {
                 "Of a structure set: interpolates between planes of the structure up to this distance apart. "
                 "Default: as the file says.")
               .greater_than(0.0))
-      .takes(field("other_identity", &Mask::other_identity,
-                   "Takes a structure set that states another patient, study or frame of reference than the "
-                   "scan, and reports a FAIL."))
+      .takes(
+          field("other_identity", &Mask::other_identity,
+                "Accepts a structure set that states another patient, study or frame of reference than the "
+                "scan, and reports a FAIL."))
       .verb_takes(
           field("region", &Mask::region_files,
                 "VIEW:FILE, repeated: the mask is what all of their back-projections enclose. The file "

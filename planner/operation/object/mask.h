@@ -33,10 +33,11 @@ struct Mask {
   std::optional<double> voxel_mm;
 };
 
-/// The mask with the regions of its files: curves become polygons of their region, a plane becomes a region of its
-/// own, a rectangle of four kilometres that ends at the plane, in a view that looks along it. Files are in LPS. Where
-/// the mask's views are the head's, their points are turned into its directions first, so that the mask lies where
-/// the files have it. Findings on the files are added. Throws std::runtime_error as read_slicer_markups().
+/// The mask with the regions of its files: curves become polygons of their region. A plane becomes a region
+/// of its own, in a view that sees the plane edge-on: a rectangle of four kilometres that ends at the
+/// plane. Files are in LPS. If the mask's views are relative to the head, the files' points are first
+/// converted to the head's directions, so that the mask lies where the files place it. Adds findings on the
+/// files. Throws std::runtime_error as read_slicer_markups().
 Mask with_files_read(const Mask& mask, const std::filesystem::path& folder, const glm::dmat3& lps_from_head,
                      std::vector<std::string>& findings);
 Mask with_files_read(const Mask& mask, const std::filesystem::path& folder, const glm::dmat3& lps_from_head);

@@ -45,8 +45,8 @@ class Bounds {
     for (int axis = 0; axis < 3; ++axis)
       if (!std::isfinite(box_.high_mm[axis] - box_.low_mm[axis]) || box_.high_mm[axis] <= box_.low_mm[axis])
         throw std::runtime_error(
-            "the regions do not bound the mask along x, y and z: draw it in another view too, or say whose "
-            "voxels it has with --like FILE");
+            "the regions do not bound the mask along x, y and z: draw it in another view too, or choose its "
+            "voxels by --like FILE");
     return box_;
   }
 

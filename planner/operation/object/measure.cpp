@@ -26,7 +26,7 @@ void check(const Measure& measure, const FieldLocation& place) {
   if (place.scope == nullptr) return;
   const FieldLocation points = place.at("points_mm");
   if (measure.asks_surface() && (measure.to || !measure.points_mm.empty()))
-    place.refuse("asks a surface and a gap or points: measure them in a step each");
+    place.refuse("requests measures of a surface and a gap or points: use a step for each");
   if (measure.points_mm.empty()) {
     if (!measure.object) place.refuse("'object' is missing: add it");
     if (measure.to && measure.to->name == measure.object->name)
@@ -379,13 +379,12 @@ Json measure(const Measure& asked, const AnswerBench& bench) {
 Operation measure_operation() {
   return Describe<Measure>("measure", "Measures an object, the gap between two, or a distance or angle.",
                            Makes::Measurement)
-      .takes(
-          field(
-              "object", &Measure::object,
-              "The object whose volume, area and extents are wanted; of the verb a scan or grey octree (with "
-              "a window), an octree or a mesh.")
-              .positional("file"))
-      .takes(field("to", &Measure::to, "A second object: the gap between the two is wanted instead."))
+      .takes(field("object", &Measure::object,
+                   "The object whose volume, area and extents are measured; on the command line a scan or "
+                   "grey octree (with "
+                   "a window), an octree or a mesh.")
+                 .positional("file"))
+      .takes(field("to", &Measure::to, "A second object: measures the gap between the two instead."))
       .takes(field("points_mm", &Measure::points_mm,
                    "Two points [x, y, z] or landmarks, for their distance, or three, for the angle at the "
                    "second.")
@@ -394,13 +393,13 @@ Operation measure_operation() {
                    "A point and a normal: area and perimeter of the surface where that plane cuts it.")
                  .from(2)
                  .to(2))
-      .takes(field("along", &Measure::along, "Two points: the shortest way along the surface.").from(2).to(2))
+      .takes(
+          field("along", &Measure::along, "Two points: the shortest path along the surface.").from(2).to(2))
       .takes(field("thickness", &Measure::thickness,
                    "Local thickness: the largest ball inside that holds a point, over the volume and "
                    "the surface, and the thinnest wall away from edges; of a mesh or an octree."))
       .takes(field("curvature", &Measure::curvature, "Mean and Gaussian curvature of the surface."))
-      .verb_takes(
-          field("distance", &Measure::distance, "Two points: the straight way between them.").from(2).to(2))
+      .verb_takes(field("distance", &Measure::distance, "Two points: their straight distance.").from(2).to(2))
       .verb_takes(field("angle", &Measure::angle, "Three points: the angle at the second.").from(3).to(3))
       .verb_takes(field("window", &Measure::window, "LOW:HIGH or LOW: in sample units, or a tissue."))
       .verb_takes(field("voxel_mm", &Measure::voxel_mm,

@@ -95,7 +95,7 @@ FileAnswer said(Json json) {
 /// Requests that cannot be written are refused before any file is read.
 void need_scalars_of(const Measure& asked) {
   if (!asked.thickness && !asked.curvature)
-    throw std::runtime_error(asked.out.string() + ": say what to write, --thickness or --curvature");
+    throw std::runtime_error(asked.out.string() + ": choose what to write, --thickness or --curvature");
   need_extension(asked.out, {".vtp", ".ply"}, "scalars are");
   need_folder_of(asked.out);
 }
@@ -161,7 +161,8 @@ FileAnswer measure_open(const brep::Triangles& triangles, const brep::Health& he
 /// Beyond this number of shells their union by Booleans would take minutes.
 constexpr std::size_t most_united = 1000;
 
-/// A closed surface whose shells may share points and edges, overlap, or lie in each other, as one without.
+/// A closed surface and the method of its volume. In the given surface, shells may share points and edges,
+/// overlap, or lie in each other.
 struct OneSurface {
   brep::Triangles triangles;
   std::string how;  ///< of the volume
@@ -190,7 +191,7 @@ std::optional<OneSurface> one_surface(const brep::Triangles& given, const brep::
   if (!united || united->surface.faces.empty()) return std::nullopt;
   return OneSurface{std::move(united->surface),
                     now.shells > 1 ? ", of the union of " + std::to_string(now.shells) + " shells"
-                                   : ", of the surface joined and turned alike"};
+                                   : ", of the surface after joining and orienting its triangles"};
 }
 
 FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked, const FileBench& bench) {
@@ -294,7 +295,8 @@ voxel::Window window_of(const voxel::GreyOctree& grey, const std::filesystem::pa
                         const Measure& asked) {
   if (!asked.window)
     throw std::runtime_error(
-        file.string() + ": holds samples, say which are meant: --window LOW:HIGH, for example --window 300:");
+        file.string() +
+        ": holds samples, choose some of them by --window LOW:HIGH, for example --window 300:");
   return window_on(grey, *asked.window);
 }
 
@@ -304,7 +306,7 @@ void add_thickness(const voxel::Octree& octree, const Measure& asked, const File
   json["thickness"] = thickness_json(octree, bench.progress("thickness"));
 }
 
-/// What voxels that are too coarse for an object want.
+/// Advice for an object whose voxels are too coarse.
 constexpr const char* remake = "make the octree with smaller ones, --voxel";
 
 FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure& asked,
@@ -343,7 +345,8 @@ FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure&
     add_thickness(octree, asked, bench, json);
     json["volume_partial_mm3"] = nullptr;
     json["findings"].push_back(
-        "volume_partial_mm3: voxels that are in or out say nothing of their parts: keep samples (--grey) or "
+        "volume_partial_mm3: voxels that are only inside or outside have no known shares: keep samples "
+        "(--grey) or "
         "shares (--digitise partial)");
   }
   Json whole{{"kind", "octree"}};
@@ -516,7 +519,7 @@ FileAnswer measure_file(const Measure& asked, const FileBench& bench) {
   const bool has_walls = is_mesh(file) || is_octree(file);
   if (((asked.asks_mesh() || asked.to) && !is_mesh(file)) || (asked.thickness && !has_walls))
     throw std::runtime_error(file.string() +
-                             ": sections, ways, angles and curvature are measured on a mesh, walls on a "
+                             ": sections, paths, angles and curvature are measured on a mesh, walls on a "
                              "mesh or an octree: octotomy mesh makes a mesh");
   if (is_mesh(file) && (asked.window || asked.voxel_mm))
     throw std::runtime_error(file.string() + ": a mesh has no samples and no voxels: leave " +

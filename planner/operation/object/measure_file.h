@@ -18,12 +18,12 @@ struct Measure {
   std::optional<double> voxel_mm;
   std::filesystem::path out;
 
-  /// Whether anything is asked that only a surface has.
+  /// Whether a measure is requested that only a surface has.
   bool asks_mesh() const {
     return !section.empty() || !along.empty() || !distance.empty() || !angle.empty() || curvature ||
            !out.empty();
   }
-  /// The same, or walls, which voxels have too.
+  /// The same, or the thickness of walls, which voxels have too.
   bool asks_surface() const { return asks_mesh() || thickness; }
 };
 

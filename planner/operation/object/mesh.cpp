@@ -73,11 +73,12 @@ brep::Triangles tiled_contours(const voxel::Scene& scene, const SampleWindow& wi
   findings.push_back(
       "contours: " + std::to_string(tiled.strips) + " pairs joined by strips, " +
       std::to_string(tiled.clear_strips) +
-      " of them by spans that cross no contour as the best would cross something, " +
+      " of them by spans that cross no contour, because the best strips would cross something, " +
       std::to_string(tiled.narrowed_strips) +
-      " of them nearer to the shortest spans or by least area as that would cross something, too, " +
-      std::to_string(tiled.crossed_strips) + " by overlay as their strips would cross something, " +
-      std::to_string(tiled.overlaid) + " branchings, ends and lone contours by overlay");
+      " of them nearer to the shortest spans or by least area, because those would cross something, too; " +
+      std::to_string(tiled.crossed_strips) +
+      " pairs by overlay, because every strip would cross something; " + std::to_string(tiled.overlaid) +
+      " branchings, ends and lone contours by overlay");
   return std::move(tiled.surface);
 }
 
@@ -98,7 +99,7 @@ Made of_octree(const FileBench& bench, const Meshed& asked, std::vector<std::str
     throw std::runtime_error(asked.file.name + ": holds no samples to take a --window of: leave it out");
   if (const auto* partial = std::get_if<voxel::PartialOctree>(&file.tree)) {
     if (!cubes) return convert::isosurface(*partial);
-    findings.push_back("surface: the cuberille is of the voxels at least half filled");
+    findings.push_back("surface: the cuberille is made of the voxels that are at least half filled");
     return cuberille_of(at_least_half(*partial), asked);
   }
   const auto& octree = std::get<voxel::Octree>(file.tree);
@@ -120,7 +121,7 @@ Made of_scan(const FileBench& bench, const Meshed& asked, std::vector<std::strin
   if (asked.surface == "contours") return tiled_contours(scene, window, asked, findings);
   throw std::runtime_error(
       asked.file.name +
-      ": a cuberille is of an octree's voxels: make one first with octotomy octree --window " +
+      ": a cuberille is made from an octree: make the octree first with octotomy octree --window " +
       to_string(window));
 }
 
@@ -146,7 +147,7 @@ Finished finished(Made made, const Meshed& asked, Timings& timings) {
   }
   if (fewer) {
     const Stopwatch watch(timings, "decimate");
-    // The number is what was asked for: no bound on the error may end it before.
+    // The user requested a number of triangles, so no bound on the error may end the decimation earlier.
     constexpr double no_bound_mm = std::numeric_limits<double>::infinity();
     surface = brep::decimate(surface,
                              {.max_error_mm = no_bound_mm, .faces = static_cast<std::size_t>(*asked.faces)});
@@ -158,7 +159,7 @@ void check(const Meshed& asked, const FieldLocation& place) {
   if (place.scope == nullptr) return;
   check_output_path(asked.out, {".stl", ".ply", ".obj", ".off", ".vtp", ".glb"}, place.at("path"));
   if (asked.surface == "contours")
-    place.at("surface").refuse("contours are followed on a scan's slices, which an object has none of");
+    place.at("surface").refuse("contours are followed on a scan's slices, and an object has no slices");
 }
 
 FileAnswer on_files(const Meshed& asked, const FileBench& bench) {
@@ -199,7 +200,7 @@ FileAnswer on_files(const Meshed& asked, const FileBench& bench) {
 
 Operation mesh_operation() {
   return Describe<Meshed>("mesh", "Makes the surface of a scan's window or of an octree.", Makes::File)
-      .takes(field("object", &Meshed::file, "The object; of the verb a scan, or an .octree file.")
+      .takes(field("object", &Meshed::file, "The object; on the command line a scan, or an .octree file.")
                  .required()
                  .positional("file"))
       .verb_takes(field("window", &Meshed::window, "LOW:HIGH or LOW: in sample units, or a tissue."))
@@ -208,17 +209,20 @@ Operation mesh_operation() {
                    "contours: followed on a scan's slices and tiled.")
                  .one_of({"isosurface", "cuberille", "contours"}))
       .verb_takes(field("tiling", &Meshed::tiling,
-                        "Of contours, what strips between them are chosen by: shortest-span, least-area, "
+                        "For contours, the criterion by which strips between them are chosen: shortest-span, "
+                        "least-area, "
                         "greatest-volume, least-angle; overlay: no strips.")
                       .one_of({"shortest-span", "least-area", "greatest-volume", "least-angle", "overlay"})
                       .read_if<Meshed>([](const Meshed& meshed) { return meshed.surface == "contours"; },
                                        "applies only to contours: add 'surface' contours"))
-      .takes(field("touching", &Meshed::touching,
-                   "Of a cuberille, voxels that meet at an edge or corner only: apart or together.")
-                 .one_of({"apart", "together"})
-                 .read_if<Meshed>([](const Meshed& meshed) { return meshed.surface == "cuberille"; },
-                                  "applies only to a cuberille: add 'surface' cuberille"))
-      .takes(field("smooth", &Meshed::smooth, "Takes noise off the surface and keeps its volume."))
+      .takes(
+          field(
+              "touching", &Meshed::touching,
+              "For a cuberille, how to treat voxels that meet only at an edge or corner: apart or together.")
+              .one_of({"apart", "together"})
+              .read_if<Meshed>([](const Meshed& meshed) { return meshed.surface == "cuberille"; },
+                               "applies only to a cuberille: add 'surface' cuberille"))
+      .takes(field("smooth", &Meshed::smooth, "Removes noise from the surface and keeps its volume."))
       .takes(field("faces", &Meshed::faces, "Number of triangles to decimate to.").from(4).to(100000000))
       .takes(field("path", &Meshed::out, "A .stl, .ply, .obj, .off, .vtp or .glb file.")
                  .required()

@@ -65,7 +65,7 @@ std::string content_of(const fs::path& path) {
 voxel::OctreeFile from_representation(const Build& asked, Timings& timings) {
   if (!asked.depth)
     throw std::runtime_error(
-        "--depth: a representation does not tell its universe: say --depth N, for 2^N voxels a side");
+        "--depth: a representation does not state its universe: give --depth N, for 2^N voxels a side");
   voxel::Universe universe;
   universe.depth = *asked.depth;
   const double edge_mm = asked.voxel_mm.value_or(1.0);
@@ -239,10 +239,11 @@ Operation octree_operation() {
              "octree",
              "Builds an octree of a scan's window or of all its samples, or puts one into another form.",
              Makes::File)
-      .takes(field("object", &Build::file,
-                   "The object; of the verb a scan, an .octree file, or with --from a representation.")
-                 .required()
-                 .positional("file"))
+      .takes(
+          field("object", &Build::file,
+                "The object; on the command line a scan, an .octree file, or with --from a representation.")
+              .required()
+              .positional("file"))
       .takes(
           field("path", &Build::out, "An .octree file, or with --as the representation's, for example .txt.")
               .required()
@@ -254,7 +255,7 @@ Operation octree_operation() {
       .verb_takes(
           field("grey", &Build::grey, "A min-max octree of all samples.")
               .read_if<Build>([](const Build& build) { return build.from.empty() && !is_octree(build.in()); },
-                              "only a scan is made a tree of all its samples: leave it out"))
+                              "only a scan has samples to build such a tree of: leave it out"))
       .verb_takes(field("voxel_mm", &Build::voxel_mm,
                         "Edge of a voxel. Default: as fine as the scan, at most 512 a side; with --from 1.")
                       .greater_than(0.0)

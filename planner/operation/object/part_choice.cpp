@@ -174,9 +174,9 @@ bool are_nearly_equal(const voxel::Octree& a, const voxel::Octree& b) {
 
 std::string doubt_of_rank(const Differing& parts, std::size_t count) {
   if (are_nearly_equal(parts.by_voxels, parts.passed_over))
-    return "Two parts are nearly as large as each other: " + size_and_place(parts.by_voxels) + " is kept, " +
+    return "Two parts have nearly the same size: " + size_and_place(parts.by_voxels) + " is kept, " +
            size_and_place(parts.passed_over) +
-           " is not, which the mesh kernel finds larger. Name the one that is meant: 'parts' with 'at_mm'.";
+           " is not, although it is larger in the mesh kernel. Choose the right one by 'parts' with 'at_mm'.";
   std::string kept, left;
   if (!parts.by_voxels.is_empty()) kept = "both keep " + sizes_and_places(parts.by_voxels);
   if (!parts.passed_over.is_empty()) left = "both leave out " + sizes_and_places(parts.passed_over);
@@ -184,7 +184,7 @@ std::string doubt_of_rank(const Differing& parts, std::size_t count) {
          (count == 1 ? std::string("as the largest") : "among the " + std::to_string(count) + " largest") +
          ", because the sizes of parts are nearly equal or one kernel alone joins some by a neck: " + kept +
          (kept.empty() || left.empty() ? "" : ", ") + left +
-         ", as the voxels rank them. Name the parts that are meant: 'parts' with 'at_mm'.";
+         ", as the voxels rank them. Choose the right parts by 'parts' with 'at_mm'.";
 }
 
 std::string doubt_of_bound(const std::vector<Differing>& settled) {
@@ -342,7 +342,8 @@ std::vector<Differing> differing(const WholeObject& whole, const brep::Solid& so
     if (components[i].volume_mm3 > most_mm3) continue;
     const voxel::Octree digitised = digitised_part(solid, components[i], by_mesh.universe());
     const voxel::Octree own = common_of(digitised, by_mesh);
-    // A part of which the voxels keep some hangs together by a thin neck: it is not passed over.
+    // If the voxels keep a piece of a part, the part is held together by a thin neck and is not listed
+    // here.
     if (!own.is_empty() && common_of(digitised, chosen).is_empty()) all.push_back({none, over(own), {}, {i}});
   }
   return all;
@@ -391,7 +392,7 @@ void settle_choice(const WholeObject& whole, const voxel::Universe& universe,
                           least_mm3 ? doubt_of_bound(settled) : doubt_of_rank(settled.front(), whole.count),
                           false});
   made.findings.push_back(made.caveats.back().reason);
-  made.shared_values.push_back(made.kind + ": which parts at the limit of the choice stay, by the voxels");
+  made.shared_values.push_back(made.kind + ": the choice of parts at its limit, by the voxels");
 }
 
 }  // namespace octotomy::planner

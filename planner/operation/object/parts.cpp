@@ -319,7 +319,7 @@ KeptParts kept_parts(const brep::Mesh& mesh, std::optional<int> largest, std::op
 
 voxel::Expression symbol_of_parts(const voxel::Expression& symbol, const voxel::Octree& object,
                                   const voxel::Octree& parts) {
-  // A voxel's width around the parts, without the voxels of others.
+  // The parts, widened by one voxel, without the voxels of other parts.
   const double reach_mm = glm::length(parts.universe().lattice().spacing_mm());
   return symbol & (voxel::Expression(voxel::dilate(parts, reach_mm)) -
                    (voxel::Expression(object) - voxel::Expression(parts)));
@@ -350,7 +350,7 @@ Operation parts_operation() {
                    "Keep the parts beyond thin necks at these points, LPS, as certificates list them.")
                  .in_plans_only())
       .takes(field("cut_bridges_mm", &Parts::cut_bridges_mm,
-                   "Cut thin necks at these points, LPS: takes away what lies in a cube about each.")
+                   "Cut thin necks at these points, LPS: removes everything in a cube about each.")
                  .in_plans_only())
       .takes(field("bridge_mm", &Parts::bridge_mm, "Edge of the cube about each of these points, mm.")
                  .greater_than(0.0)

@@ -33,8 +33,8 @@ void check(const Repair& repair, const FieldLocation& place) {
   if (!repair.weld_mm && !repair.duplicates && !repair.orient && !repair.flat && !repair.holes &&
       !repair.intersections && !repair.solid)
     place.refuse(
-        "does only what it is asked for: say 'solid' for all, or 'weld_mm', 'duplicates', 'flat', 'orient', "
-        "'holes' or 'intersections'; octotomy info tells what a mesh lacks");
+        "does only the requested repairs: add 'solid' for all, or 'weld_mm', 'duplicates', 'flat', 'orient', "
+        "'holes' or 'intersections'; octotomy info lists a mesh's defects");
   if (repair.wall_mm && repair.hull)
     place.at("hull").refuse("fills what a wall leaves hollow: give 'hull' or 'wall_mm'");
   if ((repair.hull || repair.cell_mm || repair.wall_mm) && !repair.solid)
@@ -126,7 +126,7 @@ void triangles(const Repair& repair, const MeshBench& bench, MeshSide& made) {
   const brep::Health health = brep::health(mended_mesh.repaired.surface);
   if (!health.solid())
     throw std::runtime_error(repair.path.string() + ": is still not a solid: " + health.findings.front() +
-                             "; ask for more to be mended");
+                             "; request more repairs");
   constexpr brep::KnownSolids solids{.before = false, .after = true};
   const brep::RepairEffect effect =
       brep::repair_effect(mended_mesh.read, mended_mesh.repaired.surface, solids);
@@ -215,7 +215,7 @@ FileAnswer on_files(const Repair& repair, const FileBench& bench) {
 }  // namespace
 
 Operation repair_operation() {
-  return Describe<Repair>("repair", "Mends a mesh in the ways asked for and lists each change.",
+  return Describe<Repair>("repair", "Mends a mesh in the requested ways and lists each change.",
                           Makes::Object)
       .takes(field("path", &Repair::path,
                    std::string("A mesh: ") + brep::mesh_formats_read + ", relative to the plan's folder.")
@@ -225,31 +225,33 @@ Operation repair_operation() {
       .takes(field("frame", &Repair::frame,
                    "Directions of x, y and z in the file, in place of what the file states: LPS, RAS, or "
                    "three other letters. "
-                   "Default: what the file says, else LPS."))
+                   "Default: what the file states, else LPS."))
       .takes(field("unit", &Repair::unit,
-                   "The file's unit, in place of the one that the file states. Default: the file's, else mm.")
+                   "The unit of the file's lengths, in place of what the file states. Default: what the file "
+                   "states, else mm.")
                  .one_of({"um", "mm", "cm", "m", "inch", "foot"}))
       .takes(field("weld_mm", &Repair::weld_mm,
                    "Points no further apart than this become one; 0 joins equal points.")
                  .from(0.0)
                  .to(1e6))
-      .takes(field("duplicates", &Repair::duplicates, "Of triangles with the same points keeps the first."))
-      .takes(field("orient", &Repair::orient, "Makes neighbours alike, shells outward, cavities inward."))
-      .takes(field("flat", &Repair::flat, "Takes out triangles without area."))
+      .takes(field("duplicates", &Repair::duplicates,
+                   "Keeps the first of several triangles with the same points."))
+      .takes(field("orient", &Repair::orient,
+                   "Turns triangles so that neighbours agree, shells face outward and cavities inward."))
+      .takes(field("flat", &Repair::flat, "Removes triangles without area."))
       .takes(field("holes", &Repair::holes, "Closes holes."))
       .takes(field("longest_hole_mm", &Repair::longest_hole_mm, "Leaves holes open whose border is longer.")
                  .greater_than(0.0))
       .takes(field("intersections", &Repair::intersections,
-                   "Takes out triangles that intersect and closes what they leave: moves the surface there."))
-      .takes(
-          field("solid", &Repair::solid,
-                "A closed solid of any surface: all of the above, and where that leaves none, the surface is "
-                "made anew about what its triangles wind round."))
+                   "Removes triangles that intersect and closes the gaps, which moves the surface there."))
+      .takes(field("solid", &Repair::solid,
+                   "Makes a closed solid of any surface: all of the above; if the result is no solid, a new "
+                   "surface around the region that the triangles wind around."))
       .takes(field("cell_mm", &Repair::cell_mm,
-                   "Of a surface made anew, the cells' edge. Default: the triangles' mean side.")
+                   "For a surface made anew: the cells' edge. Default: the triangles' mean side.")
                  .greater_than(0.0))
       .takes(field("hull", &Repair::hull,
-                   "Of a surface made anew, only the outermost shells: cavities are filled."))
+                   "For a surface made anew: keeps only the outermost shells, so that cavities are filled."))
       .takes(field("wall_mm", &Repair::wall_mm,
                    "Makes the surface as given, holes and all, a wall of this thickness: for sheets, which "
                    "enclose nothing.")

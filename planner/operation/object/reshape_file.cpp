@@ -19,13 +19,13 @@
 namespace octotomy::planner {
 namespace {
 
-/// A surface as it was read, and whether it has no inside.
+/// A surface as read, and whether it has no inside.
 struct Read {
   brep::Mesh mesh;
   bool is_open = false;
 };
 
-/// Of a file that holds no solid: its surface where all that speaks against one is that it is open.
+/// The surface of a file that holds no solid, if its only fault is that it is open.
 Read read_open(const std::filesystem::path& path, Timings& timings, std::vector<std::string>& findings) {
   brep::Mesh mesh = read_surface(path, timings, &findings);
   const brep::Health health = brep::health(mesh);
@@ -82,7 +82,7 @@ FileAnswer reshaped_file(const ReshapeFile& asked, const FileBench& bench, const
   if (!to_octree) need_mesh_extension(asked.out);
   need_folder_of(asked.out);
   if (!to_octree && asked.voxel_mm)
-    throw std::runtime_error("--voxel is of an .octree: a mesh has none: leave it out");
+    throw std::runtime_error("--voxel applies only to an .octree: a mesh has none: leave it out");
   std::vector<std::string> findings;
   const Read given = read(asked, bench, findings);
   if (to_octree && given.is_open)

@@ -27,8 +27,9 @@ voxel::SawLine line_of(const Saw& saw) {
 
 void check(const Saw& saw, const FieldLocation& place) {
   if (saw.line_mm.empty() == saw.plane.empty())
-    place.at("line_mm").refuse(saw.plane.empty() ? "is missing: add it, or 'plane'"
-                                                 : "says the cut twice, with 'plane': keep one of them");
+    place.at("line_mm").refuse(saw.plane.empty()
+                                   ? "is missing: add it, or 'plane'"
+                                   : "states the cut a second time, with 'plane': keep one of them");
   if (saw.plane.empty() && !saw.direction) place.at("direction").refuse("is missing: add it");
   if (saw.plane.empty()) {
     try {
@@ -122,7 +123,7 @@ Saw with_plane_read(const Saw& saw, const std::filesystem::path& folder) {
 }
 
 Operation saw_operation() {
-  const char* const of_plane = "is the plane's: leave it out";
+  const char* const of_plane = "follows from 'plane': leave it out";
   return Describe<Saw>("saw", "Cuts an object along a line swept in one direction, as wide as the saw.",
                        Makes::Object)
       .takes(field("object", &Saw::object, "The object that is cut.").required().positional("solid"))
@@ -134,12 +135,11 @@ Operation saw_operation() {
                    "The depth of the cut, from the first point of the line that the blade meets.")
                  .greater_than(0.0)
                  .read_if<Saw>([](const Saw& saw) { return saw.plane.empty(); }, of_plane))
-      .takes(field("kerf_mm", &Saw::kerf_mm, "The width of what is sawn away.").greater_than(0.0))
-      .takes(
-          field("plane", &Saw::plane,
-                "A plane of 3D Slicer, .mrk.json, in the place of line, direction and depth: the blade goes "
-                "along its second axis, across its rectangle.")
-              .a_file())
+      .takes(field("kerf_mm", &Saw::kerf_mm, "The width of the cut.").greater_than(0.0))
+      .takes(field("plane", &Saw::plane,
+                   "A plane of 3D Slicer, .mrk.json, in place of line, direction and depth: the blade goes "
+                   "in along the plane's second axis, across its rectangle.")
+                 .a_file())
       .example(
           R"({"id": "sawn", "do": "saw", "object": "skull", "line_mm": [[-60, -120, -20], [60, -120, -20]],
         "direction": [0, 1, 0], "depth_mm": 80, "kerf_mm": 0.8})")

@@ -102,8 +102,8 @@ bool is_one_grey(const voxel::GreyOctree& a, const voxel::GreyOctree& b) {
   return &a.universe() == &b.universe();
 }
 
-/// Refuses samples that mean something else than the frame's, such as a label map's beside Hounsfield units, or
-/// count in other steps.
+/// Refuses samples that differ from the frame's in meaning, such as a label map's beside Hounsfield units,
+/// or in their step.
 void need_one_meaning(const ScanOf& step, const ScanBench& bench, const voxel::Expression& expression) {
   const LoadedScan& loaded = (*bench.scans)(step.scan.name);
   const voxel::Scene& frame = loaded.scene();
@@ -122,10 +122,10 @@ void need_one_meaning(const ScanOf& step, const ScanBench& bench, const voxel::E
           !other.modality.empty() && !frame.modality.empty() && other.modality != frame.modality;
       std::string why;
       if (other.meaning != frame.meaning || is_other_device)
-        why = "mean something else than those of '" + step.scan.name + "' (" + kind_of(other) + " beside " +
+        why = "have another meaning than those of '" + step.scan.name + "' (" + kind_of(other) + " beside " +
               kind_of(frame) + ")";
       else if (window.grey.step() != loaded.grey.step())
-        why = "count in steps of " + plain(window.grey.step()) + ", those of '" + step.scan.name + "' in " +
+        why = "have steps of " + plain(window.grey.step()) + ", those of '" + step.scan.name + "' steps of " +
               plain(loaded.grey.step());
       if (!why.empty())
         throw voxel::Error(voxel::ErrorCode::Input, "the samples of '" + name + "' come from '" +
@@ -163,7 +163,7 @@ class SecondReading {
       return {word.in, word.in != word.out && !word.near, object.is_tool ? nullptr : &object};
     }
     Owned made = read(tree.parts.front(), p_mm);
-    // Which sample a complement has is the voxel kernel's rule, and is not read again.
+    // The voxel kernel defines the sample of a complement. It is not checked here.
     if (tree.symbol == '~') return {!made.is_inside, made.is_known && made.is_inside, nullptr};
     for (std::size_t i = 1; i < tree.parts.size(); ++i)
       made = joined(tree.symbol, made, read(tree.parts[i], p_mm));
@@ -322,8 +322,8 @@ Operation scan_of_operation() {
       .takes(field("scan", &ScanOf::scan, "The scan whose lattice, unit and patient the made one takes over.")
                  .required())
       .takes(field("expression", &ScanOf::expression,
-                   "Names of objects under & | - ^ ~ and parentheses. Of two that overlap the one that is "
-                   "named first gives the sample.")
+                   "Names of objects under & | - ^ ~ and parentheses. Where two overlap, the sample of the "
+                   "one named first is kept.")
                  .required())
       .takes(field("hole_value", &ScanOf::hole_value,
                    "Sample where no object is. Default: the scan's padding, or a value below all its "

@@ -246,11 +246,11 @@ void check(const Segment& segment, const FieldLocation& place) {
         "needs exactly one of 'window', 'otsu', 'clusters', 'tolerance' with 'seeds_mm', 'label' and "
         "'named'");
   if (!segment.names.empty() && !segment.named)
-    place.at("names").refuse("is the table of a label that is 'named'");
+    place.at("names").refuse("applies only to a label that 'named' chooses");
   if (segment.regions.empty() && !segment.structure.empty())
     place.at("structure").refuse("chooses one of a structure set's structures: add the set as 'regions'");
   if (segment.regions.empty() && segment.other_identity)
-    place.at("other_identity").refuse("is about a structure set: add the set as 'regions'");
+    place.at("other_identity").refuse("applies only to a structure set: add the set as 'regions'");
   if (segment.tolerance && segment.seeds_mm.empty())
     place.at("tolerance").refuse("grows from seeds: add 'seeds_mm'");
   const std::optional<int>& classes = segment.otsu ? segment.otsu : segment.clusters;
@@ -516,13 +516,14 @@ Operation segment_operation() {
                  .from(1)
                  .to(8))
       .takes(field("tolerance", &Segment::tolerance,
-                   "Grows from the seeds through samples no farther from theirs.")
+                   "Grows from the seeds through samples that lie within the range of the seeds' samples, "
+                   "widened by this.")
                  .from(0)
                  .to(65535))
       .takes(field("running_mean", &Segment::running_mean,
                    "Grows in rounds through samples within the tolerance of the mean of the region so far.")
                  .read_if<Segment>([](const Segment& segment) { return segment.tolerance.has_value(); },
-                                   "is about how a region grows: add 'tolerance' and 'seeds_mm'"))
+                                   "applies only to growing: add 'tolerance' and 'seeds_mm'"))
       .takes(field("label", &Segment::label, "The object of that number in a label map.")
                  .from(1)
                  .to(voxel::most_label))
@@ -539,12 +540,13 @@ Operation segment_operation() {
                  .a_file())
       .takes(field("structure", &Segment::structure,
                    "If the regions are a structure set: the name or ROI number of the structure to use."))
-      .takes(field("other_identity", &Segment::other_identity,
-                   "Takes a structure set that states another patient, study or frame of reference than the "
-                   "scan, and reports a FAIL."))
       .takes(
-          field("open_mm", &Segment::open_mm, "Takes away what a ball of that radius does not reach inside.")
-              .greater_than(0.0))
+          field("other_identity", &Segment::other_identity,
+                "Accepts a structure set that states another patient, study or frame of reference than the "
+                "scan, and reports a FAIL."))
+      .takes(field("open_mm", &Segment::open_mm,
+                   "Removes parts that a ball of that radius inside the object does not reach.")
+                 .greater_than(0.0))
       .takes(field("seeds_mm", &Segment::seeds_mm, "Keeps the parts that hold these points, LPS.")
                  .repeated()
                  .called("seed"))
@@ -558,7 +560,7 @@ Operation segment_operation() {
                    "Keeps the parts beyond thin necks at these points, LPS, as certificates list them.")
                  .in_plans_only())
       .takes(field("cut_bridges_mm", &Segment::cut_bridges_mm,
-                   "Cuts thin necks at these points, LPS: takes away what lies in a cube about each.")
+                   "Cuts thin necks at these points, LPS: removes everything in a cube about each.")
                  .in_plans_only())
       .takes(field("bridge_mm", &Segment::bridge_mm, "Edge of the cube about each of these points, mm.")
                  .greater_than(0.0)

@@ -75,25 +75,24 @@ struct Segmented {
   std::vector<std::string> findings = {};
 };
 
-/// The voxel kernel's answer. Precondition: `window` in place of `otsu`, see otsu_window(), and `classes` where
-/// there are `clusters`, see clusters_of(). Throws
-/// std::runtime_error where nothing is left or a seed lies outside; Stopped between choices.
+/// The voxel kernel's answer. Precondition: `otsu` has been replaced by `window` (otsu_window()), and
+/// `classes` is set if there are `clusters` (clusters_of()). Throws std::runtime_error if nothing is left
+/// or a seed lies outside; Stopped between choices.
 Segmented segmented(const Segment& segment, const SegmentSource& source);
 
-/// The same object at the scan's own samples, in a universe whose first voxels are they: voxels of `made`, of
-/// segmented() in any universe, say which parts are the object's, and the samples where it ends.
-/// Precondition: `source` is on voxel::universe_on() of the scan. Throws Stopped. See
+/// The same object at the scan's own samples, in a universe whose first voxels are these samples. The
+/// voxels of `made`, from segmented() in any universe, decide which parts belong to the object; the samples
+/// decide where it ends. Precondition: `source` is on voxel::universe_on() of the scan. Throws Stopped. See
 /// voxel::chosen_samples().
 voxel::Octree on_own_samples(const Segment& segment, const SegmentSource& source, const Segmented& made);
 
-/// The label of the name that is asked for, of the given table or that of the label map, whose scene is
-/// given. Adds to `findings` the files that were passed over. Throws std::runtime_error with the names that
-/// there are.
+/// The label with the requested name, by the given table or by that of the label map `scene`. Adds to
+/// `findings` the files that were passed over. Throws std::runtime_error that lists the known names.
 int label_of_name(const Segment& segment, const std::filesystem::path& label_map, const voxel::Scene& scene,
                   const std::filesystem::path& folder, std::vector<std::string>& findings);
 
-/// The window of one of the classes of least variance (Otsu 1979), from the darkest, 1, and the thresholds
-/// with the histogram that they part.
+/// The window of one of Otsu's classes of least variance (1979), numbered from the darkest, 1; and the
+/// thresholds, with the histogram that they divide.
 struct OtsuWindow {
   SampleWindow window;
   nlohmann::ordered_json suggestion;

@@ -228,7 +228,7 @@ void check_asked(const Segment& asked) {
         "--window: choose the objects: --window bone, --otsu 3, --clusters 4, --seed X,Y,Z --tolerance T, "
         "--label N, --named NAME or --object FILE");
   if (asked.out.empty() && asked.contours.empty() && !asked.otsu && !asked.clusters)
-    throw std::runtime_error("--out: only --otsu, --clusters and --contours need none");
+    throw std::runtime_error("--out is missing: only --otsu, --clusters and --contours work without it");
   if (is_octree(asked.out) && asked.windows.size() + asked.objects.size() > 1)
     throw std::runtime_error("--out: an .octree holds one object: write several as a label map, .nrrd");
   if (!asked.out.empty() && !is_octree(asked.out) && !is_dicom_seg(asked.out) &&
@@ -239,7 +239,7 @@ void check_asked(const Segment& asked) {
   if (!asked.contours.empty()) {
     need_extension(asked.contours, {".json"}, "contours are");
     if (asked.windows.empty() && !asked.otsu)
-      throw std::runtime_error("--contours: follow the lower bound of a --window: give it");
+      throw std::runtime_error("--contours: contours follow the lower bound of a --window: add --window");
   }
   std::vector<fs::path> read{asked.scan.name, asked.names, asked.regions};
   read.insert(read.end(), asked.objects.begin(), asked.objects.end());

@@ -25,7 +25,8 @@ struct Separate {
 
 void check(const Separate& separate, const FieldLocation& place) {
   if (place.scope != nullptr && !separate.piece)
-    place.at("piece").refuse("is missing: say which, 1 the largest; a step for each piece");
+    place.at("piece").refuse(
+        "is missing: give the number of the piece, 1 the largest; each piece needs a step of its own");
 }
 
 std::string definition(const Separate& separate, const Objects&) {
@@ -164,7 +165,7 @@ Operation separate_operation() {
       .verb_takes(
           field("least_mm2", &Separate::least_mm2, "Leaves out pieces of a smaller area.").from(0.0).to(1e9))
       .verb_takes(field("out", &Separate::out,
-                        "A .stl, .ply, .obj, .off, .vtp or .glb file; without --piece each piece's is "
+                        "A .stl, .ply, .obj, .off, .vtp or .glb file; without --piece each piece's file is "
                         "numbered, parts-1.ply, and replaces only a file that Octotomy wrote.")
                       .required())
       .example(R"({"id": "condyle", "do": "separate", "object": "rest", "piece": 2})")

@@ -69,7 +69,7 @@ void voxels(const Shell& shell, const VoxelBench& bench, VoxelSide& made) {
   }();
   made.octree = bench.combined(voxel::Expression(object.octree) - core);
   made.symbol = bench.within_universe(*object.symbol - core);
-  made.lineage = "the octree less what is deeper than a distance below its surface between voxels";
+  made.lineage = "the octree less what lies deeper than the thickness below its surface between voxels";
 }
 
 void triangles(const Shell& shell, const MeshBench& bench, MeshSide& made) {

@@ -25,8 +25,8 @@ struct Smooth {
   bool mend = false;
 };
 
-/// The surfaces are no farther apart than this, either way: smoothing moves points and keeps triangles, so
-/// that each place of one triangle has one of the other within the largest move of its corners.
+/// An upper bound of the distance between both surfaces, in either direction. Smoothing moves points and
+/// keeps triangles, so every place of a triangle moves by at most the largest move of its corners.
 double largest_move_mm(const brep::Mesh& mesh, const brep::Mesh& smoothed) {
   const std::vector<glm::dvec3> before = brep::triangles_of(mesh).points_mm,
                                 after = brep::triangles_of(smoothed).points_mm;
@@ -75,10 +75,12 @@ FileAnswer on_files(const Smooth& asked, const FileBench& bench) {
 }  // namespace
 
 Operation smooth_operation() {
-  return Describe<Smooth>("smooth", "Takes noise off an object's surface and keeps its volume.",
+  return Describe<Smooth>("smooth", "Removes noise from an object's surface and keeps its volume.",
                           Makes::Object)
       .takes(field("object", &Smooth::object, "The object.").required().positional("mesh"))
-      .takes(field("rounds", &Smooth::rounds, "Steps in and out again.").from(1).to(1000))
+      .takes(field("rounds", &Smooth::rounds, "Number of rounds, each a step inward and a step outward.")
+                 .from(1)
+                 .to(1000))
       .takes(field("pass_band", &Smooth::pass_band,
                    "Waves below this frequency stay: 0.1 keeps those longer than about 10 edges.")
                  .from(0.001)

@@ -47,8 +47,8 @@ struct Subject {
   brep::Health health;
 };
 
-/// Turns triangles that wind against their neighbours: joining would cut the surface between them, and winding
-/// numbers of both ways cancel out.
+/// Turns triangles that wind against their neighbours. Otherwise joining would cut the surface between
+/// them, and opposite windings would cancel in the winding numbers.
 void turn_alike(const std::filesystem::path& path, brep::Triangles& triangles,
                 std::vector<std::string>& findings) {
   if (triangles.faces.empty()) return;
@@ -61,7 +61,8 @@ void turn_alike(const std::filesystem::path& path, brep::Triangles& triangles,
                      " triangles were turned, so that shells face outward and cavities inward");
 }
 
-/// Throws where it holds no triangles, or is to be shared out exactly and is no solid; tells what is guessed.
+/// Reads a subject. Throws if it has no triangles, or if it is to be digitised exactly but is no solid.
+/// Reports guesses.
 Subject read_subject(const FileBench& bench, const std::filesystem::path& path, const std::string& digitise,
                      std::vector<std::string>& findings) {
   Subject subject{path, {}, {}};
@@ -69,7 +70,7 @@ Subject read_subject(const FileBench& bench, const std::filesystem::path& path, 
     const Stopwatch watch(bench.timings, "read");
     subject.triangles = triangles_named(path.string(), bench);
     turn_alike(path, subject.triangles, findings);
-    // Welded, as each open edge is a rim that costs.
+    // Joined, because each open edge would be a rim, and rims cost time.
     subject.triangles = brep::joined_surface(std::move(subject.triangles)).surface;
   }
   if (subject.triangles.faces.empty()) throw std::runtime_error(path.string() + ": holds no triangles");
@@ -243,14 +244,16 @@ FileAnswer on_files(const Voxelise& asked, const FileBench& bench) {
 
 Operation voxelise_operation() {
   return Describe<Voxelise>("voxelise", "Makes an octree of a mesh, or a label map of several.", Makes::File)
-      .takes(field("meshes", &Voxelise::meshes,
-                   "Objects; of the verb mesh files (.stl, .ply, .obj, .vtp, .glb, ...); where one is no "
-                   "solid, its "
-                   "holes and "
-                   "crossings are bridged by the winding number.")
-                 .required()
-                 .from(1)
-                 .positional("mesh"))
+      .takes(
+          field(
+              "meshes", &Voxelise::meshes,
+              "Objects; on the command line mesh files (.stl, .ply, .obj, .vtp, .glb, ...); where one is no "
+              "solid, its "
+              "holes and "
+              "crossings are bridged by the winding number.")
+              .required()
+              .from(1)
+              .positional("mesh"))
       .takes(field("path", &Voxelise::out, "An .octree file, or a label map: .nrrd, .nii.gz, .mha.")
                  .required()
                  .called("out"))

@@ -59,7 +59,7 @@ void voxels(const Window& window, const VoxelBench& bench, VoxelSide& made) {
     throw std::runtime_error("no voxel of scan '" + window.scan.name +
                              "' is in the window, but samples are: voxels of " +
                              plain(bench.universe.lattice().spacing_mm().x) +
-                             " mm pass over them: take smaller ones, 'voxel_mm' of the universe");
+                             " mm miss them: take smaller ones, 'voxel_mm' of the universe");
   const voxel::Range range = voxel::range(scan.scene());
   throw std::runtime_error("no voxel of scan '" + window.scan.name +
                            "' is in the window; its samples are from " + plain(range.low) + " to " +

@@ -27,7 +27,8 @@ glm::dvec2 on_spline(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2&
   return between(between(ab, bc, t0, t2), between(bc, cd, t1, t3), t1, t2);
 }
 
-/// The curve through the points in steps; beyond the first and last it would go on straight.
+/// A spline through the points, in steps of at most curve_step_mm. At either end it is computed with a further
+/// point, which continues the outermost segment straight.
 std::vector<glm::dvec2> curve_through(const std::vector<glm::dvec2>& points_mm) {
   std::vector<glm::dvec2> p{2.0 * points_mm[0] - points_mm[1]};
   p.insert(p.end(), points_mm.begin(), points_mm.end());

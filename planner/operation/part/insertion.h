@@ -11,13 +11,15 @@
 
 namespace octotomy::planner {
 
-/// The way in which a part is put on, typed or by the view from whose side it comes: exactly one is there.
+/// The direction in which a part is inserted: typed, or given by the view from whose side it comes. Exactly
+/// one of the two is set.
 struct Insertion {
   std::optional<glm::dvec3> direction;   ///< of any length, LPS
   std::optional<std::string> seen_from;  ///< a view of the head as it is held
 };
 
-/// Refuses both and neither, a direction without length and an unknown view.
+/// Refuses a direction and a view together, neither of them, a direction without length, and an unknown
+/// view.
 void check(const Insertion& insertion, const FieldLocation& place);
 /// A unit vector, LPS.
 glm::dvec3 direction_of(const Insertion& insertion, const glm::dmat3& lps_from_head);

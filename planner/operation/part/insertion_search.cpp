@@ -82,7 +82,7 @@ Json measure(const InsertionSearch& asked, const AnswerBench& bench) {
 Operation insertion_search_operation() {
   return Describe<InsertionSearch>(
              "insertion_search",
-             "Finds the insertion direction along which the least of an object is undercut.",
+             "Finds the insertion direction along which an object has the least undercut.",
              Makes::Measurement)
       .takes(field("object", &InsertionSearch::object, "The bone or teeth on which a part is to sit.")
                  .required())

@@ -42,7 +42,7 @@ void check(const Screw& screw, const FieldLocation& place) {
       place.at("away_from").refuse("names '" + object.name + "', in which the screw sits");
 }
 
-/// By voxels; none where the screw or the other object has none.
+/// The gap by voxels; none if the screw or the other object has no voxels.
 std::optional<double> voxel_gap_mm(const voxel::Octree& screw, const voxel::Octree& other) {
   if (screw.is_empty() || other.is_empty()) return std::nullopt;
   return gap_between(screw, other, std::nullopt, std::nullopt).voxel_mm;
@@ -56,7 +56,8 @@ ScrewClear clear_of_object(const Object& object, const brep::Solid& rod, const v
   return clear;
 }
 
-/// From the walls of a mask, on whichever side the screw is, or from what a saw takes away.
+/// The distance of a screw from the walls of a mask, on either side of them, or from the bone that a saw
+/// removes.
 ScrewClear clear_of_cut(const Object& object, const Action& maker, const brep::Solid& rod,
                         const voxel::Octree& voxels, const std::filesystem::path& folder) {
   const voxel::Universe universe = voxels.universe();

@@ -38,7 +38,7 @@ void check(const Seating& seating, const FieldLocation& place) {
                                  "' itself: name the bone or the teeth on which it sits");
 }
 
-/// What both kernels find of one object.
+/// Both kernels' results for one object.
 struct Found {
   std::string object;
   std::optional<brep::Binding> mesh;
@@ -139,7 +139,7 @@ Json measure(const Seating& asked, const AnswerBench& bench) {
 
 Operation seating_operation() {
   return Describe<Seating>("seating",
-                           "Proves that a part can be put on: how deep objects reach into its way.",
+                           "Tests whether a part can be put on: how deep objects reach into its path.",
                            Makes::Measurement)
       .takes(field("object", &Seating::part, "The part at its place.").required())
       .takes(field("against", &Seating::against, "The bone or teeth on which it sits.").required().from(1))

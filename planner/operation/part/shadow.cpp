@@ -45,7 +45,7 @@ const brep::Solid& solid_within(const Object& object) {
   return object.mesh.within ? *object.mesh.within : *object.mesh.whole;
 }
 
-/// By the mesh, whose tips are exact; by voxels where there is none.
+/// The far end of the object by its mesh, whose tips are exact, or by its voxels if it has no mesh.
 std::optional<double> far_end_mm(const Object& object, const glm::dvec3& along) {
   if (object.mesh.whole) {
     const brep::Solid& solid = solid_within(object);
@@ -76,9 +76,9 @@ double cell_mm(const brep::Solid& solid, double tolerance_mm) {
   return std::max(0.25 * tolerance_mm, std::max({extent.x, extent.y, extent.z}) / 200.0);
 }
 
-/// The part of a shadow within the universe, where voxels end, too. A plane across an oblique direction reaches
-/// beyond the universe by nature, and nothing is lost there. Where a verb works on meshes alone there is no
-/// universe.
+/// The part of a shadow within the universe, whose border also ends its voxels. A plane across an oblique
+/// direction always reaches beyond the universe; the part beyond it does not count as lost. A verb that
+/// works on meshes alone has no universe.
 brep::BooleanResult cut_at_universe(const brep::Solid& shadow, bool has_voxels, const MeshBench& bench) {
   const glm::dvec3 &low = bench.low_mm, &high = bench.high_mm;
   if (!has_voxels || shadow.empty() ||
@@ -175,7 +175,7 @@ void bound(const Shadow& shadow, const BoundBench& bench, Object& made) {
   const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
   if (is_whole_voxels(object.voxel))
     made.bound.measured_apart_mm += 0.5 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
-  // Where the end plane is parallel to voxels' faces, all of it is rounded alike.
+  // If the end plane is parallel to voxels' faces, the whole plane is rounded in the same direction.
   constexpr double rounding = 1e-9;
   for (int axis = 0; axis < 3; ++axis)
     if (std::abs(shadow.along[axis]) > 1.0 - rounding)
@@ -187,7 +187,7 @@ void bound(const Shadow& shadow, const BoundBench& bench, Object& made) {
 
 Operation shadow_operation() {
   return Describe<Shadow>("shadow",
-                          "Blocks out an object's undercuts: the object and all that lies behind it along an "
+                          "Blocks out an object's undercuts: the object and everything behind it along an "
                           "insertion direction.",
                           Makes::Object)
       .takes(field("object", &Shadow::object, "The object.").required().positional("solid"))

@@ -12,9 +12,10 @@
 
 namespace octotomy::planner {
 
-/// What the files hold, by the surface that partial volume gives an octree of shares; with Render::count,
-/// with its voxels as the thesis counts visits to them instead. All in the first one's universe, named as the files are, without folder and ending.
-/// Throws std::runtime_error for files that cannot be drawn, with the path, and for what is no colour.
+/// The objects in the files. An octree of shares is drawn by the surface that partial volume gives it; with
+/// Render::count by its voxels, as the thesis counts visits to them. All objects are in the first one's
+/// universe and named as their files, without folder and ending. Throws std::runtime_error, with the path,
+/// for files that cannot be drawn, and for invalid colours.
 std::vector<voxel::DrawnObject> drawn_of_files(const Render& render, const std::vector<ObjectName>& files,
                                                const FileBench& bench);
 

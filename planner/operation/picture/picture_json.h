@@ -13,7 +13,7 @@ namespace octotomy::planner {
 /// Nearest and farthest lit depth; null where nothing is lit.
 Json depth_range_json(const voxel::Picture& picture);
 
-/// What was drawn of each object, in the objects' order.
+/// What was drawn for each object, in the objects' order.
 Json objects_json(const std::vector<voxel::DrawnObject>& objects, const voxel::Picture& picture);
 
 /// The objects at pixels; null for the background. Precondition: pixels of the picture.

@@ -506,8 +506,9 @@ Operation render_operation() {
       .takes(
           field("colour_by", &Render::colour_by,
                 "distance:NAME colours the first object by its surface's distance outside (orange) or inside "
-                "(blue) another one; of the verb a file."))
-      .takes(field("range_mm", &Render::range_mm, "Distance of the last colours by distance. Default: 5.")
+                "(blue) another one; on the command line a file."))
+      .takes(field("range_mm", &Render::range_mm,
+                   "The distance at which the scale of 'colour_by' ends. Default: 5.")
                  .greater_than(0.0)
                  .read_if<Render>([](const Render& render) { return !render.colour_by.empty(); },
                                   "needs 'colour_by': add it"))

@@ -25,7 +25,8 @@
 namespace octotomy::planner {
 namespace {
 
-/// Columns of a curved picture without a stated pixel size: a dental arch fills a screen's width.
+/// The least width in pixels of a curved picture without a stated pixel size. A dental arch then fills a
+/// screen's width.
 constexpr int least_curve_px = 800;
 
 namespace fs = std::filesystem;
@@ -100,7 +101,7 @@ voxel::View view_along(const glm::dvec3& direction, const std::optional<glm::dve
   // face is up, as in axial slices.
   if (!wanted_up && glm::length(up) < std::sin(glm::radians(1.0))) up = across(glm::dvec3(0, -1, 0));
   if (!(glm::length(up) > 0.0))
-    throw std::runtime_error("up: points along the direction that is looked in: choose another");
+    throw std::runtime_error("up: points along the viewing direction: choose another");
   view.up = glm::normalize(up);
   view.right = glm::cross(view.look, view.up);
   return view;
@@ -249,7 +250,7 @@ voxel::Range shown_range(const Slice& slice, const Subject& subject, const voxel
 
 glm::vec3 outline_colour(const Slice& slice, const std::vector<Outlined>& objects, std::size_t i) {
   if (i < slice.colours.size()) return need_colour(slice.colours[i]);
-  // Bone's own colour is that of the picture's greys: outlines begin with the next.
+  // Outlines begin with the second default colour, because bone's own colour resembles the picture's greys.
   return objects[i].is_hatched ? interference_colour() : colour_of(i + 1);
 }
 
@@ -421,13 +422,13 @@ bool cuts_samples(const Slice& slice) {
 
 void check(const Slice& slice, const FieldLocation& place) {
   if (slice.window && !slice.level.empty())
-    place.at("level").refuse("says the same as 'window': leave one out");
+    place.at("level").refuse("states the same as 'window': leave one out");
   if (slice.grid_mm && !slice.curve_mm.empty())
     place.at("grid_mm").refuse("applies only to planes; a curved picture has none");
   if (slice.colours.size() > slice.objects.size() + slice.hatched.size())
     place.at("colours").refuse("has more colours than there are objects and hatched objects");
   if (!slice.level.empty() && !(slice.level[1] > 0.0))
-    place.at("level").refuse("is CENTRE and WIDTH, which is above zero");
+    place.at("level").refuse("must be CENTRE and WIDTH, with a width above zero");
   for (const std::string& colour : slice.colours) need_colour(colour);
   if (place.scope != nullptr) check_output_path(slice.path, {".png", ".jpg", ".webp"}, place.at("path"));
 }
@@ -507,27 +508,26 @@ Operation slice_operation() {
   return Describe<Slice>("slice",
                          "Draws a plane or a curved sheet of a scan in true scale, with octrees' outlines.",
                          Makes::File)
-      .takes(field("scan", &Slice::scan, "The scan; of the verb also an .octree file or a mesh.")
+      .takes(field("scan", &Slice::scan, "The scan; on the command line also an .octree file or a mesh.")
                  .required()
                  .positional("file"))
       .takes(field("path", &Slice::path, "The .png, .jpg or .webp file within the result's folder.")
                  .in_plans_only())
-      .takes(field(
-          "axial", &Slice::axial,
-          "z in mm, or middle, which is drawn where no plane is said; from below, the patient's left is "
-          "on the right."))
+      .takes(
+          field("axial", &Slice::axial,
+                "z in mm, or middle, which is drawn if no plane is given; from below, the patient's left is "
+                "on the right."))
       .takes(field("coronal", &Slice::coronal, "y in mm, or middle; from the front."))
       .takes(field("sagittal", &Slice::sagittal, "x in mm, or middle; from the patient's left."))
-      .takes(field("oblique", &Slice::oblique, "A point, LPS mm, and the direction that is looked in.")
-                 .from(2)
-                 .to(2))
+      .takes(field("oblique", &Slice::oblique, "A point, LPS mm, and the viewing direction.").from(2).to(2))
       .takes(field("curve_mm", &Slice::curve_mm, "Two or more points of a curved sheet, left to right.")
                  .from(2)
                  .in_plans_only())
       .takes(field("height_mm", &Slice::height_mm, "Height of a curved sheet.")
                  .greater_than(0.0)
                  .read_if<Slice>(is_curved, "applies only to curved sheets: add 'curve'"))
-      .takes(field("up", &Slice::up, "Upwards in an oblique or curved picture. Default: the head.")
+      .takes(field("up", &Slice::up,
+                   "The direction that is up in an oblique or curved picture. Default: towards the head.")
                  .direction()
                  .read_if<Slice>(
                      [](const Slice& slice) { return is_curved(slice) || !slice.oblique.empty(); },
@@ -542,11 +542,11 @@ Operation slice_operation() {
                  .comma_separated()
                  .for_example("CENTRE,WIDTH as 500,2000"))
       .takes(field("objects", &Slice::objects,
-                   "Objects whose outlines are drawn; of the verb binary octrees and meshes.")
+                   "Objects whose outlines are drawn; on the command line binary octrees and meshes.")
                  .repeated()
                  .called("octree"))
       .takes(field("hatched", &Slice::hatched,
-                   "Objects that are drawn with their inside hatched, in red where no colour is said: "
+                   "Objects that are drawn with their inside hatched, in red where no colour is given: "
                    "interference of pieces, for example.")
                  .repeated())
       .takes(field("colours", &Slice::colours,
@@ -573,7 +573,7 @@ Operation slice_operation() {
       .takes(field("plain", &Slice::plain, "No letters and no scale bar."))
       .takes(field("grid_mm", &Slice::grid_mm,
                    "Draws lines at multiples of this distance, mm; a margin that is added at the right and "
-                   "below tells their places in the view that looks at the plane.")
+                   "below shows their places in the view of the plane.")
                  .from(0.1)
                  .to(1000.0)
                  .called("grid"))

@@ -38,10 +38,10 @@ MadeScan made(const ClampStreaks& step, const ScanBench& bench) {
 Operation clamp_streaks_operation() {
   return Describe<ClampStreaks>("clamp_streaks", "Holds the samples near metal within bounds.", Makes::Scan)
       .takes(field("scan", &ClampStreaks::scan, "The scan.").required())
-      .takes(field("metal", &ClampStreaks::metal, "Samples from here on are metal."))
+      .takes(field("metal", &ClampStreaks::metal, "Samples from this value on are metal."))
       .takes(field("low", &ClampStreaks::low, "Lower samples near metal are raised to this."))
       .takes(field("high", &ClampStreaks::high,
-                   "Higher samples near metal, and not metal, are lowered to this."))
+                   "Higher samples near metal that are not metal are lowered to this."))
       .takes(field("reach_mm", &ClampStreaks::reach_mm, "Distance from metal within which samples are held.")
                  .greater_than(0.0))
       .example(R"({"id": "held", "do": "clamp_streaks", "scan": "ct", "reach_mm": 20})")

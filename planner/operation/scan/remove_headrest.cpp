@@ -18,11 +18,11 @@ struct RemoveHeadrest {
   std::vector<glm::dvec3> keep_mm;
 };
 
-/// Less that stays is a strap's buckle, a wire or noise.
+/// A smaller kept part is a strap's buckle, a wire or noise.
 constexpr double least_kept_mm3 = 1000.0;
 
-/// What was removed, and what was kept that may be a support. Recommends no value: a part that could not be
-/// parted surely must not be cut off by another number.
+/// Reports the removed parts, and kept parts that may be a support. Recommends no value, because another
+/// number must not cut off a part that could not be separated reliably.
 std::vector<std::string> findings_of(const voxel::HeadrestRemoval& removal) {
   const auto cm3 = [](double mm3) { return plain(std::round(mm3 / 100.0) / 10.0) + " cm\u00b3"; };
   std::vector<std::string> findings;
@@ -42,8 +42,8 @@ std::vector<std::string> findings_of(const voxel::HeadrestRemoval& removal) {
         "scan's frame may be turned");
   if (removal.behind_mm3 >= least_kept_mm3)
     findings.push_back(cm3(removal.behind_mm3) +
-                       " behind the patient's coronal middle may be a support, but cannot be parted surely, "
-                       "and were kept: remove them by a crop step or a mask");
+                       " behind the patient's coronal middle may be a support, but cannot be separated "
+                       "reliably, and were kept: remove them by a crop step or a mask");
   return findings;
 }
 
@@ -83,7 +83,7 @@ Operation remove_headrest_operation() {
                                   Makes::Scan)
       .takes(field("scan", &RemoveHeadrest::scan, "The scan.").required())
       .takes(field("threshold", &RemoveHeadrest::threshold,
-                   "Samples from here on are solid, in the scan's unit."))
+                   "Samples from this value on are solid, in the scan's unit."))
       .takes(field(
           "near_mm", &RemoveHeadrest::near_mm,
           "Parts wholly within this distance of the patient stay, unless they are foam or part of a board."))

@@ -23,7 +23,7 @@ inline bool has_control(std::string_view text) {
 /// Throws std::runtime_error that names `what`, for example "a scan's name", if the text has control
 /// characters.
 inline void need_no_control(std::string_view text, const std::string& what) {
-  if (has_control(text)) throw std::runtime_error(what + " has control characters: take them out");
+  if (has_control(text)) throw std::runtime_error(what + " has control characters: remove them");
 }
 
 }  // namespace octotomy::planner

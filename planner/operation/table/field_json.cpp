@@ -166,7 +166,7 @@ class Reader {
  private:
   static std::string text(const SortedJson& json, const FieldLocation& place) {
     if (!json.is_string()) place.refuse("must be a text in quotes, not " + type_of(json));
-    if (json.get_ref<const std::string&>().empty()) place.refuse("is empty: say what is meant");
+    if (json.get_ref<const std::string&>().empty()) place.refuse("is empty: give a value");
     return json.get<std::string>();
   }
   double number(const SortedJson& json, const FieldLocation& place) const {
@@ -457,8 +457,8 @@ void need_fields_read(const std::vector<Field>& fields, const SortedJson& object
   }
 }
 
-/// Whether the operation reads a field of this value: need_fields_read() refuses one that is printed all the
-/// same.
+/// Whether the operation reads a field for this value. need_fields_read() refuses a field that is given but
+/// not read.
 static bool is_read(const Field& field, const void* owner) {
   const auto* conditional = field.slot.target<ConditionalSlot>();
   return conditional == nullptr ||

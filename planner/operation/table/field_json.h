@@ -17,9 +17,9 @@ namespace octotomy::planner {
 void read_fields(const std::vector<Field>& fields, const nlohmann::json& object, void* owner,
                  const FieldLocation& place, const std::vector<std::string>& also = {});
 
-/// Throws std::runtime_error with the place for a field that `object` gives although the operation in `owner`
-/// does not read it (Field::read_if()): what changes nothing is a mistake of whoever gave it. A false flag, an
-/// empty list and null give nothing.
+/// Throws std::runtime_error with the place if `object` states a field that the operation in `owner` does
+/// not read (Field::read_if()): a value without effect is a mistake of its author. A false flag, an empty
+/// list and null count as not stated.
 void need_fields_read(const std::vector<Field>& fields, const nlohmann::json& object, const void* owner,
                       const FieldLocation& place);
 

@@ -64,7 +64,7 @@ std::vector<std::string> need_same_patient(const IdentityOf& scan, const Identit
                                            const std::string& option) {
   const voxel::Finding finding = identity_finding(scan, laid);
   if (finding.verdict == voxel::Verdict::Fail && !is_allowed)
-    throw std::runtime_error(finding.detail + "; where that is meant, " + option +
+    throw std::runtime_error(finding.detail + "; if that is intended, " + option +
                              " continues and reports it as a FAIL");
   std::vector<std::string> lines;
   if (finding.verdict == voxel::Verdict::Fail) lines.push_back("FAIL: identity: " + finding.detail);

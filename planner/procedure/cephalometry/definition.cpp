@@ -98,7 +98,8 @@ class Reader {
       refuse(where + ", of", kind.points == 0 ? "must be two measures" : "is for a difference or a share");
     if (measure.plane == Plane::Space &&
         (kind.kind == Kind::Bend || kind.kind == Kind::Tilt || kind.kind == Kind::Across))
-      refuse(where + ", plane", "has a sign in a plane only: choose lateral or frontal");
+      refuse(where + ", plane",
+             "must be lateral or frontal, because this measure has a sign only in a plane");
     need_known(measure.points, landmarks_, where + ", points");
     need_known(measure.of, measures_, where + ", of");
     if (entry.contains("norm")) measure.norm = number_of(entry["norm"], where + ", norm");

@@ -33,7 +33,7 @@ bool has_all_steps(const Plan& plan, const Procedure& procedure) {
   });
 }
 
-/// Whether a step is a result: by its name, or because a procedure's file says so.
+/// Whether a step is a result: by its name, or because a procedure's file states it.
 bool is_outcome(const Plan& plan, const std::string& id) {
   if (id == "planned" || id == "rebuilt" || id.ends_with("_planned") || id.ends_with("_rebuilt")) return true;
   return std::any_of(known_procedures().begin(), known_procedures().end(), [&](const Procedure& procedure) {
@@ -77,8 +77,9 @@ Nearest nearest(const glm::dvec3& p_mm, const voxel::Octree& piece,
   return found;
 }
 
-/// Where a point of the scan lies after the motions that the outcome is made of. Once it goes with a piece, only
-/// pieces that were cut from that one carry it further. A mirror image leaves its original where it is.
+/// The position of a point of the scan after the motions from which the outcome is made. Once the point has
+/// moved with a piece, only pieces cut from that piece move it further. A mirror image does not move its
+/// original.
 glm::dvec3 carried_mm(glm::dvec3 p_mm, const Plan& plan, const Evaluation& evaluated,
                       const std::set<std::string>& in_outcome) {
   std::optional<std::string> owner;
@@ -100,7 +101,7 @@ glm::dvec3 carried_mm(glm::dvec3 p_mm, const Plan& plan, const Evaluation& evalu
   return p_mm;
 }
 
-/// Adds landmarks to the step of the plan that names them, or a step that does.
+/// Adds landmarks to the plan's step that names landmarks, or adds such a step.
 void add_landmarks(const std::vector<brep::Landmark>& landmarks, const Plan& plan, Json& whole) {
   Json added = Json::array();
   for (const brep::Landmark& landmark : landmarks) {
@@ -127,7 +128,8 @@ void add_landmarks(const std::vector<brep::Landmark>& landmarks, const Plan& pla
   whole["steps"].insert(whole["steps"].begin(), Json{{"id", id}, {"do", "landmarks"}, {"points", added}});
 }
 
-/// Adds the scans that the procedure takes beside the patient's, where the plan has none of the name.
+/// Adds the scans that the procedure uses in addition to the patient's. Refuses names that the plan already
+/// uses.
 void add_scans(const Procedure& procedure, const ProcedureInput& input, Json& whole) {
   need_scans(procedure, input.further_scans, whole["scans"]);
   for (const auto& [name, entry] : input.further_scans) {
@@ -141,7 +143,7 @@ bool is_letter(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
-/// Gives a procedure's steps names of their own.
+/// Gives the steps of a procedure unique names.
 class Renaming {
  public:
   /// `scan`: the plan's name of the patient's scan, which procedures call "ct".
@@ -155,7 +157,7 @@ class Renaming {
     const Json& fields = fields_of(step.at("do"));
     for (const auto& [key, value] : step.items()) {
       if (key == "id" || key == "do") continue;
-      // What a field may name stands in the schema.
+      // The schema states what kind of name a field may hold.
       const std::string schema = fields.value(key, Json::object()).dump();
       const bool names_objects = schema.find("x-names") != std::string::npos;
       const bool names_points = schema.find("oneOf") != std::string::npos;
@@ -178,7 +180,7 @@ class Renaming {
     return none;
   }
 
-  /// Names of steps, and landmarks, whose place is written, as it may have moved.
+  /// Names of steps become their new names. Landmarks become positions, because they may have moved.
   Json renamed(const Json& value, bool names_objects, bool names_points) const {
     if (value.is_string()) {
       const auto& text = value.get_ref<const std::string&>();
@@ -229,7 +231,8 @@ bool uses_value(const Json& value, const std::string& name) {
          std::any_of(value.begin(), value.end(), [&](const Json& part) { return uses_value(part, name); });
 }
 
-/// Whether a step is the procedure's bone: what its file says, otherwise every window of the patient's scan.
+/// Whether a step is the procedure's bone: as its file states; without a statement, every window of the
+/// patient's scan.
 bool is_bone(const Procedure& procedure, const Json& step) {
   if (!procedure.acts_on.empty()) return step.value("id", "") == procedure.acts_on;
   return step.value("do", "") == "window" && step.value("scan", "") == "ct";
@@ -296,7 +299,8 @@ Chained chained(const Plan& plan, const Evaluation& evaluated, const Procedure& 
 
   std::set<std::string> taken;
   for (const Step& step : placed.steps) taken.insert(step.id);
-  // Of the procedure's own names: "le_fort_i_" begins those of le_fort_i_two_piece, too.
+  // Compared with the names that the procedure would use: the prefix "le_fort_i_" alone also fits the steps
+  // of le_fort_i_two_piece.
   const auto is_free = [&](const std::string& prefix) {
     return std::none_of(procedure.steps.begin(), procedure.steps.end(), [&](const Json& step) {
       return taken.contains(prefix + step.at("id").get<std::string>());

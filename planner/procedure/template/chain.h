@@ -10,7 +10,7 @@
 #include "planner/plan/plan.h"
 #include "planner/procedure/template/procedure.h"
 
-// Procedures one after the other: each acts on what the one before has planned.
+// Procedures in succession: each acts on the planned outcome of the one before.
 namespace octotomy::planner {
 
 /// The object that the plan's last procedure ends with: the last step that is called "planned" or "rebuilt",
@@ -18,7 +18,7 @@ namespace octotomy::planner {
 /// has. None: the plan has no such step.
 std::optional<std::string> outcome_of(const Plan& plan);
 
-/// Whether chained() has given a step this name for the procedure.
+/// Whether chained() named this step for the procedure.
 bool is_chained_step_of(const Procedure& procedure, const std::string& id);
 
 struct Chained {
@@ -32,7 +32,7 @@ struct Chained {
 /// "genioplasty_2". The procedure's bone, its window of the scan, is the outcome before.
 ///
 /// Landmarks of the input are where the scan shows them, LPS; those that the plan has need not be given again.
-/// A landmark goes along with the pieces that it lies on: of the voxels within 8 mm of it, of the object that a
+/// A landmark moves with the pieces on which it lies: of the voxels within 8 mm of it, of the object that a
 /// piece was cut from, the nearest decides. `evaluated` is the plan's evaluation, with the objects that move.
 /// The input's scan, voxels and folder are not read: they are the plan's.
 ///

@@ -113,7 +113,8 @@ void add_landmarks_of(const std::string& name, Procedure& procedure) {
       procedure.landmarks.push_back(landmark);
 }
 
-/// {"of": another procedure, "steps": [ids]}: these steps of it, with its formulas.
+/// {"of": another procedure, "steps": [ids]}: the steps with these ids of that procedure, with its
+/// formulas.
 void add_steps_of(const Json& entry, const std::string& where, Procedure& procedure) {
   const SortedJson plain = entry;
   check_keys(plain, where, {"of", "steps"});

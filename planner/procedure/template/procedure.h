@@ -54,8 +54,8 @@ Procedure read_procedure(const std::string& name_or_path);
 /// Names of the program's procedures.
 std::vector<std::string> procedures();
 
-/// Checks the scans that are given beside the patient's: each is one that the procedure takes, and each that it
-/// takes is given or in `known`. Throws std::runtime_error, with the scan's definition.
+/// Checks the scans given in addition to the patient's: the procedure must use each of them, and each scan
+/// that it uses must be given or in `known`. Throws std::runtime_error, with the scan's definition.
 void need_scans(const Procedure& procedure, const std::map<std::string, nlohmann::ordered_json>& given,
                 const nlohmann::ordered_json& known);
 
@@ -75,8 +75,8 @@ struct ProcedureInput {
 /// right are interchanged.
 nlohmann::ordered_json plan_of(const Procedure& procedure, const ProcedureInput& input);
 
-/// The procedure's own steps, its formulas answered: `landmarks` are in LPS, `lps_from_head` is how the head is
-/// held. Throws as plan_of() for landmarks, values and formulas.
+/// The procedure's own steps with evaluated formulas. `landmarks` are in LPS; `lps_from_head` is the head's
+/// orientation. Throws as plan_of() for landmarks, values and formulas.
 nlohmann::ordered_json steps_of(const Procedure& procedure, const std::vector<brep::Landmark>& landmarks,
                                 const std::map<std::string, double>& values, const glm::dmat3& lps_from_head);
 

@@ -99,7 +99,7 @@ class Made:
 
 
 class Result(Mapping[str, Made]):
-    """What a plan's steps made: objects by name, measurements and files."""
+    """The results of a plan's steps: objects by name, measurements and files."""
 
     def __init__(self, evaluation: _kernel.Evaluation) -> None:
         self._evaluation = evaluation

@@ -161,7 +161,7 @@ Json told(const Told& value) {
   return json;
 }
 
-/// A whole number as the bound of whole numbers puts the surface through their centres.
+/// A whole number as the bound of integer samples would put the surface through the centres of samples.
 std::optional<std::string> bound_finding(const voxel::Scene& after, double low) {
   const voxel::Range range = voxel::range(after);
   const bool are_labels = after.meaning == voxel::Meaning::Label || (range.low == 0.0 && range.high == 1.0);

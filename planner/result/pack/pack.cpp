@@ -34,14 +34,14 @@ constexpr const char* notice =
     "the\n"
     "entries below witness/. A planning and research tool, not a medical device.\n";
 
-/// Leaves out the time that anything took.
+/// Removes all durations.
 void leave_out_times(Json& json) {
   if (json.is_object()) json.erase("timings_ms");
   if (json.is_structured())
     for (Json& member : json) leave_out_times(member);
 }
 
-/// Writes the files again whose texts state times, without these.
+/// Rewrites the files that state times, without the times.
 void write_without_times(Result& result, Json json, const fs::path& folder) {
   result.evaluation.timings.clear();
   for (std::size_t i = 0; i < result.evaluation.objects.size(); ++i)

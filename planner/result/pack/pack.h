@@ -8,7 +8,7 @@
 
 namespace octotomy::planner {
 
-/// The format of packs; it changes where a checker of earlier ones would misread them.
+/// The version of the packs' format. It changes whenever a checker of earlier packs would misread new ones.
 inline constexpr int pack_format = 1;
 
 /// Writes a result as one zip archive that somebody else can check without this program: equal results make

@@ -73,7 +73,7 @@ std::string name_of(const Json& element, std::size_t position) {
   return std::to_string(position);
 }
 
-/// All values by their places.
+/// All values, keyed by their place.
 void flatten(const Json& json, const std::string& where, std::map<std::string, std::string>& values) {
   const auto below = [&where](const std::string& name) {
     return where.empty() ? name : where + " / " + name;
@@ -92,7 +92,7 @@ void flatten(const Json& json, const std::string& where, std::map<std::string, s
   }
 }
 
-/// The values that a replay need not share: where the files lay, and which version wrote them.
+/// The values that a replay need not share: the folders of files, and the version that wrote them.
 Json comparable(Json result) {
   result.erase("octotomy");
   if (result.contains("scans"))

@@ -69,7 +69,8 @@ std::optional<CellSamples> cell_at(const voxel::Scene& scene, const glm::dvec3& 
   return found;
 }
 
-/// Chooses voxels: those before and in each of some runs' first ones, and as many anywhere in the universe.
+/// Chooses voxels: for some runs the first voxel and the voxel before it, and the same number anywhere in
+/// the universe.
 std::vector<glm::ivec3> chosen_voxels(const Rows& runs, int side) {
   std::vector<glm::ivec3> voxels;
   const std::size_t count = runs.size() / 4, quarter = most_samples / 4;

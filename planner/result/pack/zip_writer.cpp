@@ -15,7 +15,7 @@ namespace {
 constexpr unsigned long earliest_date = 0x00210000;
 /// Coordinates compress little: higher levels take three times as long for 2 % less.
 constexpr int level = 3;
-/// minizip takes lengths of 32 bits.
+/// minizip accepts lengths of 32 bits.
 constexpr std::size_t most_at_once = std::size_t{1} << 30;
 
 }  // namespace

@@ -48,7 +48,7 @@ export function svg(tag: string, attributes: Attributes = {}, ...children: Child
   return made;
 }
 
-/// A verdict as a coloured label. Of an object that is not resolved it says so; its PASS is grey.
+/// A verdict as a coloured label. If the object is not resolved, the label states it, and a PASS is grey.
 export function pill(verdict: Verdict, resolved = true): HTMLElement {
   const css = resolved || verdict !== "PASS" ? verdict.toLowerCase() : "below";
   return el("span", {class: `pill ${css}`}, resolved ? verdict : `${verdict}, not resolved`);

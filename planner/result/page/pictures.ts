@@ -75,11 +75,12 @@ export const colour_scale = (most_mm: number, colours: string[]): HTMLElement =>
     `outside, ${three_figures(most_mm)} mm`);
 
 function group_section(group: PictureGroup): Child {
-  const is_scale = group.most_mm > 0;
+  const {most_mm} = group;
+  const is_scale = most_mm !== null;
   // A picture of a row of four is shown at half its size.
   const shown = {says: names_of(group), letters: is_scale ? 13 : 24, marks_mm: group.marks_mm};
   return section(
-      group.title, is_scale ? colour_scale(group.most_mm, group.colours) : legend(group),
+      group.title, is_scale ? colour_scale(most_mm, group.colours) : legend(group),
       el("div", {class: `pictures ${is_scale ? "two" : "four"}`}, group.pictures.map((one) => figure(one, shown))));
 }
 

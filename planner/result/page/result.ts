@@ -107,7 +107,7 @@ export interface Picture {
 }
 export interface PictureGroup {
   name: string; title: string; objects: {name: string; colour: string}[]; pictures: Picture[]; marks_mm: Vec3[];
-  most_mm: number;    // at the ends of the colours of signed distances; 0: colours tell the objects apart
+  most_mm: number|null;  // at the ends of the colours of signed distances; null: colours identify the objects
   colours: string[];  // of these distances, from inside to outside
 }
 export interface Report {

@@ -11,7 +11,7 @@ namespace octotomy::planner {
 namespace {
 
 constexpr int contact_picture_px = 480;
-/// How much bone around the contacts is shown, and how far it may rise above them.
+/// The width of bone shown around the contacts, and the height to which it may rise above them.
 constexpr double about_mm = 20.0, above_mm = 3.0;
 
 /// The axis-aligned view whose direction is most opposite to `normal`.
@@ -51,8 +51,8 @@ void add_contact_pictures(Result& result) {
       continue;
     const Object& object = objects.at(map.object);
     const Object& against = objects.at(map.against);
-    PictureGroup group{
-        name, object.id + " where it touches " + against.id, {}, {}, {}, std::max(2.0, 4.0 * map.within_mm)};
+    const double most_mm = std::max(2.0, 4.0 * map.within_mm);
+    PictureGroup group{name, object.id + " where it touches " + against.id, {}, {}, {}, most_mm};
     glm::dvec3 normal(0.0);
     for (const MeasuredContact& contact : map.contacts) {
       group.marks_mm.push_back(contact.at_mm);
@@ -71,7 +71,7 @@ void add_contact_pictures(Result& result) {
     voxel::DrawnObject drawn{object.id, part_about(object.voxel.octree, places_mm, towards_reader)};
     if (drawn.octree.is_empty()) continue;
     drawn.scalar = std::make_shared<const voxel::SurfaceScalar>(
-        voxel::distance_to(against.voxel.octree, drawn.octree, group.most_mm));
+        voxel::distance_to(against.voxel.octree, drawn.octree, most_mm));
     group.objects.push_back(std::move(drawn));
     draw(group, {view, view == "superior" || view == "inferior" ? "anterior" : "superior"}, group.objects,
          contact_picture_px, objects.lps_from_head);

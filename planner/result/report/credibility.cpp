@@ -346,9 +346,8 @@ std::vector<Json> certificate_evidence(const ResultRecord& result) {
       std::count_if(result.certificates.begin(), result.certificates.end(),
                     [](const CertificateRecord& one) { return !one.detection_limit.is_null(); });
   if (limits > 0)
-    evidence.push_back(
-        {{"check", "errors made in the objects themselves, to find the smallest that is detected"},
-         {"certificates_with_detection_limit", limits}});
+    evidence.push_back({{"check", "errors injected into the objects, to find the smallest that is detected"},
+                        {"certificates_with_detection_limit", limits}});
   return evidence;
 }
 

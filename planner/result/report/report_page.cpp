@@ -49,8 +49,12 @@ Json group_json(const Plan& plan, const PictureGroup& group) {
     objects.push_back({{"name", object.name}, {"colour", text_of_colour(object.colour)}});
   for (const ScenePicture& picture : group.pictures) pictures.push_back(picture_json(plan, picture));
   for (const glm::dvec3& p_mm : group.marks_mm) marks.push_back(to_json(p_mm));
-  return {{"name", group.name},           {"title", group.title}, {"objects", objects},
-          {"pictures", pictures},         {"marks_mm", marks},    {"most_mm", group.most_mm},
+  return {{"name", group.name},
+          {"title", group.title},
+          {"objects", objects},
+          {"pictures", pictures},
+          {"marks_mm", marks},
+          {"most_mm", group.most_mm ? Json(*group.most_mm) : Json(nullptr)},
           {"colours", distance_colours()}};
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,8 @@ struct PictureGroup {
   std::vector<ScenePicture> pictures;
   /// Positions at which numbers, from 1, are written on the pictures.
   std::vector<glm::dvec3> marks_mm = {};
-  double most_mm = 0.0;  ///< largest distance of the colour scale; 0: colours identify objects
+  /// The largest distance of the colour scale; none: colours identify objects.
+  std::optional<double> most_mm = std::nullopt;
 };
 
 /// The final pieces of a plan and, in the same colours, their originals before they were moved.

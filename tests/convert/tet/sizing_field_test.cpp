@@ -152,7 +152,7 @@ TEST(SizingField, APlaceTooDeepForItsSizeIsTold) {
   const std::vector<std::string> deep = findings({0, 0, 0}, 0.1);
   ASSERT_FALSE(deep.empty());
   EXPECT_NE(deep.back().find("elements at (0, 0, 0) mm have sides of "), std::string::npos) << deep.back();
-  EXPECT_NE(deep.back().find(" mm where 0.1 mm were asked for"), std::string::npos) << deep.back();
+  EXPECT_NE(deep.back().find(" mm where 0.1 mm "), std::string::npos) << deep.back();
   EXPECT_TRUE(findings({9.5, 0, 0}, 0.3).empty());
   EXPECT_TRUE(findings({0, 0, 0}, 4.0).empty());
 }

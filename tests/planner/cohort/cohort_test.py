@@ -301,7 +301,7 @@ class Cohort(unittest.TestCase):
         octotomy_program("cohort", table, self.folder / "out", "participant")
         octotomy_program("cohort", table, self.folder / "out", "participant", "--plan", kept)
         self.plan.write_text(other)
-        self.assert_refused(self.participants(table, "out", check=False), "plan.plan.json", "changed after it wrote")
+        self.assert_refused(self.participants(table, "out", check=False), "plan.plan.json", "changed after")
         self.assertEqual(kept.read_text(), mine)
         kept.unlink()
         self.participants(table, "out")

@@ -353,7 +353,7 @@ std::vector<SpoiledKind> of_values() {
       {"intercept_absent_in_one",
        "rescale",
        fail,
-       "absent in 1 slice, where 1 or 0 is taken",
+       "absent in 1 slice, where 1 or 0 is ",
        {"a07"},
        without({0x00281052}, 7, 7)},
       {"rescale_half_there", "rescale", warn, "absent", {"a07"}, without({0x00281053}, 7, 7)},

@@ -265,7 +265,7 @@ TEST_F(MeshVerbs, ElementsAreFinerAtPointsLandmarksAndAlongMeshesAndStiffnessCom
   EXPECT_EQ(tets(" --landmarks " + at("marks.json") + " --finer apex=0.4"), at_point);
   EXPECT_GT(tets(" --finer 0,0,12=0.4 --finer " + at("plate.off") + "=1"), 1.2 * at_point);
   expect_refused(run(tet + " --finer apex=0.4"), "--landmarks");
-  expect_refused(run(tet + " --finer 0,0,12"), "says no size");
+  expect_refused(run(tet + " --finer 0,0,12"), "--finer: '0,0,12'");
 
   const auto softest_mpa = [&](const std::string& options) {
     const CommandAnswer answer =

