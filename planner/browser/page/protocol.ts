@@ -198,7 +198,7 @@ export interface PaneRequest {
   window?: [number, number];
   threshold?: [number, number];
   objects: DrawnObject[];
-  preview?: {object: string; of: string; move: Motion; against: string[]; steps?: undefined}|
+  preview?: {object: string; of: string; move: Motion; against: string[]; difference?: string; steps?: undefined}|
       {object: string; steps: Step[]; move?: undefined};
   overlap?: boolean;
   colour_by?: {object: string; reference: string; range_mm: number; mutual?: boolean};
@@ -207,6 +207,13 @@ export interface PaneRequest {
   shading?: string;
   background?: string;
   dragging: boolean;
+}
+/// What a dragged piece and another object do not share, and what they do.
+export interface Difference {
+  to: string;
+  only_moved_mm3: number;
+  only_other_mm3: number;
+  common_mm3: number;
 }
 export interface FrameHeader {
   id: number;
@@ -219,6 +226,7 @@ export interface FrameHeader {
   command?: string;
   legend?: {low_mm: number; high_mm: number; colours: string[]; definition: string};
   overlap_mm3?: number|null;
+  difference?: Difference;
   parts: {kind: "jpeg"|"png"|"depth"|"object"|"value"; bytes: number}[];
 }
 export interface Notice {

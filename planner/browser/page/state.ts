@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What this window shows: the server's plan, and how this window looks at it. One value, changed by set(),
 // watched by key.
-import {Hello, Job, LandmarkGuess, Notice, PaneRequest, PlanState, Step} from "./protocol";
+import {Difference, Hello, Job, LandmarkGuess, Notice, PaneRequest, PlanState, Step} from "./protocol";
 import {Vec3} from "./base/vector";
 import {PlaneName, Turned, View} from "./base/view_frame";
 
@@ -77,6 +77,8 @@ export interface State {
   draft_step: Step|null;  // a step that is being filled in and is not in the plan yet
   preview: Preview|null;
   overlap_mm3: number|null;
+  difference_to: string|null;    // the object that a dragged piece is drawn against in two colours
+  difference: Difference|null;  // of the newest picture of the dragged piece
   cleaning: Cleaning|null;
   compare: Compare|null;
   cut_plane: CutPlane|null;
@@ -121,6 +123,8 @@ const without_plan = () => ({
   draft_step: null,
   preview: null,
   overlap_mm3: null,
+  difference_to: null,
+  difference: null,
   cleaning: null,
   compare: null,
   cut_plane: null,
@@ -205,6 +209,7 @@ export function leave_scan(): void {
     draft_step: null,
     preview: null,
     overlap_mm3: null,
+    difference: null,
     cleaning: null,
     marked: null,
     guesses: []

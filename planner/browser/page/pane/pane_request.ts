@@ -31,7 +31,7 @@ export function request_of(pane: Pane, dragging: boolean): PaneRequest {
     add_view(request, setting);
   if (state.preview && !is_elsewhere()) {
     request.preview = state.preview;
-    if (state.preview.move) request.overlap = true;
+    if (state.preview.move && !state.preview.difference) request.overlap = true;
     request.objects = shown.filter((object) => !object.id || !is_interference(object.id));
   }
   if (pane.is_slice) request.objects = request.objects.map(hatched_where_interfering);
@@ -43,6 +43,7 @@ export function request_of(pane: Pane, dragging: boolean): PaneRequest {
 /// Whether pieces lie in each other in what is drawn: interference lies within bone, where opaque bone would
 /// hide it. A picture that has to follow a drag is not made translucent.
 function has_interference({preview, objects, dragging}: PaneRequest): boolean {
+  if (preview?.move && preview.difference) return false;
   if (preview) return !dragging && (state.overlap_mm3 ?? 0) > 0;
   return objects.some(({id}) => id !== undefined && is_interference(id) && volume_of(id) > 0);
 }

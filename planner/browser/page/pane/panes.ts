@@ -189,6 +189,7 @@ export class Pane {
     this.canvas.dispatchEvent(
         new CustomEvent("picture", {bubbles: true, detail: {latency_ms, quality: header.quality}}));
     if (header.overlap_mm3 !== undefined && state.preview) set({overlap_mm3: header.overlap_mm3});
+    if (header.difference && state.preview) set({difference: header.difference});
     if (header.quality !== "rest") return;
     picture.planes = await planes_of(header, parts);
     this.redraw();
