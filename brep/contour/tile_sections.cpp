@@ -4,6 +4,7 @@
 // of contours, narrow those that still do, and take back those that always do; 3 number all points in one row.
 #include "brep/contour/tile_sections.h"
 
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -16,7 +17,8 @@
 
 #include "brep/contour/slab.h"
 #include "brep/mesh/error.h"
-#include "brep/mesh/health.h"
+#include "brep/mesh/morton_tree.h"
+#include "brep/mesh/self_intersections.h"
 
 namespace octotomy::brep {
 namespace {
@@ -92,6 +94,20 @@ bool is_surface(const FaceList& strip) {
   return std::adjacent_find(edges.begin(), edges.end()) == edges.end();
 }
 
+/// Pairs of triangles that cross; at most a number that bounds the memory, since all of a long strip may lie in
+/// another surface. Triangles without area cross nothing: their neighbours do.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_pairs(const Triangles& surface) {
+  constexpr std::size_t most_pairs = 100000;
+  std::vector<std::uint8_t> is_flat(surface.faces.size(), 0);
+  for (std::size_t f = 0; f < is_flat.size(); ++f) {
+    const auto& [a, b, c] = surface.faces[f];
+    const glm::dvec3 &p = surface.points_mm[a], &q = surface.points_mm[b], &r = surface.points_mm[c];
+    using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
+    is_flat[f] = CGAL::collinear(Point(p.x, p.y, p.z), Point(q.x, q.y, q.z), Point(r.x, r.y, r.z));
+  }
+  return self_intersections({surface, MortonTree(surface), is_flat, most_pairs}).first;
+}
+
 /// Puts strips into a slab's surface.
 class Strips {
  public:
@@ -135,12 +151,11 @@ class Strips {
     while (count() > 0) {
       std::vector<std::uint32_t> group;
       const Triangles all = with_strips(group);
-      const Health found = health(all, {.self_intersections = true});
       std::vector<std::uint32_t> crossing;
-      for (const auto& [f, g] : found.crossing)
-        for (const int face : {f, g}) {
-          crossing.push_back(group[static_cast<std::size_t>(face)]);
-          avoid(crossing.back(), all.faces[static_cast<std::size_t>(face)]);
+      for (const auto& [f, g] : crossing_pairs(all))
+        for (const std::uint32_t face : {f, g}) {
+          crossing.push_back(group[face]);
+          avoid(crossing.back(), all.faces[face]);
         }
       std::sort(crossing.begin(), crossing.end());
       crossing.erase(std::unique(crossing.begin(), crossing.end()), crossing.end());
