@@ -12,6 +12,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -60,7 +61,8 @@ std::vector<glm::dvec2> in_unit_square(const std::vector<glm::dvec2>& points) {
 /// 1 for one over both or neither, as where the rings cross, otherwise more by the sides that it crosses.
 class Blame {
  public:
-  Blame(const Ring& lower, const Ring& upper, const SpanClearance& sides)
+  Blame(const Ring& lower, const Ring& upper, const SpanClearance& sides,
+        const std::vector<std::array<std::uint32_t, 3>>& avoided)
       : m_(lower.points_mm.size()), n_(upper.points_mm.size()), of_(m_ * n_) {
     constexpr int most_sides = 6;
     const double reach_mm = reach_of(lower, upper);
@@ -71,10 +73,23 @@ class Blame {
         const bool is_beside = starts_inside(lower, i, b) != starts_inside(upper, j, a);
         of_[i * n_ + j] = static_cast<std::uint8_t>(crossed > 0 ? 1 + crossed : is_beside ? 0 : 1);
       }
+    if (avoided.empty()) return;
+    for (std::vector<int>& of_step : of_step_) of_step.assign(m_ * n_, 0);
+    for (const auto& face : avoided) {
+      const Step step = face[2] < m_ ? along_upper : along_lower;
+      const std::size_t i = step == along_lower ? face[0] : face[2];
+      const std::size_t j = (step == along_lower ? face[2] : face[1]) - m_;
+      ++of_step_[step][i * n_ + j];
+    }
   }
 
   /// Of the span between two points, counted on beyond the rings' ends.
-  std::uint8_t operator()(std::size_t i, std::size_t j) const { return of_[i % m_ * n_ + j % n_]; }
+  int operator()(std::size_t i, std::size_t j) const { return of_[i % m_ * n_ + j % n_]; }
+  /// Of a step from a span: of its triangle, and of the span that it leads to.
+  int of(std::size_t i, std::size_t j, Step step) const {
+    const int of_span = (*this)(i + (step == along_lower), j + (step == along_upper));
+    return of_span + (of_step_[step].empty() ? 0 : of_step_[step][i % m_ * n_ + j % n_]);
+  }
 
  private:
   static double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
@@ -117,6 +132,7 @@ class Blame {
 
   std::size_t m_, n_;
   std::vector<std::uint8_t> of_;
+  std::array<std::vector<int>, 2> of_step_;  ///< empty if no triangle is to be avoided
 };
 
 /// The nearest two points of the rings' scaled shapes, of those with the least blame.
@@ -127,7 +143,7 @@ std::array<std::size_t, 2> start_of(const Ring& lower, const Ring& upper, const 
   for (std::size_t i = 0; i < a.size(); ++i)
     for (std::size_t j = 0; j < b.size(); ++j) {
       const glm::dvec2 d = b[j] - a[i];
-      const std::pair here{blame != nullptr ? int{(*blame)(i, j)} : 0, glm::dot(d, d)};
+      const std::pair here{blame != nullptr ? (*blame)(i, j) : 0, glm::dot(d, d)};
       if (here >= least) continue;
       least = here;
       start = {i, j};
@@ -150,11 +166,11 @@ std::vector<Step> greedy_steps(const Ring& lower, const Ring& upper, std::array<
   std::vector<Step> steps;
   for (std::size_t i = 0, j = 0; i + 1 < a.size() || j + 1 < b.size();) {
     const bool lower_left = i + 1 < a.size(), upper_left = j + 1 < b.size();
-    const auto span = [&](std::size_t k, std::size_t l) {
-      return std::pair{blame != nullptr ? int{(*blame)(start[0] + k, start[1] + l)} : 0,
-                       glm::distance(a[k], b[l])};
+    const auto next = [&](Step step) {
+      return std::pair{blame != nullptr ? blame->of(start[0] + i, start[1] + j, step) : 0,
+                       glm::distance(a[i + (step == along_lower)], b[j + (step == along_upper)])};
     };
-    const bool lower_is_nearer = lower_left && upper_left && span(i + 1, j) <= span(i, j + 1);
+    const bool lower_is_nearer = lower_left && upper_left && next(along_lower) <= next(along_upper);
     steps.push_back(!upper_left || lower_is_nearer ? along_lower : along_upper);
     ++(steps.back() == along_lower ? i : j);
   }
@@ -173,10 +189,14 @@ struct Path {
 /// The path of least cost among all starts (Fuchs, Kedem and Uselton 1977).
 class LeastPath {
  public:
-  /// With `blame`, of the rings from their first points on, of those with the least sum of it.
-  LeastPath(const Pair& pair, TileCost cost, const Blame* blame = nullptr) : m_(pair.m()), n_(pair.n()) {
+  /// With `blame`, of those with the least sum of it; `start` is the pair's in its rings.
+  LeastPath(const Pair& pair, TileCost cost, const Blame* blame = nullptr,
+            const std::array<std::size_t, 2>& start = {0, 0})
+      : m_(pair.m()), n_(pair.n()) {
     const glm::dvec3 tip = pair.lower.front();
-    const auto cost_of = [&](const Triangle& t) {
+    // A step's own span is the one that it leads to: c to b along the lower ring, a to c along the upper one.
+    const auto cost_of = [&](const Triangle& t, Step step) {
+      if (cost == TileCost::shortest_span) return glm::distance(step == along_lower ? t.b : t.a, t.c);
       return cost == TileCost::least_area ? 0.5 * glm::length(t.normal())
                                           : -glm::dot(t.a - tip, t.normal()) / 6.0;
     };
@@ -184,7 +204,7 @@ class LeastPath {
       costs_[step].resize((m_ + 1) * (n_ + 1));
       for (std::size_t i = 0; i + (step == along_lower) <= m_; ++i)
         for (std::size_t j = 0; j + (step == along_upper) <= n_; ++j)
-          costs_[step][i * (n_ + 1) + j] = cost_of(pair.triangle(i, j, step));
+          costs_[step][i * (n_ + 1) + j] = cost_of(pair.triangle(i, j, step), step);
     }
     if (blame == nullptr) return;
     // More than the costs of two strips can differ by.
@@ -195,12 +215,14 @@ class LeastPath {
     for (const Step step : {along_lower, along_upper})
       for (std::size_t i = 0; i + (step == along_lower) <= m_; ++i)
         for (std::size_t j = 0; j + (step == along_upper) <= n_; ++j)
-          costs_[step][i * (n_ + 1) + j] +=
-              weight * (*blame)(i + (step == along_lower), j + (step == along_upper));
+          costs_[step][i * (n_ + 1) + j] += weight * blame->of(start[0] + i, start[1] + j, step);
   }
 
   /// The least path from (0, 0) between two others.
   Path find_between(const Path& low, const Path& high) const { return from(0, &low, &high); }
+
+  /// The path of least cost from (0, 0) to (m, n).
+  Path find_from_start() const { return from(0, nullptr, nullptr); }
 
   Path find() const {
     const Path low = from(0, nullptr, nullptr);
@@ -209,6 +231,52 @@ class LeastPath {
     for (std::size_t& column : high.last) column += n_;
     search(low, high, best);
     return best;
+  }
+
+  /// The path of least cost from (0, 0) to (m, n) whose strip is a surface: one whose steps along the upper ring
+  /// start at two points of the lower ring at least. All others have a span twice. With three points on each
+  /// ring there is such a path.
+  std::vector<Step> surface_steps() const {
+    // Where the steps along the upper ring were so far.
+    enum Held : std::uint8_t { nowhere, at_start, here, behind, at_two, held_count };
+    constexpr double far = std::numeric_limits<double>::infinity();
+    struct Came {
+      Step step = along_lower;
+      Held from = nowhere;
+    };
+    const auto after = [&](Held held, std::size_t row, Step step) {
+      if (step == along_lower) return held == here ? behind : held;
+      const bool is_start = row == 0 || row == m_;
+      if (held == nowhere) return is_start ? at_start : here;
+      if (held == at_start) return is_start ? at_start : at_two;
+      return held == here ? here : at_two;
+    };
+    std::vector<std::array<double, held_count>> least((m_ + 1) * (n_ + 1));
+    std::vector<std::array<Came, held_count>> came(least.size());
+    for (auto& node : least) node.fill(far);
+    least[0][nowhere] = 0.0;
+    for (std::size_t i = 0; i <= m_; ++i)
+      for (std::size_t j = 0; j <= n_; ++j)
+        for (const Step step : {along_lower, along_upper}) {
+          if (step == along_lower ? i == m_ : j == n_) continue;
+          const std::size_t at = i * (n_ + 1) + j, to = at + (step == along_lower ? n_ + 1 : 1);
+          for (std::uint8_t h = 0; h < held_count; ++h) {
+            const double total = least[at][h] + costs_[step][at];
+            const Held held = after(static_cast<Held>(h), i, step);
+            if (!(total < least[to][held])) continue;
+            least[to][held] = total;
+            came[to][held] = {step, static_cast<Held>(h)};
+          }
+        }
+    std::vector<Step> steps;
+    Held held = at_two;
+    for (std::size_t i = m_, j = n_; i > 0 || j > 0;) {
+      const Came& last = came[i * (n_ + 1) + j][held];
+      steps.push_back(last.step);
+      --(last.step == along_lower ? i : j);
+      held = last.from;
+    }
+    return {steps.rbegin(), steps.rend()};
   }
 
  private:
@@ -271,6 +339,16 @@ std::vector<Step> steps_of(const Path& path) {
   return steps;
 }
 
+/// The span at which a path's strip is two cones: all steps along one ring start at one point of the other.
+std::optional<std::array<std::size_t, 2>> neck_of(const Path& path, std::size_t n) {
+  const std::size_t m = path.last.size() - 1;
+  for (std::size_t i = 0; i < m; ++i) {
+    const std::size_t steps = path.last[i] - path.first(i) + (i == 0 ? path.last[m] - path.first(m) : 0);
+    if (steps == n) return std::array{i, path.last[i] % n};
+  }
+  return {};
+}
+
 /// Angle between the planes of two triangles; 0 if one has no area.
 double angle_between(const glm::dvec3& n, const glm::dvec3& m) {
   return std::atan2(glm::length(glm::cross(n, m)), glm::dot(n, m));
@@ -328,7 +406,8 @@ std::vector<Step> least_angle_steps(const Pair& pair, const Band& band,
         const std::size_t from_i = step == along_lower ? i - 1 : i, from_j = step == along_lower ? j : j - 1;
         const Sums& from = step == along_lower ? above[j] : row[j - 1];
         const Triangle here = pair.triangle(from_i, from_j, step);
-        const double blamed = blame != nullptr ? weight * (*blame)(start[0] + i, start[1] + j) : 0.0;
+        const double blamed =
+            blame != nullptr ? weight * blame->of(start[0] + from_i, start[1] + from_j, step) : 0.0;
         for (const Step before : {along_lower, along_upper}) {
           if (from[before] == far) continue;
           double total = from[before] + blamed;
@@ -355,17 +434,18 @@ std::vector<Step> least_angle_steps(const Pair& pair, const Band& band,
   return {steps.rbegin(), steps.rend()};
 }
 
+/// About 1 GB: 17 bytes per pair of points, or 2 for the least angle.
+std::size_t most_pairs(TileCost cost) {
+  return std::size_t{1} << (cost == TileCost::least_angle ? 29 : 26);
+}
+
 void check(const Ring& lower, const Ring& upper, TileCost cost) {
   for (const Ring* ring : {&lower, &upper})
     if (ring->points_mm.size() < 3)
       throw std::invalid_argument("tile: a ring has " + std::to_string(ring->points_mm.size()) +
                                   " points, three are needed");
   if (!(lower.z_mm < upper.z_mm)) throw std::invalid_argument("tile: the lower ring must lie lower");
-  // About 1 GB: 17 bytes per pair of points, or 2 for the least angle.
-  const double most_pairs = cost == TileCost::least_angle ? 0x1p29 : 0x1p26;
-  const auto pairs =
-      static_cast<double>(lower.points_mm.size()) * static_cast<double>(upper.points_mm.size());
-  if (cost != TileCost::shortest_span && pairs > most_pairs)
+  if (cost != TileCost::shortest_span && lower.points_mm.size() * upper.points_mm.size() > most_pairs(cost))
     throw Error(ErrorCode::Resource,
                 "tile: rings of " + std::to_string(lower.points_mm.size()) + " and " +
                     std::to_string(upper.points_mm.size()) + " points, at " + short_text(lower.z_mm) +
@@ -409,19 +489,29 @@ std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& up
   return faces_of(lower, upper, start, least_angle_steps(pair, all_of(pair)));
 }
 
-std::vector<std::array<std::uint32_t, 3>> tile_clear(const Ring& lower, const Ring& upper, TileCost cost,
-                                                     const SpanClearance& sides) {
+std::vector<std::array<std::uint32_t, 3>> tile_clear(
+    const Ring& lower, const Ring& upper, TileCost cost, const SpanClearance& sides,
+    const std::vector<std::array<std::uint32_t, 3>>& avoided) {
   check(lower, upper, cost);
-  const Blame blame(lower, upper, sides);
+  const Blame blame(lower, upper, sides, avoided);
   if (cost == TileCost::least_area || cost == TileCost::greatest_volume) {
     const Path path = LeastPath({turned(lower, 0), turned(upper, 0)}, cost, &blame).find();
-    return faces_of(lower, upper, {0, path.start}, steps_of(path));
+    const auto neck = neck_of(path, upper.points_mm.size());
+    if (!neck) return faces_of(lower, upper, {0, path.start}, steps_of(path));
+    const Pair pair{turned(lower, (*neck)[0]), turned(upper, (*neck)[1])};
+    return faces_of(lower, upper, *neck, LeastPath(pair, cost, &blame, *neck).surface_steps());
   }
   const std::array<std::size_t, 2> start = start_of(lower, upper, &blame);
-  if (cost == TileCost::shortest_span)
+  const bool has_room = lower.points_mm.size() * upper.points_mm.size() <= most_pairs(TileCost::least_area);
+  if (cost == TileCost::shortest_span && (avoided.empty() || !has_room))
     return faces_of(lower, upper, start, greedy_steps(lower, upper, start, &blame));
   const Pair pair{turned(lower, start[0]), turned(upper, start[1])};
-  return faces_of(lower, upper, start, least_angle_steps(pair, all_of(pair), start, &blame));
+  if (cost == TileCost::least_angle)
+    return faces_of(lower, upper, start, least_angle_steps(pair, all_of(pair), start, &blame));
+  const LeastPath spans(pair, cost, &blame, start);
+  const Path path = spans.find_from_start();
+  return faces_of(lower, upper, start,
+                  neck_of(path, upper.points_mm.size()) ? spans.surface_steps() : steps_of(path));
 }
 
 std::vector<std::array<std::uint32_t, 3>> tile_near(const Ring& lower, const Ring& upper, TileCost cost,

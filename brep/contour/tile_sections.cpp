@@ -4,6 +4,7 @@
 // of contours, narrow those that still do, and take back those that always do; 3 number all points in one row.
 #include "brep/contour/tile_sections.h"
 
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -16,7 +17,8 @@
 
 #include "brep/contour/slab.h"
 #include "brep/mesh/error.h"
-#include "brep/mesh/health.h"
+#include "brep/mesh/morton_tree.h"
+#include "brep/mesh/self_intersections.h"
 
 namespace octotomy::brep {
 namespace {
@@ -92,6 +94,20 @@ bool is_surface(const FaceList& strip) {
   return std::adjacent_find(edges.begin(), edges.end()) == edges.end();
 }
 
+/// Pairs of triangles that cross; at most a number that bounds the memory, since all of a long strip may lie in
+/// another surface. Triangles without area cross nothing: their neighbours do.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_pairs(const Triangles& surface) {
+  constexpr std::size_t most_pairs = 100000;
+  std::vector<std::uint8_t> is_flat(surface.faces.size(), 0);
+  for (std::size_t f = 0; f < is_flat.size(); ++f) {
+    const auto& [a, b, c] = surface.faces[f];
+    const glm::dvec3 &p = surface.points_mm[a], &q = surface.points_mm[b], &r = surface.points_mm[c];
+    using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
+    is_flat[f] = CGAL::collinear(Point(p.x, p.y, p.z), Point(q.x, q.y, q.z), Point(r.x, r.y, r.z));
+  }
+  return self_intersections({surface, MortonTree(surface), is_flat, most_pairs}).first;
+}
+
 /// Puts strips into a slab's surface.
 class Strips {
  public:
@@ -101,10 +117,11 @@ class Strips {
         cost_(cost),
         strips_(surface.groups.size()),
         sides_(slab.lower, slab.upper),
-        attempts_(surface.groups.size(), first_attempt(cost)) {
+        attempts_(surface.groups.size(), first_attempt(cost)),
+        avoided_(surface.groups.size()) {
     for (std::size_t g = 0; g < strips_.size(); ++g) {
       if (!is_pair(surface.groups[g])) continue;
-      strips_[g] = strip_of(surface.groups[g], attempts_[g]);
+      strips_[g] = strip_of(g);
       if (!is_surface(strips_[g])) retry(g);
     }
   }
@@ -122,11 +139,11 @@ class Strips {
 
   /// Those that are the best by their cost whose spans are clear of contours.
   std::size_t clear_count() const {
-    return count_if([](int attempt) { return attempt == clear_attempt; });
+    return count_if([](int attempt) { return clear_attempt <= attempt && attempt <= last_clear_attempt; });
   }
   /// Those that are not even this.
   std::size_t narrowed_count() const {
-    return count_if([](int attempt) { return attempt > clear_attempt; });
+    return count_if([](int attempt) { return attempt > last_clear_attempt; });
   }
 
   /// Narrows the strips that cross anything until none does, and drops those that always do.
@@ -134,10 +151,12 @@ class Strips {
     while (count() > 0) {
       std::vector<std::uint32_t> group;
       const Triangles all = with_strips(group);
-      const Health found = health(all, {.self_intersections = true});
       std::vector<std::uint32_t> crossing;
-      for (const auto& [f, g] : found.crossing)
-        for (const int face : {f, g}) crossing.push_back(group[static_cast<std::size_t>(face)]);
+      for (const auto& [f, g] : crossing_pairs(all))
+        for (const std::uint32_t face : {f, g}) {
+          crossing.push_back(group[face]);
+          avoid(crossing.back(), all.faces[face]);
+        }
       std::sort(crossing.begin(), crossing.end());
       crossing.erase(std::unique(crossing.begin(), crossing.end()), crossing.end());
       std::erase_if(crossing, [&](std::uint32_t g) { return strips_[g].empty(); });
@@ -150,10 +169,11 @@ class Strips {
   }
 
  private:
-  /// Attempts after the best strip: the best whose spans are clear of contours; by the same cost near the
+  /// Attempts after the best strip: the best whose spans are clear of contours; several times the best of these
+  /// that also avoids the triangles of clear strips before that crossed something; by the same cost near the
   /// shortest spans, within an eighth and a thirty-second of the rings' points and within two points; the
   /// shortest spans themselves; and the least area, which crosses itself least, near them and anywhere.
-  static constexpr int clear_attempt = 1, shortest_attempt = 5, most_attempts = 7;
+  static constexpr int clear_attempt = 1, last_clear_attempt = 12, shortest_attempt = 16, most_attempts = 18;
   /// The greatest volume of all is that of a strip that crosses itself and encloses much of it twice.
   static int first_attempt(TileCost cost) { return cost == TileCost::greatest_volume ? clear_attempt : 0; }
 
@@ -168,19 +188,20 @@ class Strips {
   static std::size_t eighth(std::size_t points) { return std::max<std::size_t>(2, points / 8); }
   static std::size_t band(std::size_t points, int attempt) {
     if (attempt == shortest_attempt) return 0;
-    return attempt == 2 ? eighth(points) : attempt == 3 ? std::max<std::size_t>(2, points / 32) : 2;
+    const int narrowing = attempt - last_clear_attempt;
+    return narrowing == 1 ? eighth(points) : narrowing == 2 ? std::max<std::size_t>(2, points / 32) : 2;
   }
 
   /// Whether an attempt would repeat an earlier one.
   bool is_repeated(int attempt) const {
-    if (cost_ == TileCost::shortest_span) return attempt > clear_attempt && attempt <= shortest_attempt;
+    if (cost_ == TileCost::shortest_span) return attempt > last_clear_attempt && attempt <= shortest_attempt;
     return cost_ == TileCost::least_area && attempt > shortest_attempt;
   }
 
-  FaceList attempted(const Ring& below, const Ring& above, int attempt) const {
+  FaceList attempted(const Ring& below, const Ring& above, int attempt, const FaceList& avoided) const {
     const std::size_t points = std::max(below.points_mm.size(), above.points_mm.size());
     if (attempt == 0) return tile(below, above, cost_);
-    if (attempt == clear_attempt) return tile_clear(below, above, cost_, sides_);
+    if (attempt <= last_clear_attempt) return tile_clear(below, above, cost_, sides_, avoided);
     if (attempt <= shortest_attempt) return tile_near(below, above, cost_, band(points, attempt));
     return attempt < most_attempts ? tile_near(below, above, TileCost::least_area, eighth(points))
                                    : tile(below, above, TileCost::least_area);
@@ -191,7 +212,7 @@ class Strips {
     strips_[g].clear();
     while (strips_[g].empty() && attempts_[g] < most_attempts) {
       if (is_repeated(++attempts_[g])) continue;
-      strips_[g] = strip_of(surface_.groups[g], attempts_[g]);
+      strips_[g] = strip_of(g);
       if (!is_surface(strips_[g])) strips_[g].clear();
     }
   }
@@ -203,22 +224,39 @@ class Strips {
                (signed_area_mm2(slab_.upper[group.upper[0]]) > 0.0);
   }
 
-  FaceList strip_of(const SlabSurface::Group& group, int attempt) const {
+  /// Where a group's rings stand in the row of all points.
+  struct Place {
+    const Contour &lower, &upper;
+    std::uint32_t m, of_lower, of_upper;
+  };
+  Place place_of(const SlabSurface::Group& group) const {
+    assert(is_pair(group));
     const auto first_of = [](const std::vector<Contour>& section, std::uint32_t contour) {
       std::size_t first = 0;
       for (std::uint32_t c = 0; c < contour; ++c) first += section[c].points_mm.size();
       return static_cast<std::uint32_t>(first);
     };
-    assert(is_pair(group));
-    const Contour &lower = slab_.lower[group.lower[0]], &upper = slab_.upper[group.upper[0]];
-    const Ring below{lower.points_mm, slab_.low_mm}, above{upper.points_mm, slab_.high_mm};
-    FaceList strip = attempted(below, above, attempt);
-    const auto m = static_cast<std::uint32_t>(lower.points_mm.size());
-    const std::uint32_t of_lower = first_of(slab_.lower, group.lower[0]);
-    const std::uint32_t of_upper = point_count(slab_.lower) + first_of(slab_.upper, group.upper[0]);
+    const Contour& lower = slab_.lower[group.lower[0]];
+    return {lower, slab_.upper[group.upper[0]], static_cast<std::uint32_t>(lower.points_mm.size()),
+            first_of(slab_.lower, group.lower[0]),
+            point_count(slab_.lower) + first_of(slab_.upper, group.upper[0])};
+  }
+
+  FaceList strip_of(std::size_t g) const {
+    const Place place = place_of(surface_.groups[g]);
+    const Ring below{place.lower.points_mm, slab_.low_mm}, above{place.upper.points_mm, slab_.high_mm};
+    FaceList strip = attempted(below, above, attempts_[g], avoided_[g]);
     for (auto& face : strip)
-      for (std::uint32_t& v : face) v = v < m ? of_lower + v : of_upper + (v - m);
+      for (std::uint32_t& v : face) v = v < place.m ? place.of_lower + v : place.of_upper + (v - place.m);
     return strip;
+  }
+
+  /// Records a triangle of a group's clear strip, in the numbers of its rings, that crosses something.
+  void avoid(std::size_t g, std::array<std::uint32_t, 3> face) {
+    if (strips_[g].empty() || attempts_[g] < clear_attempt) return;
+    const Place place = place_of(surface_.groups[g]);
+    for (std::uint32_t& v : face) v = v < place.of_upper ? v - place.of_lower : v - place.of_upper + place.m;
+    avoided_[g].push_back(face);
   }
 
   Triangles with_strips(std::vector<std::uint32_t>& group) const {
@@ -246,7 +284,8 @@ class Strips {
   TileCost cost_;
   std::vector<FaceList> strips_;  ///< of each group; empty where overlay()'s stands
   SpanClearance sides_;
-  std::vector<int> attempts_;  ///< of each group, after the first
+  std::vector<int> attempts_;      ///< of each group, after the first
+  std::vector<FaceList> avoided_;  ///< of each group, in the numbers of its rings
 };
 
 Tiled tile_slab(const Slab& slab, const std::optional<TileCost>& cost) {

@@ -9,6 +9,10 @@ const bone = ["#ede3cc", "#d9c7a0", "#cfd3d6"];
 const moved = ["#e08a3c", "#3fa7a0", "#a678de", "#d0649b", "#7fae3e"];
 export const mask_colour = "#5b9dff";
 export const overlap_colour = "#e5484d";
+// Of a difference: what only the dragged piece holds, what only the other object holds, and what both do.
+export const only_moved_colour = "#e08a3c";
+export const only_other_colour = "#5b9dff";
+export const common_colour = "#cfd3d6";
 /// A warp displaces its object, too, though not rigidly.
 const is_displaced = (step: Step): boolean => moves_object(step) || step.do === "warp";
 const is_union = (step: Step): boolean =>

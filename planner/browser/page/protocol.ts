@@ -201,7 +201,7 @@ export interface PaneRequest {
   window?: [number, number];
   threshold?: [number, number];
   objects: DrawnObject[];
-  preview?: {object: string; of: string; move: Motion; against: string[]; steps?: undefined; by?: undefined}|
+  preview?: {object: string; of: string; move: Motion; against: string[]; difference?: string; steps?: undefined; by?: undefined}|
       {object: string; steps: Step[]; move?: undefined; coarse?: boolean; colour?: string; by?: "grow"|"draft"|"step"};
   overlap?: boolean;
   colour_by?: {object: string; reference: string; range_mm: number; mutual?: boolean};
@@ -210,6 +210,13 @@ export interface PaneRequest {
   shading?: string;
   background?: string;
   dragging: boolean;
+}
+/// What a dragged piece and another object do not share, and what they do.
+export interface Difference {
+  to: string;
+  only_moved_mm3: number;
+  only_other_mm3: number;
+  common_mm3: number;
 }
 export interface FrameHeader {
   id: number;
@@ -223,6 +230,7 @@ export interface FrameHeader {
   legend?: {low_mm: number; high_mm: number; colours: string[]; definition: string};
   overlap_mm3?: number|null;
   preview?: {mm3: number; voxels: number; findings?: string[]};  // of the object that is tried
+  difference?: Difference;
   parts: {kind: "jpeg"|"png"|"depth"|"object"|"value"; bytes: number}[];
 }
 export interface Notice {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What this window shows: the server's plan, and how this window looks at it. One value, changed by set(),
 // watched by key.
-import {Hello, Job, LandmarkGuess, Notice, PaneRequest, PlanState, Step} from "./protocol";
+import {Difference, Hello, Job, LandmarkGuess, Notice, PaneRequest, PlanState, Step} from "./protocol";
 import {Vec3} from "./base/vector";
 import {PlaneName, Turned, View} from "./base/view_frame";
 
@@ -86,6 +86,8 @@ export interface State {
   preview: Preview|null;
   overlap_mm3: number|null;
   tried: Tried|null;
+  difference_to: string|null;    // the object that a dragged piece is drawn against in two colours
+  difference: Difference|null;  // of the newest picture of the dragged piece
   cleaning: Cleaning|null;
   compare: Compare|null;
   cut_plane: CutPlane|null;
@@ -131,6 +133,8 @@ const without_plan = () => ({
   preview: null,
   overlap_mm3: null,
   tried: null,
+  difference_to: null,
+  difference: null,
   cleaning: null,
   compare: null,
   cut_plane: null,
@@ -216,6 +220,7 @@ export function leave_scan(): void {
     preview: null,
     overlap_mm3: null,
     tried: null,
+    difference: null,
     cleaning: null,
     cut_plane: null,
     arch_mm: [],

@@ -50,6 +50,15 @@ std::string exact(double value) {
   return Json(value).dump();
 }
 
+Json difference_json(const Json& preview, const Session::Preview& made) {
+  const std::string to = preview.is_object() ? preview.value("difference", "") : "";
+  if (to.empty() || !made.evaluation) return nullptr;
+  Json difference{{"to", to}};
+  for (const DifferencePart& part : difference_parts)
+    difference[part.volume] = made.evaluation->object(part.id).voxel.measures.volume_mm3;
+  return difference;
+}
+
 Json view_frame_json(const voxel::View& view, const glm::dvec3& centre_mm, double pixel_mm) {
   return {{"right", planner::to_json(view.right)},
           {"up", planner::to_json(view.up)},

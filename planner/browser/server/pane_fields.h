@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
 
 #include "planner/browser/server/message.h"
+#include "planner/browser/server/session.h"
 #include "voxel/space/view.h"
 
 // Members of requests for pictures.
@@ -23,6 +25,20 @@ std::optional<glm::dvec3> point_of(const Json& said, const char* key);
 std::optional<double> number_of(const Json& said, const char* key);
 /// The shortest text that reads back to the same number.
 std::string exact(double value);
+
+/// A part of the difference of a dragged piece and another object: the preview's object, the name of its volume
+/// in a picture's header, and its colour.
+struct DifferencePart {
+  const char* id;
+  const char* volume;
+  const char* colour;
+};
+inline constexpr std::array<DifferencePart, 3> difference_parts{
+    {{Session::Preview::only_moved, "only_moved_mm3", "#e08a3c"},
+     {Session::Preview::only_other, "only_other_mm3", "#5b9dff"},
+     {Session::Preview::common, "common_mm3", "#cfd3d6"}}};
+/// {"to", and the volume of each part}; null if the request's preview is no difference.
+Json difference_json(const Json& preview, const Session::Preview& made);
 
 /// {"right", "up", "look", "centre_mm", "pixel_mm"}.
 Json view_frame_json(const voxel::View& view, const glm::dvec3& centre_mm, double pixel_mm);

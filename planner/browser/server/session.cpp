@@ -396,21 +396,28 @@ Session::Preview Session::preview(const Json& asked, const std::vector<std::stri
     steps.back()["object"] = moved;
   }
   steps.back()["id"] = Preview::moved;
-  std::string others;
-  for (const std::string& name : with)
-    if (name != moved) others += (others.empty() ? "" : " | ") + name;
-  if (!others.empty())
-    steps.push_back({{"id", Preview::overlap},
-                     {"do", "combine"},
-                     {"expression", std::string(Preview::moved) + " & (" + others + ")"}});
+  std::vector<std::string> wanted{Preview::moved};
+  const auto combine = [&](const char* id, const std::string& expression) {
+    steps.push_back({{"id", id}, {"do", "combine"}, {"expression", expression}});
+    wanted.emplace_back(id);
+  };
+  const std::string here = Preview::moved;
+  if (const std::string other = asked.value("difference", ""); !other.empty()) {
+    combine(Preview::only_moved, here + " - " + other);
+    combine(Preview::only_other, other + " - " + here);
+    combine(Preview::common, here + " & " + other);
+  } else {
+    std::string others;
+    for (const std::string& name : with)
+      if (name != moved) others += (others.empty() ? "" : " | ") + name;
+    if (!others.empty()) combine(Preview::overlap, here + " & (" + others + ")");
+  }
   const std::lock_guard lock(preview_mutex_);
   Plan plan = with_document([&](const Document& document) { return document.with_steps(steps); });
   if (asked.value("coarse", false)) plan.voxel_mm = coarse_voxel_mm(snapshot(), plan);
   const std::string key = plan.text + (plan.voxel_mm ? exact(*plan.voxel_mm) : "");
   for (const auto& [text, made] : previews_)
     if (text == key) return made;
-  std::vector<std::string> wanted{Preview::moved};
-  if (!others.empty()) wanted.emplace_back(Preview::overlap);
   Preview made{std::make_shared<const Evaluation>(evaluate(plan, wanted, false, {stop, {}}, true))};
   constexpr std::size_t most_previews = 4;
   previews_.emplace_back(key, made);

@@ -81,11 +81,15 @@ class Session {
   voxel::GreyOctree alone(const Snapshot& snapshot, const std::string& scan);
 
   /// An object after a change that is not in the plan, in voxels only: moved, or made by further steps; and its
-  /// overlap with other objects.
+  /// overlap with other objects, or its difference to one.
   struct Preview {
     std::shared_ptr<const Evaluation> evaluation;
     static constexpr const char* moved = "dragged_piece";
     static constexpr const char* overlap = "dragged_overlap";
+    /// What only the object holds, only the other one, and both.
+    static constexpr const char* only_moved = "dragged_only_moved";
+    static constexpr const char* only_other = "dragged_only_other";
+    static constexpr const char* common = "dragged_common";
 
     /// The changed object; null without an evaluation.
     const Object* object() const;
@@ -94,6 +98,7 @@ class Session {
   static void describe(const Preview& preview, Json& header);
   /// `asked` is {"object", "of", "move"}: `of`, or else `object`, moved as by a step "move"; or {"steps"}: the
   /// last of steps that follow the plan's. With "coarse", a universe of many voxels is replaced by a coarser one.
+  /// "difference" names an object of the plan; `with` is not read then.
   Preview preview(const Json& asked, const std::vector<std::string>& with, const std::stop_token& stop);
 
   /// The plan's state for a page; null if none is open.

@@ -109,7 +109,8 @@ Message draw_slice(Session& session, const Request& request, const std::stop_tok
   Slice slice = slice_asked(said, scene);
   Session::Preview preview;
   std::string replaced;
-  if (const Json asked = said.value("preview", Json()); asked.is_object()) {
+  const Json asked = said.value("preview", Json());
+  if (asked.is_object()) {
     replaced = asked.at("object");
     const auto against = asked.value("against", std::vector<std::string>{});
     preview =
@@ -151,6 +152,14 @@ Message draw_slice(Session& session, const Request& request, const std::stop_tok
         hatch_colours.push_back(text_of_colour(interference_colour()));
         hatched.push_back({object.id, object.voxel.octree, true});
       }
+  const Json difference = difference_json(asked, preview);
+  if (!difference.is_null())
+    for (const DifferencePart& part : difference_parts) {
+      const voxel::Octree& octree = preview.evaluation->object(part.id).voxel.octree;
+      if (part.id == Session::Preview::common || octree.is_empty()) continue;
+      hatch_colours.emplace_back(part.colour);
+      hatched.push_back({part.id, octree, true});
+    }
   outlined.insert(outlined.end(), hatched.begin(), hatched.end());
   slice.colours.insert(slice.colours.end(), hatch_colours.begin(), hatch_colours.end());
   Timings timings;
@@ -166,6 +175,7 @@ Message draw_slice(Session& session, const Request& request, const std::stop_tok
               {"letters", picture.said.at("letters")},
               {"view_frame", sheet_frame(picture.sheet)}};
   Session::describe(preview, header);
+  if (!difference.is_null()) header["difference"] = difference;
   const Json threshold = said.value("threshold", Json());
   draw_threshold(threshold, picture);
   if (is_moving) return packed(header, {{"jpeg", jpeg_of(size_px, picture.rgb)}});

@@ -243,7 +243,8 @@ void ViewPane::add_objects(Session& session, const Json& said, Drawing& drawing,
   const Evaluation& evaluation = *drawing.snapshot.evaluation;
   Session::Preview preview;
   std::string dragged;
-  if (const Json asked = said.value("preview", Json()); !asked.is_null()) {
+  const Json asked = said.value("preview", Json());
+  if (!asked.is_null()) {
     dragged = asked.at("object");
     const auto against = asked.value("against", std::vector<std::string>{});
     preview =
@@ -251,6 +252,12 @@ void ViewPane::add_objects(Session& session, const Json& said, Drawing& drawing,
     drawing.is_of_plan = false;
   }
   const Object* moved = preview.evaluation ? find(*preview.evaluation, Session::Preview::moved) : nullptr;
+  const Json difference = difference_json(asked, preview);
+  // Three parts stand in the place of the piece and the other object.
+  if (!difference.is_null()) moved = nullptr;
+  const auto is_in_parts = [&](const std::string& id) {
+    return !difference.is_null() && (id == dragged || id == difference["to"]);
+  };
   for (const Json& entry : said.value("objects", Json::array())) {
     if (entry.contains("window")) {
       drawing.is_of_plan = false;
@@ -258,6 +265,7 @@ void ViewPane::add_objects(Session& session, const Json& said, Drawing& drawing,
       continue;
     }
     const std::string id = entry.at("id");
+    if (is_in_parts(id)) continue;
     const bool is_dragged = moved != nullptr && id == dragged;
     if (const Object* object = is_dragged ? std::exchange(moved, nullptr) : find(evaluation, id)) {
       drawing.last = object;
@@ -272,6 +280,13 @@ void ViewPane::add_objects(Session& session, const Json& said, Drawing& drawing,
     Json entry = Json::object();
     if (const Json& asked = said.at("preview"); asked.contains("colour")) entry["colour"] = asked["colour"];
     drawing.add(planner::drawn(*moved, glm::vec3(1.0f)), dragged, entry);
+  }
+  if (!difference.is_null()) {
+    drawing.header["difference"] = difference;
+    for (const DifferencePart& part : difference_parts)
+      drawing.add({part.id, preview.evaluation->object(part.id).voxel.octree},
+                  part.id == Session::Preview::only_other ? difference["to"].get<std::string>() : dragged,
+                  {{"colour", part.colour}});
   }
   if (const Object* both = find(*preview.evaluation, Session::Preview::overlap)) {
     drawing.header["overlap_mm3"] = both->voxel.measures.volume_mm3;

@@ -165,6 +165,79 @@ TEST(TileSections, AStripWhoseLeastAreaIsTwoConesIsNoSurfaceAndIsNarrowed) {
     EXPECT_TRUE(health(tile_sections(sections, {.cost = cost}).surface).solid()) << static_cast<int>(cost);
 }
 
+/// Each cost gives a solid, and joins no pair of contours by anything but this cost.
+void expect_no_fall_back(const std::vector<Section>& sections, std::size_t least_pairs,
+                         const std::string& what) {
+  for (const TileCost cost :
+       {TileCost::shortest_span, TileCost::least_area, TileCost::greatest_volume, TileCost::least_angle}) {
+    const TiledSections tiled = tile_sections(sections, {.cost = cost});
+    const Health found = health(tiled.surface);
+    EXPECT_TRUE(found.solid()) << what << ", " << static_cast<int>(cost) << ": " << told(found);
+    EXPECT_GE(tiled.strips, least_pairs) << what;
+    EXPECT_EQ(tiled.narrowed_strips, 0u) << what << ", " << static_cast<int>(cost);
+    EXPECT_EQ(tiled.crossed_strips, 0u) << what << ", " << static_cast<int>(cost);
+  }
+}
+
+TEST(TileSections, SmallContoursFarApartForTheirSizeAreJoinedByEachCost) {
+  // Two cones that meet at a span have less area than any strip around, as a soap film tears.
+  std::vector<Section> sections;
+  for (int s = 0; s < 8; ++s)
+    sections.push_back({4.0 * s, {ring({0.9 * (s % 2), 0.2 * s}, 1.0 + 0.3 * (s % 3), 4 + 2 * (s % 3))}});
+  expect_no_fall_back(sections, 7, "small");
+}
+
+TEST(TileSections, ContoursThatCrossOrHaveFoldsThatTheOtherDoesNotSeeAreJoinedByEachCost) {
+  // A comb over one whose teeth stand between; a small contour at the end of a large one.
+  Contour comb, shifted;
+  for (int tooth = 0; tooth < 4; ++tooth)
+    for (const glm::dvec2& p : {glm::dvec2{0, -3}, glm::dvec2{0, 3}, glm::dvec2{1, 3}, glm::dvec2{1, -3}}) {
+      comb.points_mm.push_back(p + glm::dvec2(2.0 * tooth, 0.01 * tooth));
+      shifted.points_mm.push_back(p + glm::dvec2(2.0 * tooth + 0.6, 0.5 - 0.01 * tooth));
+    }
+  for (const glm::dvec2& p : {glm::dvec2{8, -4}, glm::dvec2{-1, -4}}) {
+    comb.points_mm.push_back(p);
+    shifted.points_mm.push_back(p + glm::dvec2(0.3, -0.2));
+  }
+  const Contour end = rectangle({6.3, -3.4}, {7.9, -2.7});
+  expect_no_fall_back({{0.0, {comb}}, {1.0, {shifted}}, {2.0, {end}}}, 2, "comb");
+}
+
+TEST(TileSections, ContoursOfASmoothFieldWithHolesAndIslandsFallBackOnLessThanTwoInAHundred) {
+  constexpr int n = 26;
+  std::array<std::size_t, 4> pairs{}, fallen{};
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> any(0.0, 1.0);
+    std::array<std::array<double, 4>, 12> waves{};
+    for (auto& wave : waves)
+      for (double& part : wave) part = any(random);
+    std::vector<Section> sections;
+    for (int s = 0; s < 10; ++s) {
+      std::vector<float> samples;
+      for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+          double sum = 0.1 * any(random);
+          for (const auto& wave : waves)
+            sum += std::cos(0.6 * (wave[0] * i + wave[1] * j + wave[2] * s) + 3.0 * wave[3]);
+          samples.push_back(static_cast<float>(sum));
+        }
+      sections.push_back({1.0 * s, follow({samples, n, n, {1.0, 1.0}}, {.threshold = 1.5})});
+    }
+    for (std::size_t cost = 0; cost < pairs.size(); ++cost) {
+      const TiledSections tiled = tile_sections(sections, {.cost = static_cast<TileCost>(cost)});
+      const Health found = health(tiled.surface);
+      EXPECT_TRUE(found.solid()) << "seed " << seed << ", " << cost << ": " << told(found);
+      pairs[cost] += tiled.strips + tiled.crossed_strips;
+      fallen[cost] += tiled.narrowed_strips + tiled.crossed_strips;
+    }
+  }
+  for (std::size_t cost = 0; cost < pairs.size(); ++cost) {
+    EXPECT_GT(pairs[cost], 200u) << cost;
+    EXPECT_LE(50 * fallen[cost], pairs[cost]) << cost << ": " << fallen[cost] << " of " << pairs[cost];
+  }
+}
+
 TEST(TileSections, AnyNestedContoursWillDo) {
   // Noise, followed: contours of every shape, corner to corner, unlike their neighbours in every way.
   std::size_t strips = 0, overlaid = 0;

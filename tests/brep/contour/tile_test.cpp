@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "brep/contour/tile.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <map>
@@ -232,6 +233,37 @@ TEST(TileClear, KeepsToTheAreaBetweenTheRingsWhateverTheCost) {
     EXPECT_GE(sums_of(lower, upper, clear).cones, sums_of(lower, upper, other).cones * (1 - 1e-12));
     EXPECT_LE(sums_of(lower, upper, tile_clear(lower, upper, TileCost::least_area, sides)).area,
               sums_of(lower, upper, other).area * (1 + 1e-12));
+  }
+}
+
+bool has_double_span(const std::vector<std::array<std::uint32_t, 3>>& faces) {
+  std::map<std::array<std::uint32_t, 2>, int> edges;
+  for (const auto& face : faces)
+    for (std::size_t k = 0; k < 3; ++k)
+      if (++edges[{face[k], face[(k + 1) % 3]}] > 1) return true;
+  return false;
+}
+
+TEST(Tile, TheBestClearStripIsASurfaceWhereTwoConesHaveLessArea) {
+  const Ring lower = ellipse(1.0, 1.0, 4, 0.0), upper = ellipse(0.9, 1.1, 6, 5.0, {1.2, 0.1});
+  const SpanClearance sides({{lower.points_mm}}, {{upper.points_mm}});
+  EXPECT_TRUE(has_double_span(tile(lower, upper, TileCost::least_area))) << "the cones matter";
+  const auto clear = tile_clear(lower, upper, TileCost::least_area, sides);
+  EXPECT_EQ(clear.size(), 10u);
+  EXPECT_FALSE(has_double_span(clear));
+}
+
+TEST(Tile, TrianglesToAvoidAreAvoidedByEachCostWhereOthersAreAsClear) {
+  std::mt19937 random(3);
+  const Ring lower = wobbly(random, 0.0), upper = wobbly(random, 1.5);
+  const SpanClearance sides({{lower.points_mm}}, {{upper.points_mm}});
+  for (const TileCost cost : all_costs) {
+    const auto before = tile_clear(lower, upper, cost, sides);
+    const std::vector<std::array<std::uint32_t, 3>> avoided(8, before[3]);
+    const auto after = tile_clear(lower, upper, cost, sides, avoided);
+    EXPECT_EQ(after.size(), before.size());
+    EXPECT_EQ(std::count(after.begin(), after.end(), before[3]), 0) << static_cast<int>(cost);
+    EXPECT_FALSE(has_double_span(after)) << static_cast<int>(cost);
   }
 }
 

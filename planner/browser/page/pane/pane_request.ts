@@ -32,7 +32,7 @@ export function request_of(pane: Pane, dragging: boolean): PaneRequest {
   if (state.preview && !is_elsewhere()) {
     // What is tried follows a hand in coarse voxels, where the plan's are many.
     request.preview = dragging && state.preview.steps ? {...state.preview, coarse: true} : state.preview;
-    if (state.preview.move) request.overlap = true;
+    if (state.preview.move && !state.preview.difference) request.overlap = true;
     request.objects = shown.filter((object) => !object.id || !is_interference(object.id));
   }
   // What is tried may lie within the objects that stand.
@@ -46,6 +46,7 @@ export function request_of(pane: Pane, dragging: boolean): PaneRequest {
 /// Whether pieces lie in each other in what is drawn: interference lies within bone, where opaque bone would
 /// hide it. A picture that has to follow a drag is not made translucent.
 function has_interference({preview, objects, dragging}: PaneRequest): boolean {
+  if (preview?.move && preview.difference) return false;
   if (preview) return !dragging && (state.overlap_mm3 ?? 0) > 0;
   return objects.some(({id}) => id !== undefined && is_interference(id) && volume_of(id) > 0);
 }

@@ -202,6 +202,7 @@ export class Pane {
         new CustomEvent("picture", {bubbles: true, detail: {latency_ms, quality: header.quality}}));
     if (header.overlap_mm3 !== undefined && state.preview) set({overlap_mm3: header.overlap_mm3});
     if (header.preview && is_same(state.preview, preview)) set({tried: {...header.preview, is_coarse: header.quality !== "rest", refusal: ""}});
+    if (header.difference && state.preview) set({difference: header.difference});
     if (header.quality !== "rest") return;
     picture.planes = await planes_of(header, parts);
     this.redraw();

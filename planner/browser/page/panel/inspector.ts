@@ -44,6 +44,7 @@ export function make_inspector(host: HTMLElement): void {
   watch(
       [
         "plan", "selected", "right_tab", "tool", "draft_window", "draft_step", "preview", "overlap_mm3", "tried",
+        "difference_to", "difference",
         "cleaning", "compare", "cut_plane", "arch_mm"
       ],
       again);

@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A piece's motion as numbers in the head's words.
 import {Direction, directions, motion_words, Turn, turns} from "../base/anatomical";
-import {overlap_colour} from "../drawn_objects";
+import {common_colour, only_moved_colour, only_other_colour, overlap_colour} from "../drawn_objects";
 import {Child, el} from "../base/html";
-import {centre_of, commit_motion, current, piece, preview_motion} from "../tool/piece_motion";
+import {
+  centre_of,
+  commit_motion,
+  current,
+  difference_choices,
+  difference_to,
+  piece,
+  preview_motion,
+  show_difference
+} from "../tool/piece_motion";
 import {Motion} from "../protocol";
 import {state} from "../state";
 
@@ -75,10 +84,44 @@ export function movement_fields(): Child {
                 (mark) =>
                     el("option", {value: mark.name, selected: about === mark.name},
                        mark.name.replace(/_/g, " "))))),
+      difference_switch(), difference_reading(one.source),
       el("p", {class: "reading", role: "status"}, motion_words(move),
          state.preview && state.overlap_mm3 !== null ?
              el("b", {style: `color:${state.overlap_mm3 > 0.5 ? overlap_colour : "var(--good)"}`},
                 ` overlap ${state.overlap_mm3.toFixed(0)} mm³`) :
              null),
       state.preview?.move ? state.tried?.findings?.map((finding) => el("p", {class: "sentence warn"}, finding)) : null);
+}
+
+/// Against which object the difference is drawn while the piece moves.
+function difference_switch(): Child {
+  const to = difference_to();
+  return el(
+      "label", {
+        class: "field",
+        "data-tip": "Draws what only the piece holds and what only the other object holds in two colours, at each step of the motion"
+      },
+      el("span", {}, "Difference to"),
+      el("select", {
+        "data-key": "move-difference",
+        onchange: (event: Event) => show_difference((event.target as HTMLSelectElement).value || null),
+      },
+         el("option", {value: "", selected: !to}, "none"),
+         difference_choices().map(
+             (id) => el("option", {value: id, selected: id === to}, id.replace(/_/g, " ")))));
+}
+
+/// The difference of the newest picture: its volumes in the colours of its parts.
+function difference_reading(source: string): Child {
+  const {difference, preview} = state;
+  if (!preview || !difference) return null;
+  const row = (colour: string, words: string, mm3: number): Child =>
+      el("p", {class: "reading difference"}, el("b", {style: `color:${colour}`}, "■ "),
+         `${words}: ${mm3.toFixed(0)} mm³`);
+  const other = difference.to.replace(/_/g, " ");
+  return [
+    row(only_moved_colour, `only ${source.replace(/_/g, " ")}`, difference.only_moved_mm3),
+    row(only_other_colour, `only ${other}`, difference.only_other_mm3),
+    row(common_colour, "both", difference.common_mm3),
+  ];
 }

@@ -68,7 +68,7 @@ export const marks_tool: Tool = {
   left() {
     pairs = [];
     open = held = null;
-    set({preview: null, overlap_mm3: null});
+    set({preview: null, overlap_mm3: null, difference: null});
   },
   down({pane, at}) {
     if (!piece() || pane.setting.mode === "panoramic") return false;

@@ -5,7 +5,7 @@ import {el} from "../base/html";
 import {dot_at, ink, text} from "../base/ink";
 import type {Pane} from "../pane/panes";
 import {centre_of, commit_motion, current, piece, pivot_mm, preview_motion} from "./piece_motion";
-import {Motion, Step} from "../protocol";
+import {Difference, Motion, Step} from "../protocol";
 import {notify, set, state} from "../state";
 import {Tool} from "./tool";
 import {add, dot, scaled, Vec2, Vec3} from "../base/vector";
@@ -95,7 +95,7 @@ export const move_tool: Tool = {
   },
   left() {
     held = null;
-    set({preview: null});
+    set({preview: null, difference: null});
   },
   draw: draw_handles,
   panel: () =>
@@ -181,13 +181,17 @@ function draw_handles(pane: Pane, context: CanvasRenderingContext2D): void {
   if (held?.pane !== pane) return;
   const words = held.handle === "turn" ? `${turn_words(move, turn)}` : motion_words({by: move.by ?? {}});
   text(context, words, [x, y - ring - 16 * ratio], ratio, {align: "center", px: 13});
-  if (state.overlap_mm3 !== null)
+  if (state.difference)
+    text(context, difference_words(state.difference), [x, y + ring + 16 * ratio], ratio, {align: "center", px: 13});
+  else if (state.overlap_mm3 !== null)
     text(context, `overlap ${state.overlap_mm3.toFixed(0)} mm³`, [x, y + ring + 16 * ratio], ratio, {
       align: "center",
       px: 13,
       colour: state.overlap_mm3 > 0.5 ? ink.bad : ink.good,
     });
 }
+const difference_words = ({only_moved_mm3, only_other_mm3}: Difference): string =>
+    `differs by ${(only_moved_mm3 + only_other_mm3).toFixed(0)} mm³`;
 const turn_words = (move: Motion, turn: Turn): string => {
   const value = (move.turn?.[turn] as number | undefined) ?? 0;
   return `${Math.abs(value).toFixed(1)}° ${word_of(turn, value)}`;

@@ -6,7 +6,7 @@ import {is_overlap, look_of} from "../drawn_objects";
 import {makes_body} from "../operations";
 import {mark_mm} from "../pane/overlay";
 import {Json, Motion, Step} from "../protocol";
-import {selected_step, set, state, steps} from "../state";
+import {selected_step, set, state, steps, watch} from "../state";
 import {add, scaled, Vec3} from "../base/vector";
 
 /// The piece that the tool moves: the selected move's, or the selected object itself.
@@ -47,9 +47,43 @@ export function preview_motion(move: Motion): void {
   const one = piece();
   if (!one) return;
   const object = one.step?.id ?? `${one.source}_moved`;
+  const to = difference_to();
+  shown_at = place_in_plan();
   set({
-    preview: {object: one.step?.id ?? one.source, of: one.source, move, against: others(one.source, object)}
+    preview: {
+      object: one.step?.id ?? one.source,
+      of: one.source,
+      move,
+      against: others(one.source, object),
+      ...(to ? {difference: to} : {})
+    }
   });
+}
+
+/// What a piece's difference can be drawn to: the plan's other bodies, and the piece before it moved.
+export function difference_choices(): string[] {
+  const one = piece();
+  return steps()
+      .filter((step) => makes_body(step) && step.id !== one?.step?.id && !is_overlap(step, steps()))
+      .map((step) => step.id);
+}
+/// The chosen one; null if there is none, or if the plan has lost it.
+export const difference_to = (): string|null =>
+    difference_choices().find((id) => id === state.difference_to) ?? null;
+
+// A difference that is shown at rest is of the plan and the piece of then.
+let shown_at = "";
+const place_in_plan = (): string => `${state.plan?.edit} ${state.selected}`;
+watch(["plan", "selected"], () => {
+  if (state.preview?.move && state.preview.difference && place_in_plan() !== shown_at)
+    set({preview: null, difference: null});
+});
+
+/// Chooses the object of the difference, and shows it where the piece is now.
+export function show_difference(to: string|null): void {
+  set({difference_to: to, difference: null, overlap_mm3: null});
+  if (to) preview_motion(current());
+  else if (state.preview?.move) set({preview: null});
 }
 
 export async function commit_motion(move: Motion): Promise<void> {
@@ -79,7 +113,8 @@ export async function commit_motion(move: Motion): Promise<void> {
     await add_steps(more, what);
     set({selected: id});
   }
-  set({preview: null, overlap_mm3: null});
+  set({preview: null, overlap_mm3: null, difference: null});
+  if (difference_to()) preview_motion(current());
 }
 const clean = (values: {[field: string]: Json|undefined}): {[field: string]: Json} =>
     Object.fromEntries(Object.entries(values).filter(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // On the head phantom, what the page shows is the plan's own: whom it is about, values of one plan in the next, objects after
-// a procedure is undone, a plan that another program wrote, a mirror's plane, interference within bone.
+// a procedure is undone, a plan that another program wrote, a mirror's plane, interference within bone, differences.
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import os from 'node:os';
@@ -206,6 +206,38 @@ test('interference shows through bone, and a button goes to it', async () => {
   assert.ok((await red_pixels(0)) > 50, 'red shows through the bone');
   await one.click(one.page.locator('[data-key="show-both"]'));
   await one.page.locator('.status', { hasText: /largest of \d+ parts? of both/ }).waitFor();
+});
+
+test('the difference to another object is redrawn at each step of a drag', async () => {
+  await one.tab('Inspector');
+  await one.select('moved');
+  await one.press('0');
+  await one.press('g');
+  await one.page.locator('[data-key="move-difference"]').selectOption('rest');
+  await one.until(() => newest(1)?.difference?.to === 'rest', 'the difference at rest');
+  const whole = (part) => part.only_moved_mm3 + part.common_mm3;
+  const at_first = newest(1).difference;
+  const reading = async () => (await one.page.locator('.inspector .difference').allInnerTexts()).join();
+  await one.at_rest();
+  const { x, y } = await one.position(1, [-55, -40]);
+  await one.page.mouse.move(x, y);
+  await one.page.mouse.down();
+  const read = new Set();
+  for (const step_px of [12, 24, 36]) {
+    const last = await reading();
+    await one.page.mouse.move(x - step_px, y);
+    await one.until(async () => (await reading()) !== last, 'another difference under the hand');
+    read.add(await reading());
+  }
+  if (process.env.OCTOTOMY_PICTURES) await one.page.screenshot({ path: path.join(process.env.OCTOTOMY_PICTURES, 'difference.png') });
+  await one.page.mouse.up();
+  assert.equal(read.size, 3, [...read].join('; '));
+  const by = () => one.plan(other_path).steps.find((each) => each.id === 'moved').by;
+  await one.until(() => by().forward_mm > -2, 'the motion in the plan');
+  await one.until(() => newest(1)?.difference && newest(1).difference.common_mm3 !== at_first.common_mm3, 'the difference after it');
+  assert.ok(Math.abs(whole(newest(1).difference) / whole(at_first) - 1) < 0.02, 'the piece keeps its volume');
+  await one.page.locator('[data-key="move-difference"]').selectOption('');
+  await one.until(() => newest(1)?.difference === undefined, 'the objects as they were');
 });
 
 /// Pixels of a pane in which red prevails by far.

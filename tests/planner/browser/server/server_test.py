@@ -163,7 +163,8 @@ class Wire(Served):
         fields = ["steps", "add", "replace", "remove", "scans", "landmarks", "what", "name", "values", "kind", "points",
                   "object", "objects", "with", "move", "path", "folder", "where", "a", "b", "point", "snap", "step",
                   "pane", "view", "plane", "at_mm", "size", "pixel_mm", "centre_mm", "window", "threshold", "preview",
-                  "overlap", "colour_by", "cut_planes", "cut_face", "shading", "background", "dragging", "frame"]
+                  "difference", "overlap", "colour_by", "cut_planes", "cut_face", "shading", "background", "dragging",
+                  "frame"]
         values = [None, 0, -1, 1e308, 2**63, True, "", "bone", "le_fort_i", "slice", "distance", "axial", "../..", [],
                   [[]], [0, 0, 0], [64, 48], ["bone", "bone"], [{"id": "bone"}], {}, {"id": "bone"}, {"a": None},
                   {"object": "bone", "move": {"translate_mm": [1, 0, 0]}}, {"translate_mm": [1, 0, 0]},
@@ -372,6 +373,33 @@ class Session(Served):
         self.assertEqual((status, body), (200, pathlib.Path(exported["path"]).read_bytes()))
         told = self.window.ask("command", step="moved")
         self.assertIn('plan.move("moved", object="piece", by={"forward_mm": 6.0})', told["python"])
+
+    def test_the_difference_to_another_object_follows_a_dragged_piece(self):
+        for step in (BOX, PIECE, REST):
+            self.window.ask("edit", add={"step": step}, what=step["id"])
+        whole = {entry["id"]: entry["volume"]["value"] for entry in self.window.ask("evaluate")["objects"]
+                 if entry.get("volume")}
+        drawn = []
+        for up_mm in (2.0, 4.0):
+            preview = {"object": "piece", "of": "piece", "move": {"by": {"up_mm": up_mm}}, "against": ["rest"],
+                       "difference": "rest"}
+            said = {"objects": [{"id": "rest"}, {"id": "piece"}], "preview": preview}
+            header, _ = self.rest(kind="view", view="left", **said)
+            self.assertEqual(header["objects"], ["piece", "rest", "piece"])
+            self.assertNotIn("overlap_mm3", header)
+            parts = header["difference"]
+            self.assertEqual(parts["to"], "rest")
+            self.assertGreater(parts["common_mm3"], 100.0)
+            self.assertAlmostEqual(parts["only_other_mm3"] + parts["common_mm3"], whole["rest"], delta=1e-6)
+            self.assertAlmostEqual(parts["only_moved_mm3"] + parts["common_mm3"], whole["piece"],
+                                   delta=0.01 * whole["piece"])
+            drawn.append(parts["only_moved_mm3"])
+            sliced, _ = self.rest(kind="slice", plane="sagittal", at_mm=[0, -50, -40], **said)
+            self.assertEqual(sliced["difference"], parts)
+        self.assertNotEqual(*drawn)
+        with self.assertRaisesRegex(RuntimeError, "nothing"):
+            self.rest(kind="view", view="left", objects=[],
+                      preview={"object": "piece", "move": {"by": {}}, "difference": "nothing"})
 
     def test_a_meshs_own_statements_are_told_before_it_is_used(self):
         (self.folder / "block.obj").write_text("# SPACE=RAS\nv 0 0 0\nv 0.03 0 0\nv 0 0.03 0\nv 0 0 0.03\n"

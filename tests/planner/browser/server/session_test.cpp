@@ -245,6 +245,30 @@ TEST_F(SessionTest, APreviewIsTheMoveStepsObject) {
   EXPECT_EQ(again.evaluation->objects.size(), 2u) << "no overlap was asked for";
 }
 
+TEST_F(SessionTest, APreviewsDifferenceIsThatOfStepsOfThePlan) {
+  session_->open(folder_ / "ball.nrrd", {});
+  session_->evaluate({}, false, {});
+  const Json move{{"translate_mm", {2, 0, 0}}};
+  const Json asked{{"object", "bone"}, {"move", move}, {"difference", "bone"}};
+  const Session::Preview preview = session_->preview(asked, {"bone"}, {});
+  EXPECT_EQ(preview.evaluation->objects.size(), 5u) << "bone, the piece, and three parts; no overlap";
+  add({{"id", "moved"}, {"do", "move"}, {"object", "bone"}, {"translate_mm", {2, 0, 0}}});
+  add({{"id", "ahead"}, {"do", "combine"}, {"expression", "moved - bone"}});
+  add({{"id", "left"}, {"do", "combine"}, {"expression", "bone - moved"}});
+  add({{"id", "both"}, {"do", "combine"}, {"expression", "moved & bone"}});
+  const Snapshot made = session_->evaluate({}, false, {});
+  for (const auto& [part, step] : {std::pair(Session::Preview::only_moved, "ahead"),
+                                   {Session::Preview::only_other, "left"},
+                                   {Session::Preview::common, "both"}}) {
+    EXPECT_TRUE(preview.evaluation->object(part).voxel.octree == made.evaluation->object(step).voxel.octree)
+        << part;
+    EXPECT_FALSE(preview.evaluation->object(part).voxel.octree.is_empty()) << part;
+  }
+  Json unknown = asked;
+  unknown["difference"] = "nothing";
+  EXPECT_ANY_THROW(session_->preview(unknown, {}, {}));
+}
+
 TEST_F(SessionTest, ACertificateIsOfTheStepAsItWas) {
   session_->open(folder_ / "ball.nrrd", {});
   session_->evaluate({}, true, {});
