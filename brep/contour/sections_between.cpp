@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "brep/mesh/error.h"
+#include "brep/mesh/health.h"
 #include "brep/mesh/segment.h"
 
 namespace octotomy::brep {
@@ -280,6 +281,33 @@ std::vector<Section> sections_in_gap(const Section& below, const Section& above,
   return sections;
 }
 
+/// The tiles with the points of sections where the sections have them, and those of a step half way in one plane. The
+/// tiles' points begin with those of the sections, in their order; contours may be reversed.
+Triangles put_back(const Triangles& tiles, const std::vector<Section>& sections) {
+  Triangles back = tiles;
+  std::size_t first = 0;
+  for (std::size_t s = 0; s < sections.size(); ++s) {
+    Box2 drawn, moved;
+    drawn.add(sections[s].contours);
+    std::size_t end = first;
+    for (const Contour& contour : sections[s].contours) end += contour.points_mm.size();
+    for (std::size_t i = first; i < end; ++i) moved.low = glm::min(moved.low, glm::dvec2(tiles.points_mm[i]));
+    // A step has a section on either side of its plane.
+    double z_mm = sections[s].z_mm;
+    const auto is_step = [&](std::size_t below) {
+      return sections[below + 1].z_mm - sections[below].z_mm <= 2.0 * half_terrace_mm() * (1.0 + 1e-6);
+    };
+    if (s > 0 && is_step(s - 1))
+      z_mm = 0.5 * (sections[s - 1].z_mm + z_mm);
+    else if (s + 1 < sections.size() && is_step(s))
+      z_mm = 0.5 * (z_mm + sections[s + 1].z_mm);
+    for (std::size_t i = first; i < end; ++i)
+      back.points_mm[i] = glm::dvec3(glm::dvec2(tiles.points_mm[i]) - (moved.low - drawn.low), z_mm);
+    first = end;
+  }
+  return back;
+}
+
 }  // namespace
 
 std::vector<Section> sections_between(const std::vector<Section>& drawn,
@@ -303,6 +331,25 @@ std::vector<Section> sections_between(const std::vector<Section>& drawn,
     if (s < gaps.size()) std::move(gaps[s].begin(), gaps[s].end(), std::back_inserter(all));
   }
   return all;
+}
+
+TiledBetween tile_between(const std::vector<Section>& drawn, const SectionsBetweenOptions& options,
+                          std::optional<TileCost> cost) {
+  const std::vector<Section> sections = sections_between(drawn, options);
+  TileSectionsOptions tiling;
+  tiling.cost = cost;
+  tiling.stop = options.stop;
+  // Longer strips could leave the area between two outlines, as between the halves of an hourglass.
+  tiling.most_span_mm = options.step_mm;
+  TiledBetween tiled{tile_sections(sections, tiling).surface, sections.size()};
+  Triangles back = put_back(tiled.surface, sections);
+  const Health found = health(back, {.self_intersections = true});
+  tiled.is_whole_flat = tiled.is_apart = found.solid();
+  if (found.solid())
+    tiled.surface = std::move(back);
+  else
+    tiled.is_apart = health(tiled.surface, {.self_intersections = true}).solid();
+  return tiled;
 }
 
 }  // namespace octotomy::brep

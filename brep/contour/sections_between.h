@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <stop_token>
 #include <vector>
 
@@ -40,5 +42,19 @@ constexpr double half_terrace_mm() {
 /// distances, and outlines followed on samples and then moved onto the exact outline along the samples' edges.
 std::vector<Section> sections_between(const std::vector<Section>& drawn,
                                       const SectionsBetweenOptions& options = {});
+
+/// The surface tiled from sections_between().
+struct TiledBetween {
+  Triangles surface;           ///< as tile_sections() makes it
+  std::size_t sections = 0;    ///< that were tiled
+  bool is_whole_flat = false;  ///< flat ends, steps and upright walls lie exactly in their planes
+  bool is_apart = false;       ///< no two of its triangles meet, by an exact search
+};
+
+/// Tiles drawn sections with others between them. Where that leaves a solid, the points of the sections are put back
+/// from where tile_sections() and half_terrace_mm() moved them, so that flat parts lie exactly in their planes. Throws
+/// as sections_between() and tile_sections(). Cost: that of both, and of one or two searches by health().
+TiledBetween tile_between(const std::vector<Section>& drawn, const SectionsBetweenOptions& options = {},
+                          std::optional<TileCost> cost = TileCost::shortest_span);
 
 }  // namespace octotomy::brep

@@ -12,7 +12,7 @@
 namespace octotomy::brep {
 namespace {
 
-Contour circle(double radius_mm, const glm::dvec2& middle_mm = {0.0, 0.0}, int points = 720) {
+Contour circle(double radius_mm, const glm::dvec2& middle_mm = {0.0, 0.0}, int points = 240) {
   Contour contour;
   for (int i = 0; i < points; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / points;
@@ -40,7 +40,7 @@ TEST(SectionsBetween, BetweenTwoCirclesTheRadiusIsInterpolated) {
     ++between;
     ASSERT_EQ(section.contours.size(), 1u) << section.z_mm;
     for (const glm::dvec2& p : section.contours[0].points_mm)
-      EXPECT_NEAR(glm::length(p), 10.0 + 0.5 * section.z_mm, 1e-3) << section.z_mm;
+      EXPECT_NEAR(glm::length(p), 10.0 + 0.5 * section.z_mm, 2e-3) << section.z_mm;
   }
   EXPECT_EQ(between, 7u);
   EXPECT_TRUE(sections.front().contours.empty());
@@ -58,11 +58,11 @@ TEST(SectionsBetween, AFrustumAndItsFlatEndsHaveTheirVolume) {
 TEST(SectionsBetween, TheVolumeConvergesAtSecondOrder) {
   // Of two circles that are apart: the outline between has no closed form, its finest volume is the measure.
   const std::vector<Section> drawn{{0.0, {circle(10.0)}}, {6.0, {circle(6.0, {8.0, 0.0})}}};
-  const double fine = volume_of(sections_between(drawn, {.step_mm = 0.25}));
-  const double at_1 = std::abs(volume_of(sections_between(drawn, {.step_mm = 1.0})) - fine),
-               at_2 = std::abs(volume_of(sections_between(drawn, {.step_mm = 2.0})) - fine);
-  EXPECT_LT(at_1, 0.4 * at_2);
-  EXPECT_LT(at_1, 1e-2 * fine);
+  const double fine = volume_of(sections_between(drawn, {.step_mm = 0.5}));
+  const double at_1_5 = std::abs(volume_of(sections_between(drawn, {.step_mm = 1.5})) - fine),
+               at_3 = std::abs(volume_of(sections_between(drawn, {.step_mm = 3.0})) - fine);
+  EXPECT_LT(at_1_5, 0.5 * at_3);
+  EXPECT_LT(at_1_5, 1e-2 * fine);
 }
 
 TEST(SectionsBetween, NextToAnEmptySectionTheObjectEndsHalfWayInAFlatFace) {
@@ -80,9 +80,11 @@ TEST(SectionsBetween, HolesAndBranchesAreInterpolatedToo) {
   const std::vector<Section> sections =
       sections_between({{0.0, {square(10.0), square(4.0)}}, {4.0, {square(10.0), square(6.0)}}});
   for (const Section& section : sections)
-    if (section.z_mm > 0.0 && section.z_mm < 4.0) EXPECT_EQ(section.contours.size(), 2u) << section.z_mm;
+    if (section.z_mm > 0.0 && section.z_mm < 4.0) {
+      EXPECT_EQ(section.contours.size(), 2u) << section.z_mm;
+    }
   const std::vector<Section> branching =
-      sections_between({{0.0, {circle(10.0)}}, {6.0, {circle(5.0, {-6.0, 0.0}), circle(5.0, {6.0, 0.0})}}});
+      sections_between({{0.0, {circle(10.0)}}, {6.0, {circle(3.0, {-7.0, 0.0}), circle(3.0, {7.0, 0.0})}}});
   std::size_t one = 0, two = 0;
   for (const Section& section : branching) {
     one += section.contours.size() == 1 ? 1 : 0;
