@@ -174,8 +174,8 @@ SeedContours contours_around_seeds(const voxel::Scene& scene, const std::vector<
       throw std::runtime_error(words_of(seed_mm) + " lies outside the window, its sample is " +
                                plain(place.sample) + ": choose another seed or window");
     PlaneContours all;
-    for (const brep::Contour& contour : convert::trace_contours(place.slice, low, high).front().contours)
-      all.push_back(contour.points_mm);
+    const std::vector<brep::Section> sections = convert::trace_contours(place.slice, low, high);
+    for (const brep::Contour& contour : sections.front().contours) all.push_back(contour.points_mm);
     std::vector<brep::Contour> region;
     for (auto& polygon : region_around(all, place.p_mm)) region.push_back({std::move(polygon)});
     if (region.empty())
