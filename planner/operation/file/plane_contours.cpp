@@ -50,12 +50,14 @@ PlaneSamples samples_of(const voxel::Scene& scene, const ViewPlane& plane) {
 float depth_at(const voxel::Scene& scene, const glm::dvec3& p_mm, double low, double high) {
   constexpr double most = 1e30;
   const glm::dvec3 at = scene.lattice.voxel(p_mm), last = glm::dvec3(scene.lattice.dims) - 1.0;
-  // Samples speak for half a voxel beyond the outermost ones.
-  if (glm::any(glm::lessThan(at, glm::dvec3(-0.5))) || glm::any(glm::greaterThan(at, last + 0.5)))
-    return static_cast<float>(-most);
   const double sample = voxel::interpolate(scene, glm::clamp(at, glm::dvec3(0.0), last));
   if (std::isnan(sample)) return static_cast<float>(-most);
-  return static_cast<float>(std::clamp(std::min(sample - low, high - sample), -most, most));
+  const auto depth = static_cast<float>(std::clamp(std::min(sample - low, high - sample), -most, most));
+  // Samples speak for half a voxel beyond the outermost ones: there the depth is reversed, so that an object ends half
+  // way to the next point.
+  const bool is_outside =
+      glm::any(glm::lessThan(at, glm::dvec3(-0.5))) || glm::any(glm::greaterThan(at, last + 0.5));
+  return is_outside ? -std::abs(depth) : depth;
 }
 
 PlaneContours points_of(std::vector<brep::Contour> contours) {
