@@ -111,10 +111,11 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_pairs(const Triang
 /// Puts strips into a slab's surface.
 class Strips {
  public:
-  Strips(const Slab& slab, TileCost cost, SlabSurface& surface)
+  Strips(const Slab& slab, TileCost cost, std::optional<double> most_span_mm, SlabSurface& surface)
       : slab_(slab),
         surface_(surface),
         cost_(cost),
+        most_span_mm_(most_span_mm),
         strips_(surface.groups.size()),
         sides_(slab.lower, slab.upper),
         attempts_(surface.groups.size(), first_attempt(cost)),
@@ -122,7 +123,7 @@ class Strips {
     for (std::size_t g = 0; g < strips_.size(); ++g) {
       if (!is_pair(surface.groups[g])) continue;
       strips_[g] = strip_of(g);
-      if (!is_surface(strips_[g])) retry(g);
+      if (!is_allowed(strips_[g])) retry(g);
     }
   }
 
@@ -213,8 +214,32 @@ class Strips {
     while (strips_[g].empty() && attempts_[g] < most_attempts) {
       if (is_repeated(++attempts_[g])) continue;
       strips_[g] = strip_of(g);
-      if (!is_surface(strips_[g])) strips_[g].clear();
+      if (!is_allowed(strips_[g])) strips_[g].clear();
     }
+  }
+
+  bool is_allowed(const FaceList& strip) const {
+    if (!is_surface(strip)) return false;
+    if (!most_span_mm_) return true;
+    const std::uint32_t lower = point_count(slab_.lower);
+    return std::all_of(strip.begin(), strip.end(), [&](const auto& face) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = face[k], b = face[(k + 1) % 3];
+        if ((a < lower) != (b < lower) && glm::distance(point(a), point(b)) > *most_span_mm_) return false;
+      }
+      return true;
+    });
+  }
+
+  /// A point of the sections, in the plane.
+  const glm::dvec2& point(std::uint32_t number) const {
+    for (const auto* section : {&slab_.lower, &slab_.upper})
+      for (const Contour& contour : *section) {
+        if (number < contour.points_mm.size()) return contour.points_mm[number];
+        number -= static_cast<std::uint32_t>(contour.points_mm.size());
+      }
+    assert(false);
+    return slab_.lower.front().points_mm.front();
   }
 
   /// One contour below and one above, both outlines or both holes.
@@ -282,18 +307,19 @@ class Strips {
   const Slab& slab_;
   SlabSurface& surface_;
   TileCost cost_;
+  std::optional<double> most_span_mm_;
   std::vector<FaceList> strips_;  ///< of each group; empty where overlay()'s stands
   SpanClearance sides_;
   std::vector<int> attempts_;      ///< of each group, after the first
   std::vector<FaceList> avoided_;  ///< of each group, in the numbers of its rings
 };
 
-Tiled tile_slab(const Slab& slab, const std::optional<TileCost>& cost) {
+Tiled tile_slab(const Slab& slab, const TileSectionsOptions& options) {
   Tiled tiled;
   tiled.surface = overlay(slab);
   tiled.overlaid = tiled.surface.groups.size();
-  if (!cost) return tiled;
-  Strips strips(slab, *cost, tiled.surface);
+  if (!options.cost) return tiled;
+  Strips strips(slab, *options.cost, options.most_span_mm, tiled.surface);
   const std::size_t wanted = strips.wanted();
   strips.settle();
   tiled.strips = strips.count();
@@ -314,7 +340,7 @@ std::vector<Tiled> tile_slabs(const std::vector<std::vector<Contour>>& contours,
   std::mutex telling;
   tbb::parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t s) {
     if (options.stop.stop_requested()) return;
-    slabs[s] = tile_slab({contours[s], contours[s + 1], heights_mm[s], heights_mm[s + 1]}, options.cost);
+    slabs[s] = tile_slab({contours[s], contours[s + 1], heights_mm[s], heights_mm[s + 1]}, options);
     const std::size_t count = ++finished;
     if (!options.progress) return;
     const std::lock_guard lock(telling);

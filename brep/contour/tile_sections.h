@@ -26,6 +26,9 @@ struct TileSectionsOptions {
   std::optional<TileCost> cost = TileCost::shortest_span;
   std::function<void(double)> progress = {};  ///< called with 0..1, from any thread, one call at a time
   std::stop_token stop = {};
+  /// The longest way in the plane from a point of one contour to a point of the other that a strip may join; a pair
+  /// whose strips are longer is joined by overlay(). Not set: any.
+  std::optional<double> most_span_mm = std::nullopt;
 };
 
 struct TiledSections {
@@ -37,7 +40,7 @@ struct TiledSections {
   /// Of these, pairs whose clear strip crossed something, too. They were joined by the best strip near the
   /// strip of shortest spans (tile_near()), by the strip of shortest spans, or by the strip of least area.
   std::size_t narrowed_strips = 0;
-  /// Pairs all of whose strips crossed something and which were joined by overlay() instead.
+  /// Pairs all of whose strips crossed something or were too long, and which were joined by overlay() instead.
   std::size_t crossed_strips = 0;
   std::size_t overlaid = 0;  ///< further groups of contours: branchings, ends, contours within contours
 };

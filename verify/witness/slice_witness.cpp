@@ -32,9 +32,14 @@ class Outline {
     for (const auto& polygon : polygons_mm)
       for (std::size_t i = 0; i < polygon.size(); ++i)
         sides_.push_back({polygon[i], polygon[i + 1 == polygon.size() ? 0 : i + 1]});
-    for (const Side& side : sides_) {
-      low_ = glm::min(low_, glm::min(side.from, side.to));
-      high_ = glm::max(high_, glm::max(side.from, side.to));
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+      if (i % run_length == 0) runs_.emplace_back();
+      for (const glm::dvec2& p : {sides_[i].from, sides_[i].to}) {
+        runs_.back().low = glm::min(runs_.back().low, p);
+        runs_.back().high = glm::max(runs_.back().high, p);
+        low_ = glm::min(low_, p);
+        high_ = glm::max(high_, p);
+      }
     }
   }
 
@@ -46,16 +51,20 @@ class Outline {
   double signed_distance_mm(const glm::dvec2& p) const {
     double square = far_outside_mm;
     bool is_inside = false;
-    for (const Side& side : sides_) {
-      const glm::dvec2 edge = side.to - side.from, rel = p - side.from;
-      const double length2 = glm::dot(edge, edge);
-      const double t = length2 > 0.0 ? std::clamp(glm::dot(rel, edge) / length2, 0.0, 1.0) : 0.0;
-      const glm::dvec2 apart = rel - t * edge;
-      square = std::min(square, glm::dot(apart, apart));
-      // For an edge that crosses the height of p: the position of the crossing at that height.
-      if ((side.from.y > p.y) != (side.to.y > p.y) &&
-          p.x < side.from.x + (p.y - side.from.y) / (side.to.y - side.from.y) * (side.to.x - side.from.x))
-        is_inside = !is_inside;
+    for (std::size_t run = 0; run < runs_.size(); ++run) {
+      const glm::dvec2 beside = glm::max(glm::max(runs_[run].low - p, p - runs_[run].high), glm::dvec2(0.0));
+      const bool may_be_nearer = glm::dot(beside, beside) < square;
+      const bool may_be_crossed = p.x <= runs_[run].high.x && beside.y <= 0.0;
+      if (!may_be_nearer && !may_be_crossed) continue;
+      const std::size_t end = std::min(sides_.size(), (run + 1) * run_length);
+      for (std::size_t i = run * run_length; i < end; ++i) {
+        const Side& side = sides_[i];
+        if (may_be_nearer) square = std::min(square, square_to(side, p));
+        // For an edge that crosses the height of p: the position of the crossing at that height.
+        if ((side.from.y > p.y) != (side.to.y > p.y) &&
+            p.x < side.from.x + (p.y - side.from.y) / (side.to.y - side.from.y) * (side.to.x - side.from.x))
+          is_inside = !is_inside;
+      }
     }
     const double distance_mm = std::sqrt(square);
     return is_inside ? -distance_mm : distance_mm;
@@ -65,14 +74,33 @@ class Outline {
   struct Side {
     glm::dvec2 from, to;
   };
+  /// The box of sides that follow each other, which most points are far from.
+  struct Run {
+    glm::dvec2 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+  };
+  static constexpr std::size_t run_length = 16;
+
+  static double square_to(const Side& side, const glm::dvec2& p) {
+    const glm::dvec2 edge = side.to - side.from, rel = p - side.from;
+    const double length2 = glm::dot(edge, edge);
+    const double t = length2 > 0.0 ? std::clamp(glm::dot(rel, edge) / length2, 0.0, 1.0) : 0.0;
+    const glm::dvec2 apart = rel - t * edge;
+    return glm::dot(apart, apart);
+  }
+
   std::vector<Side> sides_;
+  std::vector<Run> runs_;
   glm::dvec2 low_{std::numeric_limits<double>::infinity()}, high_{-std::numeric_limits<double>::infinity()};
 };
 
 class SliceWitness {
  public:
   explicit SliceWitness(const DrawnStack& stack)
-      : look_(stack.look), up_(stack.up), right_(stack.right), is_interpolated_(stack.is_interpolated) {
+      : look_(stack.look),
+        up_(stack.up),
+        right_(stack.right),
+        is_interpolated_(stack.is_interpolated),
+        mesh_within_mm_(stack.mesh_within_mm) {
     if (stack.slices.size() < 2) throw voxel::InvalidInput("a stack of contours needs two slices or more");
     for (const DrawnStack::Slice& slice : stack.slices) {
       if (!at_mm_.empty() && !(slice.position_mm > at_mm_.back()))
@@ -92,24 +120,28 @@ class SliceWitness {
     const double near_mm = contour_width_mm + rounded_share * glm::length(p_mm) + slack_mm;
     const glm::dvec2 p(glm::dot(p_mm, right_), glm::dot(p_mm, up_));
     const double at_mm = glm::dot(p_mm, look_);
+    const double most_mm = near_mm + mesh_within_mm_;
     // Between outlines the interpolated one lies within the box of both.
-    if (glm::any(glm::lessThan(p, low_ - near_mm)) || glm::any(glm::greaterThan(p, high_ + near_mm)) ||
-        at_mm < begin_mm_ - near_mm || at_mm > end_mm_ + near_mm)
+    if (glm::any(glm::lessThan(p, low_ - most_mm)) || glm::any(glm::greaterThan(p, high_ + most_mm)) ||
+        at_mm < begin_mm_ - most_mm || at_mm > end_mm_ + most_mm)
       return {certainly_out, certainly_out, 0};
-    bool is_near = false, is_in = false, is_out = false;
-    for (const double across_mm : {-near_mm, 0.0, near_mm}) {
-      const double value_mm = value(p, at_mm + across_mm);
-      is_near = is_near || std::abs(value_mm) <= near_mm;
-      (value_mm <= 0.0 ? is_in : is_out) = true;
-    }
-    const AllowedSides allowed = is_near || (is_in && is_out) ? on_surface
-                                 : is_in                      ? certainly_in
-                                                              : certainly_out;
-    // A mesh of interpolated slices may have a vertex anywhere on their surface.
-    return {allowed, allowed, allowed.near ? 2 : 0};
+    const AllowedSides voxel = sides(p, at_mm, near_mm);
+    const AllowedSides mesh = mesh_within_mm_ > 0.0 && !voxel.near ? sides(p, at_mm, most_mm) : voxel;
+    // A mesh of such a surface may have a vertex anywhere on it.
+    return {voxel, mesh, mesh.near ? 2 : 0};
   }
 
  private:
+  AllowedSides sides(const glm::dvec2& p, double at_mm, double near_mm) const {
+    bool is_in = false, is_out = false;
+    // Half way, too: a slice may lie between.
+    for (const double share : {0.0, -1.0, 1.0, -0.5, 0.5}) {
+      const double value_mm = value(p, at_mm + share * near_mm);
+      (value_mm <= 0.0 ? is_in : is_out) = true;
+      if (std::abs(value_mm) <= near_mm || (is_in && is_out)) return on_surface;
+    }
+    return is_in ? certainly_in : certainly_out;
+  }
   double value(const glm::dvec2& p, double at_mm) const {
     if (at_mm < begin_mm_ || at_mm > end_mm_) return far_outside_mm;
     if (at_mm <= at_mm_.front()) return outlines_.front().signed_distance_mm(p);
@@ -125,6 +157,7 @@ class SliceWitness {
 
   glm::dvec3 look_, up_, right_;
   bool is_interpolated_;
+  double mesh_within_mm_;
   std::vector<double> at_mm_;
   std::vector<Outline> outlines_;
   glm::dvec2 low_{std::numeric_limits<double>::infinity()}, high_{-std::numeric_limits<double>::infinity()};

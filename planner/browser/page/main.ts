@@ -13,6 +13,7 @@ import {move_tool} from "./tool/move_tool";
 import {open_outcome} from "./dialog/outcome_dialog";
 import {grow_tool} from "./tool/grow_tool";
 import {brush_tool} from "./tool/brush_tool";
+import {contour_tool} from "./tool/contour_tool";
 import {island_tool} from "./tool/island_tool";
 import {open_help, open_palette} from "./dialog/palette";
 import {make_panes, reconnected, take_picture} from "./pane/pane_grid";
@@ -142,7 +143,7 @@ use_wire(wire);
 use_picture_asker((fields, on_id) => wire.ask("pane", fields, on_id));
 register_tools([
   navigate, window_tool, region_tool, move_tool, marks_tool, landmark_tool, distance_tool, angle_tool,
-  surface_tool, segment_tool, grow_tool, island_tool, brush_tool, arch_tool
+  surface_tool, segment_tool, grow_tool, island_tool, brush_tool, contour_tool, arch_tool
 ]);
 Object.assign(dialogs, {
   palette: open_palette,

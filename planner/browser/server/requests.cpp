@@ -5,6 +5,7 @@
 #include <chrono>
 #include <tuple>
 
+#include "planner/browser/server/contour_request.h"
 #include "planner/browser/server/new_files.h"
 #include "planner/browser/server/new_plan.h"
 #include "planner/browser/server/object_requests.h"
@@ -376,6 +377,7 @@ const std::vector<RequestKind>& request_kinds() {
       {"overlap", Lane::Overlap, false, overlap},
       {"part", Lane::Long, false, part},
       {"try", Lane::Long, false, try_steps},
+      {"trace", Lane::Long, false, trace_contours},
       {"measure", Lane::Long, false, measure},
       {"movement", Lane::Long, false, movement},
       {"mesh_audit", Lane::Long, false, mesh_audit},

@@ -68,6 +68,7 @@ constexpr std::array verb_table{
     GroupedVerb{shaping, "voxelise"},
     GroupedVerb{shaping, "surfaces"},
     GroupedVerb{shaping, "contours"},
+    GroupedVerb{shaping, "outline"},
     GroupedVerb{shaping, "repair"},
     GroupedVerb{shaping, "decimate"},
     GroupedVerb{shaping, "smooth"},

@@ -11,6 +11,7 @@
 #include "brep/contour/contour.h"
 #include "brep/mesh/segment.h"
 #include "convert/surface/trace_contours.h"
+#include "planner/operation/file/plane_contours.h"
 #include "planner/operation/table/number_format.h"
 #include "voxel/filter/crop.h"
 #include "voxel/filter/slice_contour.h"
@@ -59,66 +60,130 @@ void need_apart(const std::vector<brep::Contour>& contours, double position_mm) 
     }
 }
 
+/// Finds contours in the slices of seeds, and collects them as a mask.
+class SeededSlices {
+ public:
+  explicit SeededSlices(const voxel::Scene& scene) : scene_(scene), spacing_(scene.lattice.spacing_mm()) {
+    try {
+      made_.mask.view = voxel::parse_view(voxel::contour_view(scene.lattice));
+    } catch (const voxel::InvalidInput& error) {
+      throw std::runtime_error(std::string(error.what()) +
+                               ": straighten the scan first, for example with octotomy prepare");
+    }
+    if (scene.lattice.dims.z < 2)
+      throw std::runtime_error("a scan of one slice has no contours on parallel slices");
+  }
+
+  /// A seed's sample, and the slice that it lies in.
+  struct Place {
+    glm::ivec3 at{0};
+    double sample = 0.0;
+    glm::dvec2 p_mm{0.0};  ///< in the slice's own millimetres
+    voxel::Scene slice;
+  };
+  Place place_of(const glm::dvec3& seed_mm) const {
+    const glm::ivec3 at = sample_of(scene_, seed_mm);
+    voxel::Scene slice =
+        voxel::crop(scene_, {{0, 0, at.z}, {scene_.lattice.dims.x - 1, scene_.lattice.dims.y - 1, at.z}});
+    const double sample = voxel::interpolate(slice, {at.x, at.y, 0});
+    if ((scene_.padding && sample == *scene_.padding) || !std::isfinite(sample))
+      throw std::runtime_error(words_of(seed_mm) + " lies on padding, where nothing was measured");
+    return {at, sample, glm::dvec2(at) * glm::dvec2(spacing_), std::move(slice)};
+  }
+
+  double away_mm(const std::vector<brep::Contour>& contours, const glm::dvec2& p_mm) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const brep::Contour& contour : contours) least = std::min(least, distance_to(contour, p_mm));
+    return least;
+  }
+
+  /// Adds the contours of a seed that are not there yet.
+  void add(const glm::dvec3& seed_mm, const Place& place, double threshold,
+           const std::vector<brep::Contour>& contours, bool must_be_near) {
+    std::vector<brep::Contour>& of_slice = by_slice_[place.at.z];
+    for (const brep::Contour& contour : contours)
+      if (std::none_of(of_slice.begin(), of_slice.end(),
+                       [&](const brep::Contour& known) { return known.points_mm == contour.points_mm; }))
+        of_slice.push_back(contour);
+    const double away = away_mm(contours, place.p_mm);
+    made_.seeds.push_back({seed_mm, threshold, position_of(place.at.z), away,
+                           must_be_near && away > glm::length(glm::dvec2(spacing_))});
+  }
+
+  /// Precondition: a seed was added.
+  SeedContours finished() && {
+    if (by_slice_.begin()->first > 0) by_slice_[by_slice_.begin()->first - 1];
+    if (by_slice_.rbegin()->first + 1 < scene_.lattice.dims.z) by_slice_[by_slice_.rbegin()->first + 1];
+    for (const auto& [k, contours] : by_slice_) {
+      voxel::SliceMask::Slice slice;
+      slice.position_mm = position_of(k);
+      need_apart(contours, slice.position_mm);
+      for (const brep::Contour& contour : contours) {
+        slice.polygons_mm.emplace_back();
+        for (const glm::dvec2& p : contour.points_mm)
+          slice.polygons_mm.back().push_back(
+              made_.mask.view.project(scene_.lattice.lps_mm({p.x / spacing_.x, p.y / spacing_.y, k})));
+      }
+      made_.mask.slices.push_back(std::move(slice));
+    }
+    if (made_.mask.slices.front().position_mm > made_.mask.slices.back().position_mm)
+      std::reverse(made_.mask.slices.begin(), made_.mask.slices.end());
+    return std::move(made_);
+  }
+
+ private:
+  double position_of(int k) const { return glm::dot(scene_.lattice.lps_mm({0, 0, k}), made_.mask.view.look); }
+
+  const voxel::Scene& scene_;
+  glm::dvec3 spacing_;
+  SeedContours made_;
+  std::map<int, std::vector<brep::Contour>> by_slice_;
+};
+
 }  // namespace
 
 SeedContours contours_at_seeds(const voxel::Scene& scene, const std::vector<glm::dvec3>& seeds_mm) {
-  SeedContours made;
-  try {
-    made.mask.view = voxel::parse_view(voxel::contour_view(scene.lattice));
-  } catch (const voxel::InvalidInput& error) {
-    throw std::runtime_error(std::string(error.what()) +
-                             ": straighten the scan first, for example with octotomy prepare");
-  }
-  if (scene.lattice.dims.z < 2)
-    throw std::runtime_error("a scan of one slice has no contours on parallel slices");
-  const glm::dvec3 spacing = scene.lattice.spacing_mm();
-  const auto position_of = [&](int k) {
-    return glm::dot(scene.lattice.lps_mm({0, 0, k}), made.mask.view.look);
-  };
-  std::map<int, std::vector<brep::Contour>> by_slice;
+  SeededSlices slices(scene);
   for (const glm::dvec3& seed_mm : seeds_mm) {
-    const glm::ivec3 at = sample_of(scene, seed_mm);
-    const voxel::Scene slice =
-        voxel::crop(scene, {{0, 0, at.z}, {scene.lattice.dims.x - 1, scene.lattice.dims.y - 1, at.z}});
-    const double threshold = voxel::interpolate(slice, {at.x, at.y, 0});
-    if ((scene.padding && threshold == *scene.padding) || !std::isfinite(threshold))
-      throw std::runtime_error(words_of(seed_mm) + " lies on padding, where nothing was measured");
+    const SeededSlices::Place place = slices.place_of(seed_mm);
     const std::vector<brep::Section> sections =
-        convert::trace_contours(slice, threshold, std::numeric_limits<double>::infinity());
-    const glm::dvec2 p_mm = glm::dvec2(at) * glm::dvec2(spacing);
+        convert::trace_contours(place.slice, place.sample, std::numeric_limits<double>::infinity());
     const brep::Contour* nearest = nullptr;
     double least = std::numeric_limits<double>::infinity();
     for (const brep::Contour& contour : sections.front().contours)
-      if (const double away = distance_to(contour, p_mm); away < least) {
+      if (const double away = distance_to(contour, place.p_mm); away < least) {
         least = away;
         nearest = &contour;
       }
     if (nearest == nullptr)
-      throw std::runtime_error(words_of(seed_mm) + ": its slice has no contour at " + plain(threshold));
-    std::vector<brep::Contour>& of_slice = by_slice[at.z];
-    if (std::none_of(of_slice.begin(), of_slice.end(),
-                     [&](const brep::Contour& known) { return known.points_mm == nearest->points_mm; }))
-      of_slice.push_back(*nearest);
-    made.seeds.push_back(
-        {seed_mm, threshold, position_of(at.z), least, least > glm::length(glm::dvec2(spacing))});
+      throw std::runtime_error(words_of(seed_mm) + ": its slice has no contour at " + plain(place.sample));
+    slices.add(seed_mm, place, place.sample, {*nearest}, true);
   }
-  if (by_slice.begin()->first > 0) by_slice[by_slice.begin()->first - 1];
-  if (by_slice.rbegin()->first + 1 < scene.lattice.dims.z) by_slice[by_slice.rbegin()->first + 1];
-  for (const auto& [k, contours] : by_slice) {
-    voxel::SliceMask::Slice slice;
-    slice.position_mm = position_of(k);
-    need_apart(contours, slice.position_mm);
-    for (const brep::Contour& contour : contours) {
-      slice.polygons_mm.emplace_back();
-      for (const glm::dvec2& p : contour.points_mm)
-        slice.polygons_mm.back().push_back(
-            made.mask.view.project(scene.lattice.lps_mm({p.x / spacing.x, p.y / spacing.y, k})));
-    }
-    made.mask.slices.push_back(std::move(slice));
+  return std::move(slices).finished();
+}
+
+SeedContours contours_around_seeds(const voxel::Scene& scene, const std::vector<glm::dvec3>& seeds_mm,
+                                   const RegionSamples& samples) {
+  SeededSlices slices(scene);
+  for (const glm::dvec3& seed_mm : seeds_mm) {
+    const SeededSlices::Place place = slices.place_of(seed_mm);
+    const double low = samples.window ? samples.window->low : place.sample - *samples.tolerance;
+    const double high =
+        samples.window ? samples.window->high_or_infinity() : place.sample + *samples.tolerance;
+    if (place.sample < low || place.sample > high)
+      throw std::runtime_error(words_of(seed_mm) + " lies outside the window, its sample is " +
+                               plain(place.sample) + ": choose another seed or window");
+    PlaneContours all;
+    const std::vector<brep::Section> sections = convert::trace_contours(place.slice, low, high);
+    for (const brep::Contour& contour : sections.front().contours) all.push_back(contour.points_mm);
+    std::vector<brep::Contour> region;
+    for (auto& polygon : region_around(all, place.p_mm)) region.push_back({std::move(polygon)});
+    if (region.empty())
+      throw std::runtime_error(words_of(seed_mm) +
+                               " lies on the region's very border: choose a seed within the region");
+    slices.add(seed_mm, place, low, region, false);
   }
-  if (made.mask.slices.front().position_mm > made.mask.slices.back().position_mm)
-    std::reverse(made.mask.slices.begin(), made.mask.slices.end());
-  return made;
+  return std::move(slices).finished();
 }
 
 }  // namespace octotomy::planner

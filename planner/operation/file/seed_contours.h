@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "planner/operation/table/sample_window.h"
 #include "voxel/solid/slice_mask.h"
 #include "voxel/space/scene.h"
 
@@ -29,5 +31,19 @@ struct SeedContours {
 /// the scan or on padding, or if its slice has no contour at its threshold; if two contours of a slice cross,
 /// which is possible where seeds there have different samples; and as slice_contours().
 SeedContours contours_at_seeds(const voxel::Scene& scene, const std::vector<glm::dvec3>& seeds_mm);
+
+/// What belongs to the region around a seed: the samples of a window, or those no farther from the seed's own sample
+/// than the tolerance. One of both is set.
+struct RegionSamples {
+  std::optional<SampleWindow> window;
+  std::optional<double> tolerance;
+};
+
+/// For each seed, the contour around the connected region of its slice in which it lies, and those of the region's
+/// holes; a region with several seeds appears once. `threshold` is the lower bound, `away_mm` the distance of the seed
+/// from the region's contours. The mask and what is thrown are as of contours_at_seeds(); a seed outside the window is
+/// refused with its sample.
+SeedContours contours_around_seeds(const voxel::Scene& scene, const std::vector<glm::dvec3>& seeds_mm,
+                                   const RegionSamples& samples);
 
 }  // namespace octotomy::planner

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -14,8 +15,11 @@
 #include "brep/mesh/error.h"
 #include "convert/surface/trace_contours.h"
 #include "planner/operation/file/picture_frame.h"
+#include "planner/operation/table/comma_numbers.h"
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/json_file.h"
+#include "planner/operation/table/number_format.h"
+#include "voxel/filter/crop.h"
 #include "voxel/filter/slice_contour.h"
 #include "voxel/space/error.h"
 
@@ -198,19 +202,23 @@ class Edit {
   std::vector<EditedContour>& contours_;
 };
 
-}  // namespace
-
-voxel::SliceMask slice_contours(const voxel::Scene& scene, double low, double high) {
-  voxel::SliceMask mask;
+/// The view across a scan's slices. Refuses a scan that lies obliquely to the patient's axes.
+voxel::View view_of_slices(const voxel::Scene& scene) {
   try {
-    mask.view = voxel::parse_view(voxel::contour_view(scene.lattice));
+    return voxel::parse_view(voxel::contour_view(scene.lattice));
   } catch (const voxel::InvalidInput& error) {
     throw std::runtime_error(std::string(error.what()) +
                              ": straighten the scan first, for example with octotomy prepare");
   }
+}
+
+/// The sections of a scan's slices as a mask.
+voxel::SliceMask mask_of(const voxel::Scene& scene, const std::vector<brep::Section>& sections) {
+  voxel::SliceMask mask;
+  mask.view = view_of_slices(scene);
   const glm::dvec3 spacing = scene.lattice.spacing_mm();
   bool is_empty = true;
-  for (const brep::Section& section : convert::trace_contours(scene, low, high)) {
+  for (const brep::Section& section : sections) {
     const auto lps = [&](const glm::dvec2& p) {
       return scene.lattice.lps_mm(glm::dvec3(p, section.z_mm) / spacing);
     };
@@ -231,6 +239,60 @@ voxel::SliceMask slice_contours(const voxel::Scene& scene, double low, double hi
     std::reverse(mask.slices.begin(), mask.slices.end());
   drop_empty_ends(mask.slices);
   return mask;
+}
+
+/// The slice of a scan at a position in the view of its contours.
+int slice_at(const voxel::Scene& scene, double position_mm) {
+  const voxel::View view = view_of_slices(scene);
+  const double first_mm = glm::dot(scene.lattice.lps_mm(glm::dvec3(0.0)), view.look);
+  const double step_mm = glm::dot(scene.lattice.lps_mm({0.0, 0.0, 1.0}), view.look) - first_mm;
+  const double k = std::round((position_mm - first_mm) / step_mm);
+  if (!(k >= 0.0 && k < scene.lattice.dims.z)) {
+    const double last_mm = first_mm + step_mm * (scene.lattice.dims.z - 1);
+    throw std::runtime_error("there is no slice at " + plain(position_mm) + " mm: slices lie from " +
+                             plain(std::min(first_mm, last_mm)) + " to " +
+                             plain(std::max(first_mm, last_mm)) + " mm");
+  }
+  return static_cast<int>(k);
+}
+
+}  // namespace
+
+voxel::SliceMask slice_contours(const voxel::Scene& scene, double low, double high) {
+  return mask_of(scene, convert::trace_contours(scene, low, high));
+}
+
+SliceWindow parse_slice_window(const std::string& text) {
+  const auto equals = text.find('=');
+  const std::optional<double> position_mm = number_in(text.substr(0, equals));
+  if (equals == std::string::npos || !position_mm)
+    throw std::runtime_error("'" + text +
+                             "' is no window of a slice: give POSITION=LOW:HIGH, for example 30=250:");
+  return {*position_mm, parse_sample_window(text.substr(equals + 1))};
+}
+
+voxel::SliceMask slice_contours(const voxel::Scene& scene, const std::optional<SampleWindow>& window,
+                                const std::vector<SliceWindow>& own) {
+  std::vector<brep::Section> sections;
+  if (window) {
+    sections = convert::trace_contours(scene, window->low, window->high_or_infinity());
+  } else {
+    const double slice_mm = scene.lattice.spacing_mm().z;
+    for (int k = 0; k < scene.lattice.dims.z; ++k) sections.push_back({k * slice_mm, {}});
+  }
+  if (own.empty()) return mask_of(scene, sections);
+  std::set<int> done;
+  for (const SliceWindow& slice : own) {
+    const int k = slice_at(scene, slice.position_mm);
+    if (!done.insert(k).second)
+      throw std::runtime_error("the slice at " + plain(slice.position_mm) +
+                               " mm has two windows of its own: leave one of them out");
+    const voxel::Scene alone =
+        voxel::crop(scene, {{0, 0, k}, {scene.lattice.dims.x - 1, scene.lattice.dims.y - 1, k}});
+    sections[static_cast<std::size_t>(k)].contours = std::move(
+        convert::trace_contours(alone, slice.window.low, slice.window.high_or_infinity()).front().contours);
+  }
+  return mask_of(scene, sections);
 }
 
 voxel::SliceMask refined(const voxel::SliceMask& mask, const Refinement& refinement,

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "planner/operation/table/sample_window.h"
 #include "voxel/solid/slice_mask.h"
 #include "voxel/space/scene.h"
 
@@ -16,6 +17,20 @@ namespace octotomy::planner {
 /// the patient's axes or nothing is in the window. The surface kernel's follower (brep/contour/contour.h);
 /// the voxel kernel's own is voxel::contour_regions().
 voxel::SliceMask slice_contours(const voxel::Scene& scene, double low, double high);
+
+/// A window of a slice's own.
+struct SliceWindow {
+  double position_mm = 0.0;  ///< in the view of the contours
+  SampleWindow window;
+};
+/// Reads POSITION=WINDOW: "30=250:". Throws std::runtime_error with an example.
+SliceWindow parse_slice_window(const std::string& text);
+
+/// The same, where the slice at each of these positions has its own window; `window` is that of the others, which have
+/// no contours without it. Throws std::runtime_error if no slice is within half a slice's distance of a position, or
+/// two positions are of one slice.
+voxel::SliceMask slice_contours(const voxel::Scene& scene, const std::optional<SampleWindow>& window,
+                                const std::vector<SliceWindow>& own);
 
 /// What is done to every contour, in this order.
 struct Refinement {

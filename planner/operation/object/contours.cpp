@@ -2,6 +2,7 @@
 // Writes contours on a scan's slices as a file that masks read: traced, thinned, smoothed, moved outwards or
 // inwards, edited.
 #include <cmath>
+#include <functional>
 
 #include "brep/contour/contour.h"
 #include "planner/operation/file/outputs.h"
@@ -22,7 +23,9 @@ struct Contours {
   ScanName scan;
   std::filesystem::path out;
   std::optional<SampleWindow> window;
-  std::vector<glm::dvec3> seeds_mm;
+  std::vector<std::string> slice_windows;
+  std::vector<glm::dvec3> seeds_mm, around_mm;
+  std::optional<double> tolerance;
   double least_area_mm2 = 0.0, thin_mm = 0.0, by_mm = 0.0;
   std::optional<int> harmonics;
   // Of the command only.
@@ -36,12 +39,46 @@ bool is_json(const std::filesystem::path& path) {
   return path.extension() == ".json";
 }
 
+bool has_windows(const Contours& contours) {
+  return contours.window || !contours.slice_windows.empty();
+}
+
+std::vector<SliceWindow> own_windows(const Contours& contours) {
+  std::vector<SliceWindow> own;
+  for (const std::string& text : contours.slice_windows) own.push_back(parse_slice_window(text));
+  return own;
+}
+
+/// Says why options do not go together, by the names that `name` has for them; empty where they do.
+std::string conflict_of(const Contours& contours, const std::function<std::string(const char*)>& name) {
+  if (!contours.seeds_mm.empty() && has_windows(contours))
+    return name("seeds_mm") + ": choose the thresholds themselves: leave " + name("window") + " out";
+  if (!contours.seeds_mm.empty() && !contours.around_mm.empty())
+    return name("around_mm") + ": seeds of regions: leave " + name("seeds_mm") + ", seeds on edges, out";
+  if (contours.tolerance && contours.around_mm.empty())
+    return name("tolerance") + ": is of a region around a seed: add " + name("around_mm");
+  if (contours.tolerance && has_windows(contours))
+    return name("tolerance") + ": chooses the window itself: leave " + name("window") + " out";
+  if (!contours.around_mm.empty() && !contours.slice_windows.empty())
+    return name("slice_windows") + ": are of whole slices: leave " + name("around_mm") + " out";
+  if (!contours.around_mm.empty() && !contours.window && !contours.tolerance)
+    return name("around_mm") + ": add " + name("window") + " or " + name("tolerance") +
+           ", which say what belongs to the region";
+  return "";
+}
+
 void check(const Contours& contours, const FieldLocation& place) {
+  try {
+    own_windows(contours);
+  } catch (const std::runtime_error& error) {
+    place.at("slice_windows").refuse(error.what());
+  }
   if (place.scope == nullptr) return;
   check_output_path(contours.out, {".json"}, place.at("path"));
-  if (contours.window && !contours.seeds_mm.empty())
-    place.at("seeds_mm").refuse("choose the thresholds themselves: leave 'window' out");
-  if (!contours.window && contours.seeds_mm.empty())
+  const std::string conflict =
+      conflict_of(contours, [](const char* key) { return "'" + std::string(key) + "'"; });
+  if (!conflict.empty()) place.refuse(conflict);
+  if (!has_windows(contours) && contours.seeds_mm.empty() && contours.around_mm.empty())
     place.refuse("'window' is missing: add it, for example \"bone\", or 'seeds_mm'");
 }
 
@@ -49,8 +86,11 @@ void check(const Contours& contours, const FieldLocation& place) {
 voxel::SliceMask followed(const Contours& asked, const voxel::Scene& scene, Timings& timings, Json& of_seeds,
                           std::vector<std::string>& findings) {
   const Stopwatch watch(timings, "follow");
-  if (!asked.seeds_mm.empty()) {
-    SeedContours made = contours_at_seeds(scene, asked.seeds_mm);
+  if (asked.window) need_hounsfield(*asked.window, scene);
+  if (!asked.seeds_mm.empty() || !asked.around_mm.empty()) {
+    SeedContours made = asked.around_mm.empty()
+                            ? contours_at_seeds(scene, asked.seeds_mm)
+                            : contours_around_seeds(scene, asked.around_mm, {asked.window, asked.tolerance});
     for (const SeedContour& seed : made.seeds) {
       of_seeds.push_back({{"seed_mm", {seed.seed_mm.x, seed.seed_mm.y, seed.seed_mm.z}},
                           {"threshold", seed.threshold},
@@ -63,8 +103,9 @@ voxel::SliceMask followed(const Contours& asked, const voxel::Scene& scene, Timi
     }
     return std::move(made.mask);
   }
-  need_hounsfield(*asked.window, scene);
-  return slice_contours(scene, asked.window->low, asked.window->high_or_infinity());
+  const std::vector<SliceWindow> own = own_windows(asked);
+  for (const SliceWindow& slice : own) need_hounsfield(slice.window, scene);
+  return slice_contours(scene, asked.window, own);
 }
 
 voxel::SliceMask finished(const Contours& asked, const voxel::SliceMask& mask, Timings& timings,
@@ -108,18 +149,28 @@ Sizes sizes_of(const voxel::SliceMask& mask) {
   return sizes;
 }
 
+std::string option_named(const char* key) {
+  const std::string name = key;
+  return name == "seeds_mm"        ? "--seed"
+         : name == "around_mm"     ? "--around"
+         : name == "slice_windows" ? "--slice-window"
+                                   : "--" + name;
+}
+
 FileAnswer on_files(const Contours& asked, const FileBench& bench) {
   const std::filesystem::path file = asked.scan.name;
   need_extension(asked.out, {".json"}, "contours are");
   if (!asked.codes.empty()) need_extension(asked.codes, {".json"}, "chain codes are");
   need_outputs({asked.out, asked.codes}, {file, asked.edits});
-  if (asked.window && !asked.seeds_mm.empty())
-    throw std::runtime_error("--seed: chooses the threshold itself: leave --window out");
-  if (is_json(file) && !asked.seeds_mm.empty())
-    throw std::runtime_error(file.string() + ": holds contours already: leave --seed out");
-  if (is_json(file) && asked.window)
-    throw std::runtime_error(file.string() + ": holds contours already: leave --window out");
-  if (!is_json(file) && !asked.window && asked.seeds_mm.empty())
+  const std::string conflict = conflict_of(asked, option_named);
+  if (!conflict.empty()) throw std::runtime_error(conflict);
+  if (is_json(file) && (!asked.seeds_mm.empty() || !asked.around_mm.empty()))
+    throw std::runtime_error(file.string() + ": holds contours already: leave " +
+                             (asked.seeds_mm.empty() ? "--around" : "--seed") + " out");
+  if (is_json(file) && has_windows(asked))
+    throw std::runtime_error(file.string() + ": holds contours already: leave " +
+                             (asked.window ? "--window" : "--slice-window") + " out");
+  if (!is_json(file) && !has_windows(asked) && asked.seeds_mm.empty() && asked.around_mm.empty())
     throw std::runtime_error(
         "--window: choose what the contours outline: --window 300: or --window skin, or --seed X,Y,Z on an "
         "edge");
@@ -177,6 +228,21 @@ Operation contours_operation() {
               "its sample, and the contour nearest to it.")
               .repeated()
               .called("seed"))
+      .takes(
+          field("slice_windows", &Contours::slice_windows,
+                "Of a scan: windows of slices of their own, POSITION=LOW:HIGH, the position in mm along the "
+                "contours' view. Other slices have the window, or none.")
+              .repeated()
+              .called("slice-window"))
+      .takes(
+          field("around_mm", &Contours::around_mm,
+                "Of a scan: pixels within regions, LPS. Each leaves of its slice the connected region of the "
+                "window in which it lies, with its holes.")
+              .repeated()
+              .called("around"))
+      .takes(field("tolerance", &Contours::tolerance,
+                   "Of regions around pixels, in place of a window: how far samples may be from the pixel's.")
+                 .from(0.0))
       .takes(field("least_area_mm2", &Contours::least_area_mm2, "Leaves contours out that enclose less.")
                  .from(0.0)
                  .to(1e9))
@@ -203,6 +269,9 @@ Operation contours_operation() {
       .on_files(
           "octotomy contours head.nrrd --window 300: --least-area 20 --thin 0.2 -o bone.json\n"
           "  octotomy contours head.nrrd --seed 0,-62,10 --seed 0,-60,30 -o profile.json\n"
+          "  octotomy contours head.nrrd --window 300: --slice-window 30=250: --slice-window 32=260: -o "
+          "bone.json\n"
+          "  octotomy contours head.nrrd --around 12,-20,10 --tolerance 60 -o cyst.json\n"
           "  octotomy contours bone.json --by 2 --edits mine.json -o margin.json\n"
           "  octotomy mask --slices margin.json --like head.nrrd -o margin.octree\n"
           "Edits: {\"edits\": [{\"slice\": 3, \"contour\": 0, \"do\": \"move\", \"point\": 7, \"to_mm\": "

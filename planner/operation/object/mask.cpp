@@ -14,11 +14,11 @@
 #include "planner/operation/file/slicer_markup.h"
 #include "planner/operation/object/mask_file.h"
 #include "planner/operation/object/provenance.h"
+#include "planner/operation/object/tiled_slices.h"
 #include "planner/operation/table/fault.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "planner/operation/table/same_patient.h"
-#include "verify/witness/slice_witness.h"
 #include "verify/witness/witness.h"
 #include "voxel/solid/region_mask.h"
 #include "voxel/space/error.h"
@@ -204,36 +204,48 @@ void voxels(const Mask& typed, const VoxelBench& bench, VoxelSide& made) {
         plain(bench.box_mm()) + "; draw them within it");
 }
 
-void triangles(const Mask& typed, const MeshBench& bench, MeshSide& made) {
-  const Mask mask = with_files_read(typed, bench.folder, bench.objects.lps_from_head);
-  if (!mask.slices.empty())
-    throw std::runtime_error("what lies between slices is interpolated for voxels alone");
-  const Stopwatch watch(bench.timings, "boolean_mesh");
-  const auto prism = [&](const Mask::Region& region) {
-    return brep::solid_of(prism_of(region, bench.low_mm, bench.high_mm));
-  };
-  brep::Solid solid = prism(mask.regions.front());
-  for (std::size_t i = 1; i < mask.regions.size(); ++i) {
+/// The prisms' intersection; none without regions.
+std::optional<brep::Solid> solid_of_regions(const Mask& mask, const MeshBench& bench, MeshSide& made) {
+  std::optional<brep::Solid> solid;
+  for (const Mask::Region& region : mask.regions) {
+    brep::Solid prism = brep::solid_of(prism_of(region, bench.low_mm, bench.high_mm));
+    if (!solid) {
+      solid = std::move(prism);
+      continue;
+    }
     brep::BooleanResult met =
-        brep::boolean(solid, brep::Operation::Intersection, prism(mask.regions[i]), bench.progress.stop);
+        brep::boolean(*solid, brep::Operation::Intersection, prism, bench.progress.stop);
     made.shift_mm += met.shift_mm;
     solid = std::move(met.solid);
   }
+  if (!solid) return solid;
   const auto turned = held(mask, bench.objects);
-  made.whole = turned ? brep::moved(solid, *turned) : solid;
-  made.lineage = "prisms of the regions";
+  return turned ? brep::moved(*solid, *turned) : *solid;
 }
 
-/// Contours as the plan's reader returns them. The witness determines by itself what they enclose.
-verify::Witness witness_of(const voxel::SliceMask& mask) {
-  verify::DrawnStack stack{mask.view.look,
-                           mask.view.up,
-                           mask.view.right,
-                           {},
-                           mask.between == voxel::SliceMask::Between::ShapeBased};
-  for (const voxel::SliceMask::Slice& slice : mask.slices)
-    stack.slices.push_back({slice.position_mm, slice.polygons_mm});
-  return verify::witness_of_slices(stack);
+void triangles(const Mask& typed, const MeshBench& bench, MeshSide& made) {
+  const Mask mask = with_files_read(typed, bench.folder, bench.objects.lps_from_head);
+  std::optional<brep::Solid> tiles;
+  if (!mask.slices.empty()) {
+    const Stopwatch watch(bench.timings, "tile");
+    tiles = tiled_slices(
+                read_slices(bench.folder / mask.slices, SlicesOptions{mask.structure, mask.bridge_mm}).mask,
+                brep::TileCost::shortest_span, bench.progress.stop)
+                .solid;
+  }
+  const Stopwatch watch(bench.timings, "boolean_mesh");
+  const std::optional<brep::Solid> prisms = solid_of_regions(mask, bench, made);
+  if (prisms && tiles) {
+    brep::BooleanResult met =
+        brep::boolean(*prisms, brep::Operation::Intersection, *tiles, bench.progress.stop);
+    made.shift_mm += met.shift_mm;
+    made.whole = std::move(met.solid);
+  } else {
+    made.whole = prisms ? *prisms : *tiles;
+  }
+  made.lineage = !tiles   ? "prisms of the regions"
+                 : prisms ? "prisms of the regions, and tiled slices"
+                          : "tiled slices";
 }
 
 void bound_regions(const Mask& mask, const BoundBench& bench, Object& made) {
@@ -243,7 +255,6 @@ void bound_regions(const Mask& mask, const BoundBench& bench, Object& made) {
   for (const Mask::Region& region : mask.regions) drawn.push_back({region.view, region.polygons_mm});
   made.witness = verify::witness_of_regions(drawn);
   if (turned) made.witness = verify::carried(made.witness, *turned);
-  if (made.mesh.whole) made.walls = {{made.id, *made.mesh.whole}};
 }
 
 void bound(const Mask& typed, const BoundBench& bench, Object& made) {
@@ -253,9 +264,13 @@ void bound(const Mask& typed, const BoundBench& bench, Object& made) {
     if (finding.find(": WARN, ") != std::string::npos)
       made.caveats.push_back({voxel::Verdict::Warn, finding});
   if (!mask.regions.empty()) bound_regions(mask, bench, made);
+  if (made.mesh.whole) made.walls = {{made.id, *made.mesh.whole}};
   if (mask.slices.empty()) return;
-  verify::Witness slices =
-      witness_of(read_slices(bench.folder / mask.slices, SlicesOptions{mask.structure, mask.bridge_mm}).mask);
+  const voxel::SliceMask drawn =
+      read_slices(bench.folder / mask.slices, SlicesOptions{mask.structure, mask.bridge_mm}).mask;
+  const std::vector<CutPlane> flat = planes_of(drawn);
+  made.bound.planes.insert(made.bound.planes.end(), flat.begin(), flat.end());
+  verify::Witness slices = witness_of(drawn);
   made.witness = mask.regions.empty() ? std::move(slices) : verify::both(made.witness, std::move(slices));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Writes the surface of voxels: the verb that of a scan's window or of an .octree file, the step that of an
-// object's octree. The step `surface` writes the mesh kernel's answer.
+// Writes the surface of voxels: the verb that of a scan's window, of an .octree file or of contours, the step that of
+// an object's octree. The step `surface` writes the mesh kernel's answer.
 #include <limits>
 #include <utility>
 
@@ -15,8 +15,10 @@
 #include "convert/surface/partial_surface.h"
 #include "convert/surface/trace_contours.h"
 #include "planner/operation/file/mesh_file.h"
+#include "planner/operation/file/region_file.h"
 #include "planner/operation/file/step_on_files.h"
 #include "planner/operation/measure/result_json.h"
+#include "planner/operation/object/tiled_slices.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "voxel/filter/tissue.h"
@@ -36,6 +38,15 @@ struct Meshed {
 
   std::vector<std::string> inputs() const { return {file.name}; }
 };
+
+bool is_contour_file(const Meshed& asked) {
+  return std::filesystem::path(asked.file.name).extension() == ".json";
+}
+
+/// The surface that is made: contours have no other one than theirs.
+std::string surface_of(const Meshed& asked) {
+  return is_contour_file(asked) ? "contours" : asked.surface;
+}
 
 /// A surface as it was extracted.
 struct Made {
@@ -61,14 +72,18 @@ SampleWindow window_of(const Meshed& asked, std::vector<std::string>& findings) 
   return {*bone.low, std::nullopt};
 }
 
+std::optional<brep::TileCost> cost_of(const Meshed& asked) {
+  return asked.tiling == "overlay"           ? std::optional<brep::TileCost>()
+         : asked.tiling == "least-area"      ? brep::TileCost::least_area
+         : asked.tiling == "greatest-volume" ? brep::TileCost::greatest_volume
+         : asked.tiling == "least-angle"     ? brep::TileCost::least_angle
+                                             : brep::TileCost::shortest_span;
+}
+
 brep::Triangles tiled_contours(const voxel::Scene& scene, const SampleWindow& window, const Meshed& asked,
                                std::vector<std::string>& findings) {
   brep::TileSectionsOptions options;
-  options.cost = asked.tiling == "overlay"           ? std::optional<brep::TileCost>()
-                 : asked.tiling == "least-area"      ? brep::TileCost::least_area
-                 : asked.tiling == "greatest-volume" ? brep::TileCost::greatest_volume
-                 : asked.tiling == "least-angle"     ? brep::TileCost::least_angle
-                                                     : brep::TileCost::shortest_span;
+  options.cost = cost_of(asked);
   brep::TiledSections tiled = convert::contour_surface(scene, window.low, window.high_or_infinity(), options);
   findings.push_back(
       "contours: " + std::to_string(tiled.strips) + " pairs joined by strips, " +
@@ -80,6 +95,19 @@ brep::Triangles tiled_contours(const voxel::Scene& scene, const SampleWindow& wi
       " pairs by overlay, because every strip would cross something; " + std::to_string(tiled.overlaid) +
       " branchings, ends and lone contours by overlay");
   return std::move(tiled.surface);
+}
+
+Made of_contours(const FileBench& bench, const Meshed& asked, std::vector<std::string>& findings) {
+  const std::string& file = asked.file.name;
+  if (asked.window) throw std::runtime_error(file + ": holds contours already: leave --window out");
+  if (asked.surface == "cuberille")
+    throw std::runtime_error(file + ": holds contours, which are tiled: leave --surface out");
+  const voxel::SliceMask mask = read_slices(file, {}, findings);
+  const Stopwatch watch(bench.timings, "tile");
+  TiledSlices tiled = tiled_slices(mask, cost_of(asked), bench.stop);
+  findings.push_back("contours: " + std::to_string(mask.slices.size()) + " slices tiled by " +
+                     std::to_string(tiled.sections) + " sections, those between them interpolated");
+  return tiled.solid.triangles();
 }
 
 Made of_octree(const FileBench& bench, const Meshed& asked, std::vector<std::string>& findings) {
@@ -169,6 +197,7 @@ FileAnswer on_files(const Meshed& asked, const FileBench& bench) {
     throw std::runtime_error(asked.file.name + ": is a mesh already");
   std::vector<std::string> findings;
   Made made = names_octree(asked.file.name, bench) ? of_octree(bench, asked, findings)
+              : is_contour_file(asked)             ? of_contours(bench, asked, findings)
                                                    : of_scan(bench, asked, findings);
   if (made.surface.faces.empty())
     throw std::runtime_error(
@@ -184,7 +213,7 @@ FileAnswer on_files(const Meshed& asked, const FileBench& bench) {
     health = brep::health(surface, {.self_intersections = !stays_apart});
   }
   write_surface(surface, asked.out, bench.timings);
-  FileAnswer answer{{{"kind", "mesh"}, {"path", asked.out.string()}, {"surface", asked.surface}}};
+  FileAnswer answer{{{"kind", "mesh"}, {"path", asked.out.string()}, {"surface", surface_of(asked)}}};
   answer.json.update(to_json(health));
   answer.json.update(to_json(measures));
   for (const std::string& finding : findings) answer.json["findings"].push_back(finding);
@@ -200,20 +229,21 @@ FileAnswer on_files(const Meshed& asked, const FileBench& bench) {
 
 Operation mesh_operation() {
   return Describe<Meshed>("mesh", "Makes the surface of a scan's window or of an octree.", Makes::File)
-      .takes(field("object", &Meshed::file, "The object; on the command line a scan, or an .octree file.")
+      .takes(field("object", &Meshed::file,
+                   "The object; on the command line a scan, an .octree file, or a .json of regions on slices.")
                  .required()
                  .positional("file"))
       .verb_takes(field("window", &Meshed::window, "LOW:HIGH or LOW: in sample units, or a tissue."))
       .takes(field("surface", &Meshed::surface,
                    "isosurface: where samples or shares cross the bound; cuberille: the voxels' own faces; "
-                   "contours: followed on a scan's slices and tiled.")
+                   "contours: followed on a scan's slices, or those of a .json, and tiled.")
                  .one_of({"isosurface", "cuberille", "contours"}))
       .verb_takes(field("tiling", &Meshed::tiling,
                         "For contours, the criterion by which strips between them are chosen: shortest-span, "
                         "least-area, "
                         "greatest-volume, least-angle; overlay: no strips.")
                       .one_of({"shortest-span", "least-area", "greatest-volume", "least-angle", "overlay"})
-                      .read_if<Meshed>([](const Meshed& meshed) { return meshed.surface == "contours"; },
+                      .read_if<Meshed>([](const Meshed& meshed) { return surface_of(meshed) == "contours"; },
                                        "applies only to contours: add 'surface' contours"))
       .takes(
           field(
@@ -233,7 +263,8 @@ Operation mesh_operation() {
       .on_files(
           "octotomy mesh head.nrrd -o skull.stl --window 300:\n"
           "  octotomy mesh maxilla.octree -o maxilla.ply --surface cuberille\n"
-          "  octotomy mesh head.nrrd -o skin.stl --window=-200: --surface contours",
+          "  octotomy mesh head.nrrd -o skin.stl --window=-200: --surface contours\n"
+          "  octotomy mesh bone.json -o bone.stl",
           on_files)
       .check(check)
       .write(write_step<Meshed, on_files>);

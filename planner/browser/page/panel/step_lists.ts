@@ -121,6 +121,8 @@ export function step_words(step: Step): string {
           Array.isArray(step.regions) ?
               (step.regions as {view: string}[]).map((region) => region.view).join(" and ") :
               "a file"}`;
+    case "tile":
+      return Array.isArray(step.contours) ? `contours on ${step.contours.length} ${step.contours.length === 1 ? "slice" : "slices"}` : "contours of a file";
     case "combine":
       return String(step.expression);
     case "move":

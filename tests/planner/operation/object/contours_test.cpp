@@ -63,6 +63,81 @@ TEST(ContoursStep, ASeedOnAnEdgeGivesItsSliceTheThresholdOfItsSample) {
   EXPECT_TRUE(files[0].findings.empty());
 }
 
+/// The slices of the file that a step writes on the ball.
+voxel::SliceMask written(const ScratchFolder& folder, const std::string& rest) {
+  const Plan plan =
+      ball_plan(folder, R"({"id": "c", "do": "contours", "scan": "ct", "path": "c.json", )" + rest + "}");
+  Timings timings;
+  const std::vector<Exported> files = write_files(plan, evaluate(plan), folder.path(), timings);
+  EXPECT_TRUE(files.at(0).written) << testing::PrintToString(files.at(0).findings);
+  return files.at(0).written ? read_slices(folder / "c.json") : voxel::SliceMask{};
+}
+
+double widest_mm(const voxel::SliceMask& mask, double position_mm) {
+  double widest = 0.0;
+  for (const auto& slice : mask.slices)
+    if (std::abs(slice.position_mm - position_mm) < 0.01)
+      for (const auto& polygon : slice.polygons_mm)
+        for (const glm::dvec2& point : polygon) widest = std::max(widest, glm::length(point));
+  return widest;
+}
+
+TEST(ContoursStep, ASliceHasAThresholdOfItsOwn) {
+  const ScratchFolder folder;
+  // Samples fall by 2000 within about a millimetre through the ball's surface.
+  const voxel::SliceMask mask =
+      written(folder, R"("window": "0:", "slice_windows": ["0.5=-800:", "1.5=800:"])");
+  EXPECT_NEAR(widest_mm(mask, -0.5), 20.0, 0.1);
+  EXPECT_NEAR(widest_mm(mask, 0.5), 20.6, 0.3);
+  EXPECT_NEAR(widest_mm(mask, 1.5), 19.6, 0.3);
+  const voxel::SliceMask alone = written(folder, R"("slice_windows": ["0.5=-800:", "1.5=800:"])");
+  std::size_t slices = 0;
+  for (const auto& slice : alone.slices) slices += slice.polygons_mm.empty() ? 0 : 1;
+  EXPECT_EQ(slices, 2u);
+  EXPECT_EQ(widest_mm(alone, 0.5), widest_mm(mask, 0.5));
+}
+
+TEST(ContoursStep, TheRegionAroundAPixelIsThatOfItsSliceAlone) {
+  const ScratchFolder folder;
+  const voxel::SliceMask by_window =
+      written(folder, R"("window": "0:", "around_mm": [[3, 2, 4.5], [0, 0, 4.5]])");
+  ASSERT_EQ(by_window.slices.size(), 3u) << "the slice, and an empty one at either end";
+  ASSERT_EQ(by_window.slices[1].polygons_mm.size(), 1u) << "both seeds lie in one region";
+  EXPECT_NEAR(widest_mm(by_window, 4.5), std::sqrt(400.0 - 4.5 * 4.5), 0.1);
+  const voxel::SliceMask by_tolerance = written(folder, R"("tolerance": 1000, "around_mm": [[3, 2, 4.5]])");
+  EXPECT_NEAR(widest_mm(by_tolerance, 4.5), std::sqrt(400.0 - 4.5 * 4.5), 0.1);
+}
+
+TEST(ContoursStep, WindowsAndPixelsThatCannotBeAreRefusedInALine) {
+  const ScratchFolder folder;
+  const auto expect = [&](const std::string& rest, const std::string& part) {
+    const std::string said = ball_refusal(
+        folder, R"({"id": "c", "do": "contours", "scan": "ct", "path": "a.json", )" + rest + "}");
+    EXPECT_NE(said.find(part), std::string::npos) << said;
+    EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+  };
+  expect(R"("slice_windows": ["250:"])", "POSITION=LOW:HIGH");
+  expect(R"("slice_windows": ["30=bonny"])", "'bonny'");
+  expect(R"("around_mm": [[0, 0, 0]])", "'tolerance'");
+  expect(R"("around_mm": [[0, 0, 0]], "window": "0:", "tolerance": 5)", "leave 'window' out");
+  expect(R"("window": "0:", "tolerance": 5)", "add 'around_mm'");
+  expect(R"("around_mm": [[0, 0, 0]], "seeds_mm": [[0, 0, 0]])", "leave 'seeds_mm'");
+  expect(R"("around_mm": [[0, 0, 0]], "window": "0:", "slice_windows": ["0=1:"])", "leave 'around_mm' out");
+  const auto unwritten = [&](const std::string& rest, const std::string& part) {
+    const Plan plan =
+        ball_plan(folder, R"({"id": "c", "do": "contours", "scan": "ct", "path": "a.json", )" + rest + "}");
+    Timings timings;
+    const std::vector<Exported> files = write_files(plan, evaluate(plan), folder.path(), timings);
+    EXPECT_FALSE(files.at(0).written);
+    EXPECT_NE(testing::PrintToString(files.at(0).findings).find(part), std::string::npos)
+        << testing::PrintToString(files.at(0).findings);
+  };
+  unwritten(R"("slice_windows": ["400=0:"])", "there is no slice at 400 mm");
+  unwritten(R"("slice_windows": ["0.5=0:", "0.6=9:"])", "two windows of its own");
+  unwritten(R"("around_mm": [[28, 0, 0]], "window": "0:")", "its sample is -1000");
+  unwritten(R"("around_mm": [[280, 0, 0]], "window": "0:")", "lies outside the scan");
+}
+
 TEST(ContoursStep, SeedsThatCannotBeAreRefused) {
   const ScratchFolder folder;
   const auto refusal = [&](const std::string& rest) {

@@ -13,7 +13,7 @@ namespace {
 
 using namespace tests;
 
-TEST(MaskStep, RegionsOnSlicesCutTheVoxelsAndSayThatThereIsNoMesh) {
+TEST(MaskStep, RegionsOnSlicesCutBothKernelsAlike) {
   const ScratchFolder folder;
   std::ofstream(folder / "slices.json") << R"({"view": "inferior", "slices": [
       {"position_mm": -30, "polygons_mm": [[[0, -30], [30, -30], [30, 30], [0, 30]]]},
@@ -23,8 +23,9 @@ TEST(MaskStep, RegionsOnSlicesCutTheVoxelsAndSayThatThereIsNoMesh) {
       {"id": "half", "do": "combine", "expression": "ball & side"})"));
   const Object& half = evaluation.object("half");
   EXPECT_NEAR(half.voxel.measures.volume_mm3 / ball_mm3(ball_radius_mm), 0.5, 0.02);
-  EXPECT_FALSE(half.mesh.whole);
-  EXPECT_NE(evaluation.object("side").findings.at(0).find("between slices"), std::string::npos);
+  expect_certified(half, 0.5 * ball_mm3(ball_radius_mm), 0.02);
+  EXPECT_EQ(evaluation.object("side").mesh.lineage, "tiled slices");
+  EXPECT_TRUE(evaluation.object("side").findings.empty());
 }
 
 TEST(MaskStep, AMaskOfNothingIsRefused) {

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/browser/server/contour_request.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "brep/contour/contour_edit.h"
+#include "brep/contour/thin.h"
+#include "planner/browser/server/pane_fields.h"
+#include "planner/operation/file/plane_contours.h"
+#include "planner/operation/table/number_format.h"
+#include "voxel/space/error.h"
+
+namespace octotomy::planner::serve {
+namespace {
+
+[[noreturn]] void refuse(const std::string& why) {
+  throw voxel::Error(voxel::ErrorCode::Input, why);
+}
+
+/// A thinned contour, unless it would cross itself.
+std::vector<glm::dvec2> thinned(const std::vector<glm::dvec2>& polygon, double thin_mm) {
+  if (!(thin_mm > 0.0)) return polygon;
+  const brep::Contour thin = brep::thin({polygon}, thin_mm);
+  return brep::first_crossing(thin) ? polygon : thin.points_mm;
+}
+
+/// To a hundredth of a millimetre; points that become equal to the one before are left out.
+Json polygons_json(const PlaneContours& polygons, double thin_mm) {
+  Json all = Json::array();
+  for (const auto& polygon : polygons) {
+    Json points = Json::array();
+    for (const glm::dvec2& p : thinned(polygon, thin_mm)) {
+      const Json point{std::round(100.0 * p.x) / 100.0, std::round(100.0 * p.y) / 100.0};
+      if (points.empty() || points.back() != point) points.push_back(point);
+    }
+    if (points.size() > 3 && points.front() == points.back()) points.erase(points.size() - 1);
+    if (points.size() > 2) all.push_back(std::move(points));
+  }
+  return all;
+}
+
+}  // namespace
+
+Json trace_contours(Session& session, const Json& said, const Watched&) {
+  const Snapshot snapshot = session.snapshot();
+  if (!snapshot.evaluation) refuse("nothing is evaluated yet");
+  const ViewPlane plane{voxel::parse_view(said.at("view")), said.at("position_mm").get<double>()};
+  const double thin_mm = number_of(said, "thin_mm").value_or(0.1);
+  if (said.contains("object")) {
+    const std::string id = said["object"];
+    for (const Object& object : snapshot.evaluation->objects) {
+      if (object.id != id) continue;
+      if (!object.mesh.within) refuse("'" + id + "' has no surface: see its findings");
+      const Json polygons = polygons_json(contours_in_plane(object.mesh.within->mesh(), plane), thin_mm);
+      if (polygons.empty()) refuse("the slice does not meet '" + id + "': choose another slice");
+      return {{"polygons_mm", polygons}};
+    }
+    refuse("'" + id + "' is not evaluated yet");
+  }
+  const auto& loaded = snapshot.evaluation->loaded;
+  if (loaded.empty()) refuse("no scan is open");
+  const auto named = loaded.find(said.value("scan", loaded.begin()->first));
+  if (named == loaded.end()) refuse("scan: there is none of that name");
+  const voxel::Scene& scene = named->second->scene();
+  const auto seed_mm = point_of(said, "seed_mm");
+  if (!seed_mm) refuse("seed_mm: give a point");
+  const glm::dvec3 p_voxel = scene.lattice.voxel(*seed_mm);
+  if (glm::any(glm::lessThan(p_voxel, glm::dvec3(-0.5))) ||
+      glm::any(glm::greaterThan(p_voxel, glm::dvec3(scene.lattice.dims) - 0.5)))
+    refuse("the scan has no sample there: click within it");
+  const double sample = voxel::interpolate(scene, p_voxel);
+  double low = number_of(said, "low").value_or(-std::numeric_limits<double>::infinity()),
+         high = number_of(said, "high").value_or(std::numeric_limits<double>::infinity());
+  if (const auto tolerance = number_of(said, "tolerance")) {
+    low = sample - *tolerance;
+    high = sample + *tolerance;
+  }
+  const PlaneContours region =
+      region_around(contours_in_plane(scene, low, high, plane), plane.view.project(*seed_mm));
+  if (region.empty())
+    refuse("the sample there is " + plain(std::round(10.0 * sample) / 10.0) +
+           ", which lies outside the window: click within the region, or choose other bounds");
+  return {{"polygons_mm", polygons_json(region, thin_mm)}, {"sample", sample}};
+}
+
+}  // namespace octotomy::planner::serve

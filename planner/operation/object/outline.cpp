@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Writes the contours in which parallel planes cut an object, a mesh or a scan's window, as a file that the operation
+// tile and masks read.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "brep/contour/contour.h"
+#include "brep/mesh/mesh.h"
+#include "convert/surface/expression_surface.h"
+#include "convert/surface/isosurface.h"
+#include "convert/surface/partial_surface.h"
+#include "planner/operation/file/outputs.h"
+#include "planner/operation/file/path_checks.h"
+#include "planner/operation/file/plane_contours.h"
+#include "planner/operation/file/slice_contours.h"
+#include "planner/operation/file/step_on_files.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/table/json_file.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+#include "voxel/space/error.h"
+#include "voxel/space/view.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Outline {
+  ObjectName file;
+  std::string view = "inferior";
+  std::vector<double> at_mm;
+  std::optional<double> from_mm, to_mm;
+  double every_mm = 2.0, thin_mm = 0.0;
+  std::filesystem::path out;
+  std::optional<SampleWindow> window;  ///< of the verb
+
+  std::vector<std::string> inputs() const { return {file.name}; }
+};
+
+constexpr std::size_t most_planes = 5000;
+
+void check(const Outline& outline, const FieldLocation& place) {
+  try {
+    voxel::parse_view(outline.view);
+  } catch (const voxel::InvalidInput& error) {
+    place.at("view").refuse(error.what());
+  }
+  if (outline.from_mm && outline.to_mm && !(*outline.from_mm < *outline.to_mm))
+    place.at("to_mm").refuse("does not lie beyond 'from_mm': swap them");
+  if (!outline.at_mm.empty() && (outline.from_mm || outline.to_mm))
+    place.at("at_mm").refuse("are the planes themselves: leave 'from_mm' and 'to_mm' out");
+  if (place.scope == nullptr) return;
+  check_output_path(outline.out, {".json"}, place.at("path"));
+}
+
+/// Cuts by planes across a view, and where the object may lie along it.
+struct Cutter {
+  std::function<PlaneContours(const ViewPlane& plane)> cut;
+  double low_mm = std::numeric_limits<double>::infinity(), high_mm = -low_mm;
+
+  void add(double position_mm) {
+    low_mm = std::min(low_mm, position_mm);
+    high_mm = std::max(high_mm, position_mm);
+  }
+};
+
+Cutter cutter_of(brep::Triangles triangles, const voxel::View& view) {
+  Cutter cutter;
+  for (const glm::dvec3& p : triangles.points_mm) cutter.add(glm::dot(p, view.look));
+  cutter.cut = [surface = brep::mesh_of(triangles)](const ViewPlane& plane) {
+    return contours_in_plane(surface, plane);
+  };
+  return cutter;
+}
+
+/// The surface of an .octree file.
+brep::Triangles surface_of(const std::string& file, const FileBench& bench,
+                           const std::optional<SampleWindow>& window) {
+  const voxel::OctreeFile octree = octree_named(file, bench);
+  if (const auto* grey = std::get_if<voxel::GreyOctree>(&octree.tree)) {
+    if (!window) throw std::runtime_error("--window: choose what the contours outline: --window 300:");
+    return convert::isosurface(*grey, window->low, window->high_or_infinity());
+  }
+  if (window) throw std::runtime_error(file + ": holds no samples to take a --window of: leave it out");
+  if (const auto* partial = std::get_if<voxel::PartialOctree>(&octree.tree))
+    return convert::isosurface(*partial);
+  const auto& binary = std::get<voxel::Octree>(octree.tree);
+  return convert::isosurface(binary.universe(), binary);
+}
+
+Cutter cutter_of(const Outline& outline, const FileBench& bench, const voxel::View& view) {
+  const std::string& file = outline.file.name;
+  if (bench.step != nullptr || is_mesh(file)) {
+    if (outline.window) throw std::runtime_error(file + ": is a mesh: leave --window out");
+    return cutter_of(triangles_named(file, bench), view);
+  }
+  if (is_octree(file)) return cutter_of(surface_of(file, bench, outline.window), view);
+  if (!outline.window)
+    throw std::runtime_error("--window: choose what the contours outline: --window 300: or --window skin");
+  const SampleWindow window = *outline.window;
+  auto scene = std::make_shared<const voxel::Scene>(bench.read_scan(file));
+  need_hounsfield(window, *scene);
+  Cutter cutter;
+  const voxel::Box box = voxel::bounds(scene->lattice);
+  for (int corner = 0; corner < 8; ++corner)
+    cutter.add(glm::dot(
+        glm::dvec3(corner & 1 ? box.high_mm.x : box.low_mm.x, corner & 2 ? box.high_mm.y : box.low_mm.y,
+                   corner & 4 ? box.high_mm.z : box.low_mm.z),
+        view.look));
+  cutter.cut = [scene, window](const ViewPlane& plane) {
+    return contours_in_plane(*scene, window.low, window.high_or_infinity(), plane);
+  };
+  return cutter;
+}
+
+/// Multiples of the distance, so that stacks of several objects lie in common planes.
+std::vector<double> positions_of(const Outline& outline, const Cutter& cutter) {
+  if (!outline.at_mm.empty()) {
+    std::vector<double> positions = outline.at_mm;
+    std::sort(positions.begin(), positions.end());
+    if (std::adjacent_find(positions.begin(), positions.end()) != positions.end())
+      throw std::runtime_error("at_mm: has a position twice");
+    return positions;
+  }
+  const double low_mm = outline.from_mm.value_or(cutter.low_mm),
+               high_mm = outline.to_mm.value_or(cutter.high_mm);
+  const double first = std::ceil(low_mm / outline.every_mm), last = std::floor(high_mm / outline.every_mm);
+  if (last - first >= static_cast<double>(most_planes))
+    throw std::runtime_error("every_mm: makes over " + std::to_string(most_planes) +
+                             " planes: choose a larger distance, or 'from_mm' and 'to_mm'");
+  std::vector<double> positions;
+  for (double k = first; k <= last; ++k) positions.push_back(k * outline.every_mm);
+  return positions;
+}
+
+/// The slices with contours, and an empty one at either end, where the object ends.
+voxel::SliceMask cut_in(const Outline& outline, const Cutter& cutter, const voxel::View& view) {
+  voxel::SliceMask mask;
+  mask.view = view;
+  for (const double position_mm : positions_of(outline, cutter))
+    mask.slices.push_back({position_mm, cutter.cut({view, position_mm})});
+  const auto is_empty = [](const auto& slice) { return slice.polygons_mm.empty(); };
+  while (!mask.slices.empty() && is_empty(mask.slices.back())) mask.slices.pop_back();
+  while (!mask.slices.empty() && is_empty(mask.slices.front())) mask.slices.erase(mask.slices.begin());
+  if (mask.slices.empty())
+    throw std::runtime_error(outline.file.name + ": no plane meets the object, which reaches from " +
+                             plain(std::round(100.0 * cutter.low_mm) / 100.0) + " to " +
+                             plain(std::round(100.0 * cutter.high_mm) / 100.0) +
+                             " mm along the view: choose planes there, nearer together");
+  const double end_mm =
+      mask.slices.size() > 1 ? mask.slices[1].position_mm - mask.slices[0].position_mm : outline.every_mm;
+  mask.slices.insert(mask.slices.begin(), {mask.slices.front().position_mm - end_mm, {}});
+  mask.slices.push_back({mask.slices.back().position_mm + end_mm, {}});
+  return mask;
+}
+
+FileAnswer on_files(const Outline& outline, const FileBench& bench) {
+  need_extension(outline.out, {".json"}, "contours are");
+  if (bench.step == nullptr) need_outputs({outline.out}, {outline.file.name});
+  const voxel::View view = voxel::parse_view(outline.view);
+  const Cutter cutter = cutter_of(outline, bench, view);
+  std::vector<std::string> findings;
+  voxel::SliceMask mask = [&] {
+    const Stopwatch watch(bench.timings, "cut");
+    return cut_in(outline, cutter, view);
+  }();
+  Refinement thinning;
+  thinning.thin_mm = outline.thin_mm;
+  if (outline.thin_mm > 0.0) mask = refined(mask, thinning, findings);
+  Outputs outputs;
+  outputs.write(outline.out, [&](const std::filesystem::path& hidden) { write_json(to_json(mask), hidden); });
+  outputs.commit();
+  std::size_t contours = 0, points = 0;
+  Json slices = Json::array();
+  for (const auto& slice : mask.slices) {
+    double area_mm2 = 0.0;
+    std::vector<brep::Contour> lines;
+    for (const auto& polygon : slice.polygons_mm) lines.push_back({polygon});
+    const std::vector<std::size_t> depth = brep::depths(brep::nest(lines));
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      area_mm2 += (depth[i] % 2 == 1 ? -1.0 : 1.0) * std::abs(brep::signed_area_mm2(lines[i]));
+      points += lines[i].points_mm.size();
+    }
+    contours += lines.size();
+    slices.push_back(
+        {{"position_mm", slice.position_mm}, {"contours", lines.size()}, {"area_mm2", area_mm2}});
+  }
+  return {{{"path", outline.out.string()},
+           {"view", outline.view},
+           {"contours", contours},
+           {"points", points},
+           {"slices", slices},
+           {"findings", findings}},
+          {{"written", outline.out.string()},
+           {"slices", grouped(static_cast<double>(mask.slices.size()), 0)},
+           {"contours", grouped(static_cast<double>(contours), 0)},
+           {"points", grouped(static_cast<double>(points), 0)}},
+          findings};
+}
+
+}  // namespace
+
+Operation outline_operation() {
+  return Describe<Outline>("outline", "Writes the contours in which parallel planes cut an object.",
+                           Makes::File)
+      .takes(field("object", &Outline::file,
+                   "The object; of the verb a mesh, an .octree file, or a scan with a window.")
+                 .required()
+                 .positional("file"))
+      .takes(field("view", &Outline::view, "The view across the planes: its name, or AZ,EL in degrees."))
+      .takes(field("at_mm", &Outline::at_mm, "The planes' places along the view's direction of sight, mm.")
+                 .comma_separated())
+      .takes(field("from_mm", &Outline::from_mm,
+                   "In place of at_mm: where planes begin. Default: where the object does."))
+      .takes(field("to_mm", &Outline::to_mm, "Where planes end. Default: where the object does."))
+      .takes(field("every_mm", &Outline::every_mm, "The distance of planes, which lie at multiples of it.")
+                 .greater_than(0.0)
+                 .to(1000.0)
+                 .read_if<Outline>([](const Outline& outline) { return outline.at_mm.empty(); },
+                                   "is of planes that are not named: leave 'at_mm' out"))
+      .takes(field("thin_mm", &Outline::thin_mm, "Takes out points within this of a straight piece.")
+                 .from(0.0)
+                 .to(1e6))
+      .takes(field("path", &Outline::out, "A .json of regions on slices, as masks and tile read it.")
+                 .required()
+                 .called("out"))
+      .verb_takes(
+          field("window", &Outline::window, "Of samples: LOW:HIGH or LOW: in their unit, or a tissue."))
+      .reads_scans()
+      .example(
+          R"({"id": "lines", "do": "outline", "object": "skull", "view": "left", "every_mm": 5, "path": "skull.json"})")
+      .on_files(
+          "octotomy outline skull.stl --view left --every 5 -o skull.json\n"
+          "  octotomy outline head.nrrd --window 300: --view 35,15 --at=-20,0,20 -o oblique.json\n"
+          "  octotomy mesh skull.json -o tiled.stl",
+          on_files)
+      .check(check)
+      .write(write_step<Outline, on_files>);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <stop_token>
+
+#include "brep/contour/tile.h"
+#include "brep/mesh/solid.h"
+#include "planner/operation/table/object.h"
+#include "verify/witness/reading.h"
+#include "voxel/solid/slice_mask.h"
+
+// The volume that regions on parallel slices enclose, as the mesh kernel and the witness have it. Both follow the
+// rule of voxel::SliceMask between slices.
+namespace octotomy::planner {
+
+/// The largest distance of the sections that tiles join, mm.
+constexpr double tile_step_mm() {
+  return 1.0;
+}
+
+struct TiledSlices {
+  brep::Solid solid;
+  std::size_t sections = 0;  ///< that were tiled, the drawn ones among them
+};
+
+/// The surface tiled from the slices and from sections between them (brep::sections_between()), LPS. `cost` as in
+/// brep::TileSectionsOptions. Throws brep::Error (Geometry) that names the slice's position where contours of a
+/// slice cross or touch; brep::Stopped. Precondition: the mask passes check().
+TiledSlices tiled_slices(const voxel::SliceMask& mask,
+                         std::optional<brep::TileCost> cost = brep::TileCost::shortest_span,
+                         std::stop_token stop = {});
+
+/// The witness of both kernels' answers, which decides by itself what the regions enclose.
+verify::Witness witness_of(const voxel::SliceMask& mask);
+
+/// How far straight tiles leave the interpolated surface on the mean: (1 + 1/4) step^2 / (8 r), where r is the
+/// radius of a circle with the contours' ratio of area to length, and at most half a step. None where slices are
+/// not interpolated. Of the drawn contours, not of the answers.
+double tiles_apart_mm(const voxel::SliceMask& mask);
+
+/// The planes of flat faces across the slices, and of sides of polygons of 5 mm or more, that are parallel to the
+/// universe's planes.
+std::vector<CutPlane> planes_of(const voxel::SliceMask& mask);
+
+}  // namespace octotomy::planner
