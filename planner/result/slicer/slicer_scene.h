@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "planner/operation/file/itk_transform.h"
 #include "planner/plan/evaluate.h"
 
 namespace octotomy::planner {
@@ -14,7 +15,7 @@ namespace octotomy::planner {
 /// - all objects as the segments of one .seg.nrrd, in layers where they overlap; masks are left out;
 /// - each object that has a surface as a model, .vtp. The model of a moved object is the surface before it moved,
 ///   below a linear transform, so that its motion can be seen and changed;
-/// - each motion as an ITK transform, .tfm. As everywhere in ITK it maps from the place after to the place before;
+/// - each motion as an ITK transform, .tfm or .h5. As everywhere in ITK it maps from the place after to the place before;
 /// - as .mrk.json, all at their places before any motion: the plan's landmarks, its saws and the sides of its masks as
 ///   planes, the regions of its masks as closed curves; and each screw's axis as a line, at its object's place.
 /// Equal plans make equal files. Returns {"scans", "segments", "models", "transforms", "landmarks"}, names, and
@@ -25,6 +26,7 @@ namespace octotomy::planner {
 /// markups; ITK's Software Guide on transform files.
 nlohmann::ordered_json write_slicer_scene(const Plan& plan, const Evaluation& evaluation,
                                           const std::filesystem::path& path,
+                                          TransformFormat transforms = TransformFormat::Text,
                                           const std::stop_token& stop = {});
 
 }  // namespace octotomy::planner
