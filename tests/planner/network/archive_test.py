@@ -136,7 +136,14 @@ class Archive(unittest.TestCase):
         for name, words in {"rt": ["skull.octree", "--as", "structures"], "share": ["skull.stl", "--as", "fractions"],
                             "numbers": ["skull.octree", "--as", "labelmap"], "model": ["skull.stl"]}.items():
             run(PROGRAM, "convert", cls.folder / words[0], *words[1:], "-o", cls.folder / f"{name}.dcm", *source)
-        cls.files = sorted((cls.folder / "series").iterdir()) + sorted(cls.folder.glob("*.dcm"))
+        (cls.folder / "a.plan.json").write_text(json.dumps({
+            "octotomy_plan": 1, "name": "A plan", "scans": {"ct": {"path": "series"}}, "universe": {"voxel_mm": 12.0},
+            "steps": [{"id": "skull", "do": "window", "scan": "ct", "low": 300}]}))
+        run(PROGRAM, "run", cls.folder / "a.plan.json", "--certify", "never", "-o", cls.folder / "result")
+        run(PROGRAM, "convert", cls.folder / "a.plan.json", "--pictures", cls.folder / "result", *source, "-o",
+            cls.folder / "objects")
+        cls.files = (sorted((cls.folder / "series").iterdir()) + sorted(cls.folder.glob("*.dcm")) +
+                     sorted((cls.folder / "objects").iterdir()))
 
     @classmethod
     def tearDownClass(cls):
