@@ -13,7 +13,7 @@
 namespace octotomy::planner {
 namespace {
 
-constexpr std::string_view signature("\x89HDF\r\n\x1a\n", 8);
+constexpr std::string_view hdf5_signature("\x89HDF\r\n\x1a\n", 8);
 constexpr std::uint64_t undefined = ~std::uint64_t{0};
 constexpr std::size_t most_messages = 256, most_blocks = 64, longest_text = 4096;
 /// Nodes of trees, symbol tables and chunks that one file may take: trees of damaged files may refer to one node often.
@@ -82,6 +82,9 @@ struct Hdf5File::Dataset {
   bool is_one_chunk = false;      ///< `at` is the chunk itself, of `bytes` as it is filtered
   std::uint64_t filter_mask = 0;  ///< filters that the one chunk left out
   std::vector<std::uint64_t> filters;
+
+  void take_type(std::string_view bytes_of_type, const std::string& path);
+  void take_layout(std::string_view bytes_of_layout, const std::string& path);
 };
 
 namespace {
@@ -156,12 +159,12 @@ double real_of(std::string_view bytes, bool is_big_endian) {
 }  // namespace
 
 bool Hdf5File::begins(std::string_view head) {
-  return head.starts_with(signature);
+  return head.starts_with(hdf5_signature);
 }
 
 Hdf5File::Hdf5File(std::string_view bytes) : bytes_(bytes) {
   if (!begins(bytes)) refuse_file("is no HDF5 file");
-  Cursor in(bytes.substr(signature.size()), "superblock");
+  Cursor in(bytes.substr(hdf5_signature.size()), "superblock");
   const auto version = in.byte();
   if (version > 3) refuse_file("has an unknown superblock, version " + std::to_string(version));
   if (version < 2) in.take(4);
@@ -332,13 +335,70 @@ bool Hdf5File::has(const std::string& path) const {
   return find(path) != undefined;
 }
 
+/// [IV.A.2.d]
+void Hdf5File::Dataset::take_type(std::string_view bytes_of_type, const std::string& path) {
+  Cursor in(bytes_of_type, "type");
+  const auto number = in.byte() & 15, bits = in.number(3);
+  element_bytes = in.number(4);
+  if (number == 1) {
+    is_big_endian = (bits & 1) != 0;
+    in.number(2);
+    const std::uint64_t form = in.number(6);  // precision, then places and sizes of exponent and mantissa
+    const bool is_double = element_bytes == 8 && form == 0x34000b340040;
+    const bool is_float = element_bytes == 4 && form == 0x170008170020;
+    if ((!is_double && !is_float) || (bits & 0x40) != 0)
+      refuse_file(path + " holds real numbers of another form than IEEE's of 4 or 8 bytes");
+  } else if (number == 3) {
+    kind = Dataset::Kind::FixedText;
+    if (element_bytes == 0 || element_bytes > longest_text)
+      refuse_file(path + " is a text of " + std::to_string(element_bytes) + " bytes");
+  } else if (number == 9 && (bits & 15) == 1) {
+    kind = Dataset::Kind::FarText;
+    if (element_bytes != 16) refuse_file(path + " is a text whose place is not stored in 16 bytes");
+  } else {
+    refuse_file(path + " holds neither real numbers nor a text");
+  }
+}
+
+/// [IV.A.2.i]
+void Hdf5File::Dataset::take_layout(std::string_view bytes_of_layout, const std::string& path) {
+  Cursor in(bytes_of_layout, "layout");
+  const auto version = in.byte(), form = in.byte();
+  if (version != 3 && version != 4) refuse_file(path + " has a layout of version " + std::to_string(version));
+  if (form > 2) refuse_file(path + " has an unknown layout");
+  layout = static_cast<Layout>(form);
+  if (form == 0) compact = in.take(in.number(2));
+  if (form == 1) {
+    at = in.number(8);
+    bytes = in.number(8);
+  }
+  if (form == 2) {
+    const auto flags = version == 4 ? in.byte() : 0, rank = in.byte();
+    if (rank != 2) refuse_file(path + " has chunks of " + std::to_string(rank - 1) + " dimensions");
+    if (version == 3) at = in.number(8);
+    const std::size_t width = version == 4 ? in.byte() : 4;
+    if (width < 1 || width > 8) refuse_file(path + " has a damaged layout");
+    chunk_count = in.number(width);
+    in.number(width);
+    if (version == 4) {
+      if (in.byte() != 1)
+        refuse_file(path + " is split into several chunks in a form that is not read: save it uncompressed");
+      is_one_chunk = true;
+      if ((flags & 2) != 0) {
+        bytes = in.number(8);
+        filter_mask = in.number(4);
+      }
+      at = in.number(8);
+    }
+  }
+}
+
 Hdf5File::Dataset Hdf5File::dataset(const std::string& path) const {
   const Address at = find(path);
   if (at == undefined) refuse_file("has no " + path);
   Dataset made;
   std::set<std::uint32_t> seen;
   for (const Message& message : messages(at)) {
-    Cursor in(message.bytes, "dataset");
     if (message.type != space_message && message.type != type_message && message.type != layout_message &&
         message.type != filters_message)
       continue;
@@ -347,60 +407,8 @@ Hdf5File::Dataset Hdf5File::dataset(const std::string& path) const {
     seen.insert(message.type);
     if (message.type == space_message) made.count = elements_of(message.bytes, path);
     if (message.type == filters_message) made.filters = filters_of(message.bytes, path);
-    if (message.type == type_message) {  // [IV.A.2.d]
-      const auto kind = in.byte() & 15, bits = in.number(3);
-      made.element_bytes = in.number(4);
-      if (kind == 1) {
-        made.is_big_endian = (bits & 1) != 0;
-        in.number(2);
-        const std::uint64_t form = in.number(6);  // precision, then places and sizes of exponent and mantissa
-        const bool is_double = made.element_bytes == 8 && form == 0x34000b340040;
-        const bool is_float = made.element_bytes == 4 && form == 0x170008170020;
-        if ((!is_double && !is_float) || (bits & 0x40) != 0)
-          refuse_file(path + " holds real numbers of another form than IEEE's of 4 or 8 bytes");
-      } else if (kind == 3) {
-        made.kind = Dataset::Kind::FixedText;
-        if (made.element_bytes == 0 || made.element_bytes > longest_text)
-          refuse_file(path + " is a text of " + std::to_string(made.element_bytes) + " bytes");
-      } else if (kind == 9 && (bits & 15) == 1) {
-        made.kind = Dataset::Kind::FarText;
-        if (made.element_bytes != 16) refuse_file(path + " is a text whose place is not stored in 16 bytes");
-      } else {
-        refuse_file(path + " holds neither real numbers nor a text");
-      }
-    }
-    if (message.type == layout_message) {  // [IV.A.2.i]
-      const auto version = in.byte(), kind = in.byte();
-      if (version != 3 && version != 4)
-        refuse_file(path + " has a layout of version " + std::to_string(version));
-      if (kind > 2) refuse_file(path + " has an unknown layout");
-      made.layout = static_cast<Layout>(kind);
-      if (kind == 0) made.compact = in.take(in.number(2));
-      if (kind == 1) {
-        made.at = in.number(8);
-        made.bytes = in.number(8);
-      }
-      if (kind == 2) {
-        const auto flags = version == 4 ? in.byte() : 0, rank = in.byte();
-        if (rank != 2) refuse_file(path + " has chunks of " + std::to_string(rank - 1) + " dimensions");
-        if (version == 3) made.at = in.number(8);
-        const std::size_t width = version == 4 ? in.byte() : 4;
-        if (width < 1 || width > 8) refuse_file(path + " has a damaged layout");
-        made.chunk_count = in.number(width);
-        in.number(width);
-        if (version == 4) {
-          if (in.byte() != 1)
-            refuse_file(path +
-                        " is split into several chunks in a form that is not read: save it uncompressed");
-          made.is_one_chunk = true;
-          if ((flags & 2) != 0) {
-            made.bytes = in.number(8);
-            made.filter_mask = in.number(4);
-          }
-          made.at = in.number(8);
-        }
-      }
-    }
+    if (message.type == type_message) made.take_type(message.bytes, path);
+    if (message.type == layout_message) made.take_layout(message.bytes, path);
   }
   for (const std::uint32_t needed : {space_message, type_message, layout_message})
     if (!seen.contains(needed)) refuse_file(path + " is no row of values, or is damaged");
