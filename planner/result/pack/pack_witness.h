@@ -13,7 +13,7 @@ namespace octotomy::planner {
 /// files:
 /// - runs: one row z, y, x of its first voxel and x behind its last for each run of voxels, in ascending order;
 /// - points, LPS mm, and triangles, three numbers of points each, of the surface within the universe, where the
-///   object has one and is no tool;
+///   object has one;
 /// - samples, for a window alone (`window_of` is its scan, else nullptr): rows of 14 numbers, up to `most_samples` of them: a voxel of the universe (x, y,
 ///   z), the scan's cell that holds its centre (x, y, z), and the cell's eight samples, x fastest. Half of the
 ///   voxels lie on either side of the surface along x, the others anywhere; their choice is fixed.
