@@ -263,6 +263,11 @@ std::string DicomFile::text(DicomTag tag) const {
   return found == values_.end() ? std::string() : unpadded(found->second);
 }
 
+std::string_view DicomFile::value(DicomTag tag) const {
+  const auto found = values_.find(tag);
+  return found == values_.end() ? std::string_view() : found->second;
+}
+
 std::string DicomFile::readable_text(DicomTag tag) const {
   const std::string stored = text(tag);
   const std::optional<std::string> converted = utf8_of(text(character_set_tag), stored);

@@ -46,6 +46,8 @@ class DicomFile {
 
   /// The text as stored, in the file's character set, without padding; empty if the attribute is absent.
   std::string text(DicomTag tag) const;
+  /// The value as stored, with its padding; empty if the attribute is absent.
+  std::string_view value(DicomTag tag) const;
   /// The text in UTF-8. Control characters, and non-ASCII characters in a set that utf8_of() refuses, become
   /// question marks.
   std::string readable_text(DicomTag tag) const;

@@ -177,6 +177,11 @@ void leave_out_words(voxel::Scene& scene, LabelTable& table, std::vector<std::st
 }
 
 int convert(const Program& program, const ConvertText& text) {
+  const bool is_plan = voxel::extension_of(text.in) == ".json";
+  if (!text.pictures.empty() && !is_plan)
+    throw std::runtime_error("--pictures applies only to a plan (.plan.json): leave it out");
+  if (is_plan) return convert_plan(program, text);
+  if (const std::optional<int> status = unpack_archived(program, text)) return *status;
   if (const std::optional<int> status = convert_as(program, text)) return *status;
   if (is_octree(text.in)) return convert_octree(program, text);
   if (text.out.extension() == ".dcm" && !text.dicom) return convert_labels(program, text);
@@ -244,28 +249,33 @@ int convert(const Program& program, const ConvertText& text) {
 
 void add_convert(Program& program) {
   const auto text = std::make_shared<ConvertText>();
-  CLI::App& verb = program.verb(
-      "convert",
-      "Writes a scan in another format, resampled to a regular lattice if necessary; an octree "
-      "or a label map as a DICOM segmentation or structure set; a surface or a PDF as a DICOM document",
-      "octotomy convert dicom_folder -o head.nii.gz\n"
-      "  octotomy convert 'slices/*.tif' --spacing 0.5,0.5,1 -o head.nrrd\n"
-      "  octotomy convert head.raw --raw 512x512x300 int16 --spacing 0.5,0.5,1 -o head.nrrd\n"
-      "  octotomy convert skull.octree -o skull.dcm --source dicom_folder --label Skull\n"
-      "  octotomy convert organs.nii.gz -o organs.dcm --source dicom_folder\n"
-      "  octotomy convert skull.octree -o rt.dcm --as structures --source dicom_folder\n"
-      "  octotomy convert skull.stl -o share.dcm --as fractions --source dicom_folder\n"
-      "  octotomy convert skull.stl -o model.dcm --source dicom_folder\n"
-      "  octotomy convert report/report.pdf -o report.dcm --source dicom_folder",
-      [&program, text] { return convert(program, *text); });
+  CLI::App& verb =
+      program.verb("convert",
+                   "Writes a scan in another format, resampled to a regular lattice if necessary; an octree "
+                   "or a label map as a DICOM segmentation or structure set; a surface, a PDF or a plan as a "
+                   "DICOM document, and such a document as a file again",
+                   "octotomy convert dicom_folder -o head.nii.gz\n"
+                   "  octotomy convert 'slices/*.tif' --spacing 0.5,0.5,1 -o head.nrrd\n"
+                   "  octotomy convert head.raw --raw 512x512x300 int16 --spacing 0.5,0.5,1 -o head.nrrd\n"
+                   "  octotomy convert skull.octree -o skull.dcm --source dicom_folder --label Skull\n"
+                   "  octotomy convert organs.nii.gz -o organs.dcm --source dicom_folder\n"
+                   "  octotomy convert skull.octree -o rt.dcm --as structures --source dicom_folder\n"
+                   "  octotomy convert skull.stl -o share.dcm --as fractions --source dicom_folder\n"
+                   "  octotomy convert skull.stl -o model.dcm --source dicom_folder\n"
+                   "  octotomy convert report/report.pdf -o report.dcm --source dicom_folder\n"
+                   "  octotomy convert my.plan.json --pictures report -o objects --source dicom_folder\n"
+                   "  octotomy convert objects/plan.dcm -o again.plan.json",
+                   [&program, text] { return convert(program, *text); });
   verb.add_option("scan", text->in,
                   "A DICOM folder or file, NIfTI, NRRD, MetaImage, images, a raw file, an .octree, a "
-                  "surface, or a PDF")
+                  "surface, a PDF, a plan, or a document in DICOM")
       ->required()
       ->check(scan_path());
-  verb.add_option("-o,--out", text->out,
-                  "A .nrrd, .nii.gz or .mha file, or a folder for DICOM; for an .octree, a label map, a "
-                  "surface or a PDF a .dcm")
+  verb.add_option(
+          "-o,--out", text->out,
+          "A .nrrd, .nii.gz or .mha file, or a folder for DICOM; for an .octree, a label map, a "
+          "surface or a PDF a .dcm; for a plan a folder; for a document in DICOM its own kind of file "
+          "(.json of a plan, .pdf, .stl, .obj, .png)")
       ->required();
   verb.add_option(
           "--as", text->as,
@@ -281,6 +291,9 @@ void add_convert(Program& program) {
   verb.add_option("--source", text->source,
                   "The DICOM series to which written DICOM refers; default: the scan, if it is DICOM")
       ->check(CLI::ExistingPath);
+  verb.add_option("--pictures", text->pictures,
+                  "A plan's result folder, whose views are written beside the plan as secondary captures")
+      ->check(CLI::ExistingDirectory);
   verb.add_flag("--other-identity", text->other_identity,
                 "Accept a source that states another patient, study or frame of reference than the scan, or "
                 "whose images lie elsewhere, and report a FAIL");

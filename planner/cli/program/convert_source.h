@@ -24,6 +24,7 @@ struct ConvertText {
   std::string identity = "keep";
   /// What source_of() changed in the source's identity.
   std::shared_ptr<std::vector<std::string>> changes = std::make_shared<std::vector<std::string>>();
+  std::filesystem::path pictures;  ///< a plan's result folder
 
   bool keeps_identity() const { return identity == "keep"; }
 };
@@ -74,5 +75,12 @@ int convert_fractions(const Program& program, const ConvertText& text);
 int convert_model(const Program& program, const ConvertText& text);
 /// Writes a PDF as an encapsulated DICOM document.
 int convert_report(const Program& program, const ConvertText& text);
+/// Writes a plan, and of --pictures its views, as DICOM objects of one study.
+int convert_plan(const Program& program, const ConvertText& text);
+/// Writes an archive's document or picture as the file that it was, byte for byte; of a picture the pixels. None if the
+/// input or the output is of another kind.
+std::optional<int> unpack_archived(const Program& program, const ConvertText& text);
+/// Describes an archive's document or picture; none if the file is another kind.
+std::optional<int> info_of_archived(const Program& program, const std::filesystem::path& path);
 
 }  // namespace octotomy::planner::cli

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "brep/mesh/health.h"
+#include "planner/cli/program/convert_source.h"
 #include "planner/cli/program/verbs.h"
 #include "planner/cli/verb/mesh_options.h"
 #include "planner/cli/verb/octree_out.h"
@@ -107,11 +108,13 @@ void add_info(Program& program) {
         choose_mesh_options(**self);
         need_options_fit(**self, {path->string()});
         if (is_octree(*path)) return info_of_octree(program, *path);
-        return is_mesh(*path) ? info_of_mesh(program, *path) : info_of_scan(program, *path, *in);
+        if (is_mesh(*path)) return info_of_mesh(program, *path);
+        if (const std::optional<int> status = info_of_archived(program, *path)) return *status;
+        return info_of_scan(program, *path, *in);
       });
-  verb.add_option(
-          "file", *path,
-          "A DICOM folder or file, NIfTI, NRRD, MetaImage; .octree; STL, PLY, OBJ, OFF, VTK, GLB, 3MF")
+  verb.add_option("file", *path,
+                  "A DICOM folder or file, NIfTI, NRRD, MetaImage; .octree; STL, PLY, OBJ, OFF, VTK, GLB, "
+                  "3MF; a document or picture in DICOM")
       ->required()
       ->check(scan_path());
   add_scan_options(verb, *in);

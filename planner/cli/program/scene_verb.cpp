@@ -11,7 +11,7 @@ namespace {
 
 struct SceneText : PlanIn {
   std::filesystem::path out;
-  std::string identity = "keep";
+  std::string identity = "keep", transforms = "tfm";
 };
 
 std::string names(const Json& list) {
@@ -32,7 +32,9 @@ int write_scene_of(Program& program, const SceneText& text) {
   Json written;
   {
     const Stopwatch watch(evaluation.timings, "write");
-    written = write_slicer_scene(plan, evaluation, text.out, program.stop.get_token());
+    written = write_slicer_scene(plan, evaluation, text.out,
+                                 text.transforms == "h5" ? TransformFormat::Hdf5 : TransformFormat::Text,
+                                 program.stop.get_token());
   }
   Json json = answer(evaluation.timings);
   json["path"] = text.out.string();
@@ -63,6 +65,9 @@ void add_scene(Program& program) {
   add_plan_options(verb, *text);
   verb.add_option("-o,--out", text->out, "One .mrb, or a new folder for scene.mrml and its files")
       ->required();
+  verb.add_option("--transforms", text->transforms,
+                  "The format of the motions' files: tfm (text, default) or h5 (HDF5)")
+      ->check(CLI::IsMember({"tfm", "h5"}));
   add_result_identity(verb, text->identity);
 }
 

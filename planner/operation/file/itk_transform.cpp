@@ -10,6 +10,8 @@
 #include <sstream>
 #include <string_view>
 
+#include "planner/operation/file/read_hdf5.h"
+#include "planner/operation/file/write_hdf5.h"
 #include "planner/operation/table/json_file.h"
 #include "voxel/space/file_text.h"
 
@@ -47,12 +49,8 @@ std::string type_of_word(const std::string& word, const std::string& where) {
          "'" + word.substr(0, 60) + "' is no transform of points in space, whose names end in _double_3_3");
 }
 
-std::vector<ListedTransform> listed(const std::filesystem::path& path) {
-  const std::string file = path.string();
-  if (!std::filesystem::is_regular_file(path)) refuse(file, "is no file");
-  if (std::filesystem::file_size(path) > most_bytes)
-    refuse(file, "is larger than any linear transform: save a linear one");
-  std::istringstream lines(voxel::file_bytes(path));
+std::vector<ListedTransform> listed_text(const std::string& text, const std::string& file) {
+  std::istringstream lines(text);
   std::vector<ListedTransform> found;
   std::string line;
   int number = 0;
@@ -62,8 +60,9 @@ std::vector<ListedTransform> listed(const std::filesystem::path& path) {
     line = voxel::trimmed(line);
     if (is_first && !line.starts_with("#Insight Transform File"))
       refuse(file,
-             "is no transform of ITK, whose text begins with '#Insight Transform File': save it in 3D Slicer "
-             "as .tfm");
+             "is no transform of ITK, whose text begins with '#Insight Transform File' and whose .h5 with "
+             "HDF5's "
+             "signature: save it in 3D Slicer as .tfm or .h5");
     is_first = false;
     if (line.empty() || line.front() == '#') continue;
     const std::string where = file + ", line " + std::to_string(number);
@@ -78,6 +77,50 @@ std::vector<ListedTransform> listed(const std::filesystem::path& path) {
       refuse(where, "'" + key.substr(0, 40) + "' is none of Transform, Parameters and FixedParameters");
     }
   }
+  return found;
+}
+
+/// The numbers of a group's transform. ITK before 5 knew only the names without the s of "Trans".
+std::vector<double> numbers_in(const Hdf5File& file, const std::string& group, const std::string& name) {
+  for (const char* const before : {"/Transform", "/Tranform"})
+    if (const std::string path = group + before + name; file.has(path)) return file.numbers(path);
+  return {};
+}
+
+std::vector<ListedTransform> listed_hdf5(const std::string& bytes, const std::string& name) {
+  std::vector<ListedTransform> found;
+  try {
+    const Hdf5File file(bytes);
+    if (!file.has("/TransformGroup"))
+      refuse("", "holds no /TransformGroup: it is another kind of HDF5 file than ITK's transforms");
+    constexpr std::size_t most_transforms = 64;
+    const std::size_t count = file.members("/TransformGroup").size();
+    if (count > most_transforms)
+      refuse("", "holds " + std::to_string(count) + " transforms: at most 64 are read");
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::string group = "/TransformGroup/" + std::to_string(i), where = name + ", " + group;
+      if (!file.has(group)) refuse("", "has no " + group + ": its transforms must be numbered from 0");
+      found.push_back({type_of_word(file.text(group + "/TransformType"), where), where, {}, {}});
+      if (found.back().type == "CompositeTransform") continue;
+      found.back().parameters = numbers_in(file, group, "Parameters");
+      found.back().fixed = numbers_in(file, group, "FixedParameters");
+    }
+  } catch (const std::runtime_error& error) {
+    const std::string what = error.what();
+    if (what.starts_with(name)) throw;
+    refuse(name, what);
+  }
+  return found;
+}
+
+std::vector<ListedTransform> listed(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  if (!std::filesystem::is_regular_file(path)) refuse(file, "is no file");
+  if (std::filesystem::file_size(path) > most_bytes)
+    refuse(file, "is larger than any linear transform: save a linear one");
+  const std::string bytes = voxel::file_bytes(path);
+  std::vector<ListedTransform> found =
+      Hdf5File::begins(bytes) ? listed_hdf5(bytes, file) : listed_text(bytes, file);
   if (found.empty()) refuse(file, "holds no transform");
   return found;
 }
@@ -173,6 +216,22 @@ TransformFile read_itk_transform(const std::filesystem::path& path) {
       glm::inverse(still_from_moved),
       {path.filename().string() +
        ": LPS, mm, from after the motion to before, as all of ITK's transforms: the motion is the inverse"}};
+}
+
+std::string itk_transform_hdf5(const glm::dmat4& moved_from_still) {
+  const glm::dmat4 still_from_moved = glm::inverse(moved_from_still);
+  std::vector<double> parameters;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) parameters.push_back(still_from_moved[column][row]);
+  for (int row = 0; row < 3; ++row) parameters.push_back(still_from_moved[3][row]);
+  Hdf5Group transform;
+  transform.members = {{"TransformType", std::string("AffineTransform_double_3_3")},
+                       {"TranformParameters", std::move(parameters)},
+                       {"TranformFixedParameters", std::vector<double>(3, 0.0)}};
+  Hdf5Group list, root;
+  list.members.emplace("0", std::move(transform));
+  root.members.emplace("TransformGroup", std::move(list));
+  return hdf5_bytes(root);
 }
 
 std::string itk_transform_text(const glm::dmat4& moved_from_still) {

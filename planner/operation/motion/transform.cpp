@@ -59,12 +59,12 @@ Operation transform_operation() {
   return Describe<Transform>("transform", "Moves an object by a transform of 3D Slicer or ITK.",
                              Makes::Object)
       .takes(field("object", &Transform::object, "The object.").required().positional("solid"))
-      .takes(
-          field("file", &Transform::file,
-                "A linear transform, .tfm: LPS, mm, from after the motion to before, as both programs write "
-                "it.")
-              .required()
-              .a_file())
+      .takes(field("file", &Transform::file,
+                   "A linear transform, .tfm or .h5: LPS, mm, from after the motion to before, as both "
+                   "programs write "
+                   "it.")
+                 .required()
+                 .a_file())
       .example(R"({"id": "moved", "do": "transform", "object": "maxilla", "file": "advanced_motion.tfm"})")
       .on_files("octotomy transform maxilla.stl --file advanced_motion.tfm -o moved.stl")
       .motion()

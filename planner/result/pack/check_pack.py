@@ -555,7 +555,7 @@ class Checker:
             self.findings.claim("samples" in self.entries[name], f"{name}: the archive carries samples of its window")
         if kind == "move" and motion_of(step) is not None:
             self.findings.claim("image_of" in self.entries[name], f"{name}: the archive says whose image it is")
-        if kind != "mask" and row.get("mesh"):
+        if row.get("mesh"):
             self.findings.claim("points" in self.entries[name], f"{name}: the archive carries its surface")
         if "samples" in self.entries[name]:
             self.check_window(name, step)
@@ -901,11 +901,13 @@ class Checker:
                 continue
             rows = list(csv.DictReader(io.StringIO(self.archive.bytes(name).decode("utf-8"))))
             stated = self.result.get(part, [])
+            if part == "movements":
+                stated = [row for each in stated for row in points_of(each)]
             wrong, compared = [], 0
             for row, value in zip(rows, stated):
                 for column, cell in row.items():
                     found = member(value, column)
-                    if cell and found is not None and column != "words":
+                    if cell and found is not None and (column != "words" or part == "movements"):
                         compared += 1
                         if not same_cell(cell, found):
                             wrong.append(column)
@@ -931,6 +933,13 @@ def without_times(value):
     if isinstance(value, dict):
         return {key: without_times(member) for key, member in value.items() if key != "timings_ms"}
     return [without_times(member) for member in value] if isinstance(value, list) else value
+
+
+def points_of(movement):
+    """The rows of a movement in its table: its centroid with the angles of the whole, and its landmarks."""
+    whole = {key: movement[key] for key in ("pitch_deg", "yaw_deg", "roll_deg") if key in movement}
+    return [{"object": movement["object"], "point": point.get("name", "centroid"), **point, **angles}
+            for point, angles in [(movement.get("centroid") or {}, whole), *((each, {}) for each in movement.get("landmarks", []))]]
 
 
 def member(value, column):

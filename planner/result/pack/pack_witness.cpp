@@ -112,8 +112,8 @@ std::map<std::string, std::string> witness_arrays(const Object& object, const vo
   std::map<std::string, std::string> arrays;
   const Rows runs = runs_of(object.voxel.octree);
   arrays["runs"] = numpy_array(runs, 4);
-  // No number of a result depends on the surface of a tool.
-  if (object.mesh.within && !object.is_tool) {
+  // Of tools, too: the result states the volume and area of their surfaces.
+  if (object.mesh.within) {
     const brep::Triangles& triangles = object.mesh.within->triangles();
     std::vector<double> points;
     points.reserve(3 * triangles.points_mm.size());

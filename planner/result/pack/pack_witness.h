@@ -9,16 +9,15 @@
 
 namespace octotomy::planner {
 
-/// The data of an object in a pack, from which anybody can recompute its numbers. Names and contents of
-/// .npy files:
+/// The data of an object in a pack, from which anybody can recompute its numbers. Names and contents of .npy
+/// files:
 /// - runs: for each run of voxels a row: z, y, x of its first voxel, and x behind its last; ascending;
-/// - points, LPS mm, and triangles, three numbers of points each, of the surface within the universe, where
-/// the
-///   object has one and is no tool;
+/// - points, LPS mm, and triangles, three numbers of points each, of the surface within the universe, where the
+///   object has one;
 /// - samples, for a window alone (`window_of` is its scan, else nullptr): rows of 14 numbers, up to
-/// `most_samples` of them: a voxel of the universe (x, y,
-///   z), the scan's cell that holds its centre (x, y, z), and the cell's eight samples, x fastest. Half of the
-///   voxels lie on either side of the surface along x, the others anywhere; their choice is fixed.
+///   `most_samples` of them: a voxel of the universe (x, y, z), the scan's cell that holds its centre (x, y, z),
+///   and the cell's eight samples, x fastest. Half of the voxels lie on either side of the surface along x, the
+///   others anywhere; their choice is fixed.
 std::map<std::string, std::string> witness_arrays(const Object& object, const voxel::Universe& universe,
                                                   const voxel::Scene* window_of);
 

@@ -14,6 +14,8 @@ namespace {
 
 using PatientJson = nlohmann::ordered_json;
 
+constexpr const char* unnamed_plan = "Plan";
+
 std::vector<std::string> parts_of_text(const std::string& text, char separator) {
   std::vector<std::string> parts(1);
   for (const char symbol : text)
@@ -137,6 +139,15 @@ void leave_out_patients(Result& result) {
     }
 }
 
+std::string plan_without_names(const std::string& text, std::vector<std::string>& changes) {
+  PatientJson plan = PatientJson::parse(text);
+  plan["name"] = unnamed_plan;
+  if (plan.contains("scans"))
+    for (auto& [name, scan] : plan["scans"].items()) scan["path"] = name;
+  if (plan.erase("signatures") > 0) changes.emplace_back("plan: signatures removed");
+  return json_text(plan, 2) + "\n";
+}
+
 std::vector<std::string> leave_out_names(Result& result) {
   std::vector<std::string> changes;
   leave_out_patients(result);
@@ -151,17 +162,11 @@ std::vector<std::string> leave_out_names(Result& result) {
       finding.detail = "left out as requested; octotomy info prints it";
     }
   }
-  result.plan.name = "Plan";
+  result.plan.name = unnamed_plan;
   changes.emplace_back("plan: name removed");
   result.plan.file.clear();
   for (auto& [name, scan] : result.plan.scans) scan.path = name;
-  if (result.plan.text.empty()) return changes;
-  PatientJson plan = PatientJson::parse(result.plan.text);
-  plan["name"] = result.plan.name;
-  if (plan.contains("scans"))
-    for (auto& [name, scan] : plan["scans"].items()) scan["path"] = name;
-  if (plan.erase("signatures") > 0) changes.emplace_back("plan: signatures removed");
-  result.plan.text = json_text(plan, 2) + "\n";
+  if (!result.plan.text.empty()) result.plan.text = plan_without_names(result.plan.text, changes);
   return changes;
 }
 

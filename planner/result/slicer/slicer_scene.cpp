@@ -57,8 +57,13 @@ class FileNames {
 /// Writes the files of a scene into a folder.
 class SceneFolder {
  public:
-  SceneFolder(const Plan& plan, const Evaluation& evaluation, fs::path folder, const std::stop_token& stop)
-      : plan_(plan), evaluation_(evaluation), folder_(std::move(folder)), stop_(stop) {
+  SceneFolder(const Plan& plan, const Evaluation& evaluation, fs::path folder, TransformFormat transforms,
+              const std::stop_token& stop)
+      : plan_(plan),
+        evaluation_(evaluation),
+        folder_(std::move(folder)),
+        transforms_(transforms),
+        stop_(stop) {
     fs::create_directory(folder_ / "Data");
   }
 
@@ -123,8 +128,11 @@ class SceneFolder {
     brep::write_mesh((is_moved ? still : &object)->mesh.whole->triangles(), folder_ / "Data" / file);
     std::string transform;
     if (is_moved) {
-      const std::string motion = names_.of(object.id + "_motion", ".tfm");
-      voxel::write_file(folder_ / "Data" / motion, itk_transform_text(object.image->image_from_object));
+      const bool is_text = transforms_ == TransformFormat::Text;
+      const std::string motion = names_.of(object.id + "_motion", is_text ? ".tfm" : ".h5");
+      const glm::dmat4& matrix = object.image->image_from_object;
+      voxel::write_file(folder_ / "Data" / motion,
+                        is_text ? itk_transform_text(matrix) : itk_transform_hdf5(matrix));
       transform = nodes_.add_transform(object.id + " motion", motion);
       written_["transforms"].push_back(object.id);
     }
@@ -135,6 +143,7 @@ class SceneFolder {
   const Plan& plan_;
   const Evaluation& evaluation_;
   fs::path folder_;
+  TransformFormat transforms_;
   std::stop_token stop_;
   FileNames names_;
   SceneNodes nodes_;
@@ -160,7 +169,7 @@ void write_bundle(const fs::path& folder, const fs::path& path) {
 }  // namespace
 
 Json write_slicer_scene(const Plan& plan, const Evaluation& evaluation, const fs::path& path,
-                        const std::stop_token& stop) {
+                        TransformFormat transforms, const std::stop_token& stop) {
   const fs::path place = voxel::place_of(path);
   const bool is_bundle = place.extension() == ".mrb";
   if (!is_bundle && fs::exists(place) && !fs::is_empty(place))
@@ -168,7 +177,7 @@ Json write_slicer_scene(const Plan& plan, const Evaluation& evaluation, const fs
         voxel::ErrorCode::Input,
         path.string() + ": has files in it: choose a new folder for the scene, or a name that ends in .mrb");
   voxel::UnfinishedFolder work(place.parent_path(), ".octotomy-scene-");
-  Json written = SceneFolder(plan, evaluation, work.path(), stop).write();
+  Json written = SceneFolder(plan, evaluation, work.path(), transforms, stop).write();
   if (is_bundle) {
     write_bundle(work.path(), place);
   } else {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "planner/operation/file/itk_transform.h"
 #include "planner/plan/evaluate.h"
 
 namespace octotomy::planner {
@@ -13,13 +14,12 @@ namespace octotomy::planner {
 /// - each scan as .nrrd;
 /// - all objects as the segments of one .seg.nrrd, in layers where they overlap; masks are left out;
 /// - each object that has a surface as a model, .vtp. The model of a moved object is the surface before it
-/// moved,
-///   below a linear transform, so that its motion can be seen and changed;
-/// - each motion as an ITK transform, .tfm. As ITK defines it, it maps positions after the motion to those
-/// before;
-/// - as .mrk.json, all at their places before any motion: the plan's landmarks, its saws and the sides of
-/// its masks as
-///   planes, the regions of its masks as closed curves; and each screw's axis as a line, at its object's place.
+///   moved, below a linear transform, so that its motion can be seen and changed;
+/// - each motion as an ITK transform, .tfm or .h5. As ITK defines it, it maps positions after the motion to
+///   those before;
+/// - as .mrk.json, all at their places before any motion: the plan's landmarks, its saws and the sides of its
+///   masks as planes, the regions of its masks as closed curves; and each screw's axis as a line, at its
+///   object's place.
 /// Equal plans make equal files. Returns {"scans", "segments", "models", "transforms", "landmarks"}, names,
 /// and {"planes", "curves", "lines"}, files. Precondition: the evaluation has stored its scans
 /// (EvaluateOptions::keep_scans). Throws voxel::Error (Input) if `path` is a folder with files in it,
@@ -28,6 +28,7 @@ namespace octotomy::planner {
 /// Software Guide on transform files.
 nlohmann::ordered_json write_slicer_scene(const Plan& plan, const Evaluation& evaluation,
                                           const std::filesystem::path& path,
+                                          TransformFormat transforms = TransformFormat::Text,
                                           const std::stop_token& stop = {});
 
 }  // namespace octotomy::planner

@@ -4,10 +4,13 @@ DICOMweb, plain and by TLS. Skipped where the other program is not installed."""
 import hashlib
 import json
 import os
+import select
 import shutil
 import socket
+import ssl
 import subprocess
 import tempfile
+import threading
 import time
 import unittest
 from pathlib import Path
@@ -82,6 +85,42 @@ class Receiver:
         self.process.communicate(timeout=60)
 
 
+class TlsFront:
+    """Ends TLS before a plain port, as hospitals' proxies do: Debian's Orthanc 1.10.1 crashes on its own https."""
+
+    def __init__(self, both, port):
+        context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+        context.load_cert_chain(both)
+        self.context, self.behind, self.requests = context, port, 0
+        self.server = socket.create_server(("127.0.0.1", 0))
+        self.port = self.server.getsockname()[1]
+        threading.Thread(target=self.serve, daemon=True).start()
+
+    def serve(self):
+        while True:
+            try:
+                peer, _ = self.server.accept()
+            except OSError:
+                return
+            threading.Thread(target=self.pass_on, args=(peer,), daemon=True).start()
+
+    def pass_on(self, peer):
+        try:
+            with self.context.wrap_socket(peer, server_side=True) as outside, \
+                    socket.create_connection(("127.0.0.1", self.behind)) as inside:
+                other = {outside: inside, inside: outside}
+                while True:
+                    ready = [outside] if outside.pending() else select.select(list(other), [], [], 60)[0]
+                    for one in ready or [None]:
+                        data = one.recv(65536) if one else b""
+                        if not data:
+                            return
+                        self.requests += one is outside
+                        other[one].sendall(data)
+        except OSError:
+            pass
+
+
 class Archive(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -97,7 +136,14 @@ class Archive(unittest.TestCase):
         for name, words in {"rt": ["skull.octree", "--as", "structures"], "share": ["skull.stl", "--as", "fractions"],
                             "numbers": ["skull.octree", "--as", "labelmap"], "model": ["skull.stl"]}.items():
             run(PROGRAM, "convert", cls.folder / words[0], *words[1:], "-o", cls.folder / f"{name}.dcm", *source)
-        cls.files = sorted((cls.folder / "series").iterdir()) + sorted(cls.folder.glob("*.dcm"))
+        (cls.folder / "a.plan.json").write_text(json.dumps({
+            "octotomy_plan": 1, "name": "A plan", "scans": {"ct": {"path": "series"}}, "universe": {"voxel_mm": 12.0},
+            "steps": [{"id": "skull", "do": "window", "scan": "ct", "low": 300}]}))
+        run(PROGRAM, "run", cls.folder / "a.plan.json", "--certify", "never", "-o", cls.folder / "result")
+        run(PROGRAM, "convert", cls.folder / "a.plan.json", "--pictures", cls.folder / "result", *source, "-o",
+            cls.folder / "objects")
+        cls.files = (sorted((cls.folder / "series").iterdir()) + sorted(cls.folder.glob("*.dcm")) +
+                     sorted((cls.folder / "objects").iterdir()))
 
     @classmethod
     def tearDownClass(cls):
@@ -220,6 +266,72 @@ class Archive(unittest.TestCase):
             server.terminate()
             server.wait()
             log.close()
+
+    def authority(self, name):
+        key, pem = self.folder / f"{name}.key", self.folder / f"{name}.pem"
+        run("openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj", f"/CN={name}", "-addext",
+            "basicConstraints=critical,CA:TRUE", "-keyout", key, "-out", pem)
+        return key, pem
+
+    def signed(self, name, authority, alternative, days=2):
+        """The certificate and key of a server in one file, as Orthanc wants them; valid until `days` from now."""
+        key, request, pem = (self.folder / f"{name}{ending}" for ending in (".key", ".csr", ".crt"))
+        more, both = self.folder / f"{name}.ext", self.folder / f"{name}_both.pem"
+        more.write_text(f"subjectAltName={alternative}\nbasicConstraints=CA:FALSE\n")
+        run("openssl", "req", "-newkey", "rsa:2048", "-nodes", "-subj", f"/CN={name}", "-keyout", key, "-out", request)
+        run("openssl", "x509", "-req", "-in", request, "-CA", authority[1], "-CAkey", authority[0], "-CAcreateserial",
+            "-days", days, "-extfile", more, "-out", pem)
+        both.write_text(key.read_text() + pem.read_text())
+        return both
+
+    @needs("Orthanc", "openssl")
+    @unittest.skipUnless(PLUGIN.exists(), "not installed: apt-get install orthanc-dicomweb")
+    def test_dicomweb_by_tls_accepts_only_the_archive_that_its_authority_signed(self):
+        authority, stranger = self.authority("authority"), self.authority("other_authority")
+        cases = {"good": self.signed("good", authority, "DNS:localhost"),
+                 "expired": self.signed("expired", authority, "DNS:localhost", days=-1),
+                 "misnamed": self.signed("misnamed", authority, "DNS:archive.example")}
+        model, web = self.folder / "model.dcm", free_port()
+        settings = {"Name": "tls", "StorageDirectory": str(self.folder / "orthanc_tls"), "Plugins": [str(PLUGIN)],
+                    "IndexDirectory": str(self.folder / "orthanc_tls"), "HttpPort": web, "DicomServerEnabled": False,
+                    "RemoteAccessAllowed": False, "AuthenticationEnabled": False, "DicomWeb": {"Enable": True}}
+        (self.folder / "tls.json").write_text(json.dumps(settings))
+        with open(self.folder / "orthanc_tls.log", "w") as log:
+            server = subprocess.Popen([found("Orthanc"), self.folder / "tls.json"], stdout=log, stderr=log)
+        fronts = {}
+        try:
+            wait_for_port(web, server)
+            fronts = {case: TlsFront(pem, web) for case, pem in cases.items()}
+            trust = ["--authorities", authority[1]]
+
+            def address(case, host="localhost"):
+                return f"https://{host}:{fronts[case].port}/dicom-web"
+
+            def refusal(case, *words, host="localhost"):
+                said = octotomy("send", model, "--to", address(case, host), *words, status=2)
+                self.assertEqual(len(said.strip().splitlines()), 1, said)
+                return said
+            self.assertIn("certificate", refusal("good"))
+            self.assertIn("certificate", refusal("good", "--authorities", stranger[1]))
+            self.assertIn("expired", refusal("expired", *trust))
+            self.assertIn("localhost", refusal("misnamed", *trust))
+            # By its number the same server is another host than its certificate names.
+            self.assertIn("127.0.0.1", refusal("good", *trust, host="127.0.0.1"))
+            self.assertIn("none.pem", refusal("good", "--authorities", self.folder / "none.pem"))
+            self.assertEqual(sum(front.requests for front in fronts.values()), 0, "nothing is sent before the check")
+            octotomy("send", *self.files, "--to", address("good"), *trust)
+            asked = ["receive", "--from", address("good")]
+            octotomy(*asked, "--find", "PatientID=*", status=2)
+            studies = octotomy(*asked, *trust, "--find", "PatientID=*")["studies"]
+            self.assertTrue(studies)
+            for each in studies:
+                octotomy(*asked, *trust, "-o", self.folder / "by_tls", "--study", each["study_uid"])
+            self.need_same(self.folder / "by_tls", True)
+        finally:
+            for front in fronts.values():
+                front.server.close()
+            server.terminate()
+            server.wait()
 
     @staticmethod
     def delete_all(port):

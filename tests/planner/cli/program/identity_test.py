@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """What is written with --identity remove names nobody: 20 personal strings planted in a series, its folder, a plan and
 beside it are searched for byte by byte in every kind of file that the program writes, also inside of archives."""
+import base64
 import gzip
 import io
 import json
@@ -10,6 +11,7 @@ import shutil
 import subprocess
 import tempfile
 import unittest
+import xml.etree.ElementTree as xml
 import zipfile
 import zlib
 from pathlib import Path
@@ -63,6 +65,8 @@ def inside(name, data):
             yield name + " stream", zlib.decompress(stream.group(1))
         except zlib.error:
             pass
+    for body in re.finditer(rb'representation="B64"[^>]*>([^<]*)</text>', data):
+        yield from inside(name + " body", base64.b64decode(body.group(1)))
     end = data.find(b"\n\n") if data[:4] == b"NRRD" else -1
     if end > 0 and b"encoding: gz" in data[:end]:
         yield name + " samples", gzip.decompress(data[end + 2:])
@@ -113,6 +117,8 @@ class Identity(unittest.TestCase):
         run(PROGRAM, "octree", cls.series, "--window", "300:", "-o", at / "PLANTEDFILE.octree")
         run(PROGRAM, "mesh", cls.series, "--window", "300:", "-o", at / "PLANTEDFILE.stl")
         run(PROGRAM, "segment", cls.series, "--window", "bone", "-o", at / "PLANTEDFILE.nrrd")
+        # The views of a plan, which hold no text.
+        run(PROGRAM, "run", cls.plan, "--certify", "never", "-o", at / "views")
         cls.at = at
 
     @classmethod
@@ -136,6 +142,7 @@ class Identity(unittest.TestCase):
         run(PROGRAM, "convert", f"{at}.stl", *source, "-o", out / "model.dcm")
         run(PROGRAM, "convert", f"{at}.stl", *source, "--as", "obj", "-o", out / "model_obj.dcm")
         run(PROGRAM, "segment", self.series, "--window", "bone", "--identity", choice, "-o", out / "bone.dcm")
+        run(PROGRAM, "convert", self.plan, "--pictures", self.at / "views", *source, "-o", out / "objects")
         return out
 
     def test_removed_identities_are_nowhere(self):
@@ -147,15 +154,17 @@ class Identity(unittest.TestCase):
         found, files = planted_in([out])
         self.assertEqual(found, [])
         self.assertGreater(files, 60)
-        for name in ["segmentation", "labels", "structures", "model", "fractions", "bone"]:
+        for name in ["segmentation", "labels", "structures", "model", "fractions", "bone", "objects/plan",
+                     "objects/picture_001"]:
             read = pydicom.dcmread(out / f"{name}.dcm")
             self.assertEqual((read.PatientName, read.PatientID, read.StudyDate), ("", "", ""), name)
             self.assertEqual(read.PatientIdentityRemoved, "YES")
             self.assertEqual(read.DeidentificationMethodCodeSequence[0].CodeValue, "113100")
         # What belongs together stays together, under other identifiers.
-        reads = [pydicom.dcmread(x) for x in [out / "bone.dcm", next((out / "series").iterdir()), out / "structures.dcm"]]
+        reads = [pydicom.dcmread(x) for x in [out / "bone.dcm", next((out / "series").iterdir()), out / "structures.dcm",
+                                              out / "objects/plan.dcm", out / "objects/picture_001.dcm"]]
         self.assertEqual(len({read.StudyInstanceUID for read in reads}), 1)
-        self.assertEqual(len({read.FrameOfReferenceUID for read in reads}), 1)
+        self.assertEqual(len({read.FrameOfReferenceUID for read in reads[:3]}), 1)
         self.assertNotEqual(reads[0].StudyInstanceUID, self.uids["StudyInstanceUID"])
         # The pack can be replayed and checked.
         run(PROGRAM, "verify", out / "plan.zip", "--scan", f"ct={self.series}")
@@ -195,18 +204,63 @@ class Identity(unittest.TestCase):
         run(PROGRAM, *words)
         self.assertEqual(planted_in([self.folder / "printed", self.folder / "pdf.dcm"])[0], [])
 
+    def test_a_plan_comes_back_from_its_object_and_names_of_steps_are_refused(self):
+        out = self.folder / "plan_objects"
+        source = ["--source", self.series]
+        said = json.loads(run(PROGRAM, "convert", self.plan, *source, "--pictures", self.at / "views", "-o", out, "--json").stdout)
+        views = sorted((self.at / "views/views").glob("*.png"))
+        self.assertEqual((said["pictures"], len(said["files"])), (len(views), len(views) + 1))
+        run(PROGRAM, "convert", out / "plan.dcm", "-o", out / "again.plan.json")
+        self.assertEqual((out / "again.plan.json").read_bytes(), self.plan.read_bytes())
+        info = json.loads(run(PROGRAM, "info", out / "plan.dcm", "--json").stdout)
+        self.assertEqual((info["kind"], info["plan"]["steps"]), ("DICOM encapsulated CDA", len(PLAN["steps"])))
+        # The same bytes by plain Python.
+        read = pydicom.dcmread(out / "plan.dcm")
+        text = xml.fromstring(read.EncapsulatedDocument[:read.EncapsulatedDocumentLength]).find(".//{urn:hl7-org:v3}text")
+        self.assertEqual(base64.b64decode(text.text), self.plan.read_bytes())
+        for number, view in enumerate(views, 1):
+            picture = pydicom.dcmread(out / f"picture_{number:03d}.dcm")
+            self.assertEqual(picture.ImageComments, view.stem)
+            run(PROGRAM, "convert", out / f"picture_{number:03d}.dcm", "-o", out / "again.png")
+            run(PROGRAM, "info", out / f"picture_{number:03d}.dcm")
+            self.assertEqual((picture.Rows, picture.Columns), (480, 480))
+        named = dict(PLAN, scans={"ct": {"path": "x"}}, steps=[dict(PLAN["steps"][0], id="PlantedFamily_skull")])
+        (self.folder / "named.plan.json").write_text(json.dumps(named))
+        for words, cause in [
+                (["named.plan.json", *source, "--identity", "remove", "-o", "o"], "'plantedfamily', which the source states"),
+                (["named.plan.json", *source, "--pictures", self.at / "views", "-o", "o"], "the result of another plan"),
+                (["named.plan.json", *source, "--pictures", self.at, "-o", "o"], "holds no result.json"),
+                (["named.plan.json", *source, "-o", "o.dcm"], "give a folder"),
+                (["named.plan.json", *source, "--as", "stl", "-o", "o"], "leave --dicom and --as out"),
+                ([self.at / "views/result.json", *source, "-o", "o"], "is no plan"),
+                ([out / "plan.dcm", "-o", "o.pdf"], "name a file that ends in .json"),
+                ([out / "plan.dcm", "-o", "o.json", "--label", "x"], "leave --source, --label"),
+                ([out / "picture_001.dcm", "-o", "o.json"], "name a file that ends in .png")]:
+            words = [self.folder / words[0], *words[1:]]
+            answer = subprocess.run([PROGRAM, "convert", *map(str, words)], capture_output=True, text=True, cwd=self.folder)
+            self.assertEqual(answer.returncode, 2, answer.stderr)
+            lines = [x for x in answer.stderr.splitlines() if "identity: whether" not in x]
+            self.assertEqual(len(lines), 1, answer.stderr)
+            self.assertIn(cause, lines[0])
+            self.assertFalse(list(self.folder.glob("o*.*")) or (self.folder / "o").exists(), words)
+
     @unittest.skipIf(shutil.which("dciodvfy") is None, "not installed: apt-get install dicom3tools")
     def test_objects_are_held_to_the_standard(self):
-        out = self.folder / "valid"
+        out, files = self.folder / "valid", []
         out.mkdir()
         for choice in ["remove", "new"]:
             for name, words in {"seg": [".octree"], "rt": [".octree", "--as", "structures"], "stl": [".stl"]}.items():
                 file = out / f"{choice}_{name}.dcm"
                 run(PROGRAM, "convert", f"{self.at / 'PLANTEDFILE'}{words[0]}", *words[1:], "--source", self.series,
                     "--identity", choice, "-o", file)
-                # Of 2019 and later, which this checker does not know yet.
-                said = subprocess.run(["dciodvfy", file], capture_output=True, text=True)
-                self.assertEqual([x for x in (said.stdout + said.stderr).splitlines() if "Error" in x and "CLOSEDPLANAR_XOR" not in x], [], file)
+                files.append(file)
+            run(PROGRAM, "convert", self.plan, "--source", self.series, "--pictures", self.at / "views", "--identity", choice,
+                "-o", out / choice)
+            files += sorted((out / choice).iterdir())
+        for file in files:
+            # Of 2019 and later, which this checker does not know yet.
+            said = subprocess.run(["dciodvfy", file], capture_output=True, text=True)
+            self.assertEqual([x for x in (said.stdout + said.stderr).splitlines() if "Error" in x and "CLOSEDPLANAR_XOR" not in x], [], file)
 
 
 if __name__ == "__main__":

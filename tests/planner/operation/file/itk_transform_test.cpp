@@ -49,6 +49,26 @@ TEST_F(ItkTransform, AMotionComesBackFromItsText) {
   EXPECT_EQ(read(itk_transform_text(shift)), shift) << "a translation keeps its bits";
 }
 
+TEST_F(ItkTransform, AMotionComesBackFromItsHdf5AsFromItsText) {
+  glm::dmat4 motion = glm::rotate(glm::dmat4(1.0), 0.37, glm::normalize(glm::dvec3(1, 0.1, -2)));
+  motion[3] = glm::dvec4(3.125, -100.0 / 3.0, 0.1, 1.0);
+  const std::string bytes = itk_transform_hdf5(motion);
+  std::ofstream(folder_ / "a.h5", std::ios::binary) << bytes;
+  EXPECT_EQ(read_itk_transform(folder_ / "a.h5").moved_from_still, read(itk_transform_text(motion)));
+  // The bytes decide, not the name.
+  EXPECT_EQ(read(bytes), read(itk_transform_text(motion)));
+  const auto said = [&](const std::string& spoiled) { return refusal(spoiled); };
+  EXPECT_NE(said(bytes.substr(0, bytes.size() / 2)).find("a.tfm: "), std::string::npos);
+  std::string other = bytes;
+  other.replace(other.find("TransformGroup"), 14, "TransformGrOup");
+  EXPECT_NE(said(other).find("another kind of HDF5 file"), std::string::npos);
+  other = bytes;
+  other.replace(other.find("AffineTransform_double_3_3"), 26, "BSplineTransf._double_3_3 ");
+  EXPECT_NE(said(other).find("is not read: save a linear transform"), std::string::npos) << said(other);
+  EXPECT_NE(said(bytes + std::string(1 << 20, 'x')).find("larger than any linear transform"),
+            std::string::npos);
+}
+
 TEST_F(ItkTransform, EachKindMapsAsItkDoes) {
   // x -> turn (x - centre) + centre + shift: a quarter turn about z takes x to y.
   const std::string affine = transform_head +

@@ -75,6 +75,37 @@ class Scene(unittest.TestCase):
         matrix[:3, 3] = numbers[9:]
         return np.linalg.inv(matrix)
 
+    def test_motions_in_hdf5_are_those_in_text(self):
+        answer = run(PROGRAM, "scene", self.folder / "my.plan.json", "--scan", f"ct={self.scan}", "-o", self.folder / "hdf5",
+                     "--transforms", "h5")
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        data = self.folder / "hdf5/Data"
+        self.assertEqual(list(data.glob("*.tfm")), [])
+        self.assertIn("Data/advanced_motion.h5", (self.folder / "hdf5/scene.mrml").read_text())
+        objects = []
+        for file in [data / "advanced_motion.h5", self.data / "advanced_motion.tfm"]:
+            moved = self.folder / f"moved{file.suffix}.stl"
+            answer = run(PROGRAM, "transform", self.data / "maxilla.vtp", "--file", file, "-o", moved)
+            self.assertEqual(answer.returncode, 0, answer.stderr)
+            objects.append(moved.read_bytes())
+        self.assertEqual(objects[0], objects[1])
+        cut = self.folder / "cut.h5"
+        cut.write_bytes((data / "advanced_motion.h5").read_bytes()[:4000])
+        answer = run(PROGRAM, "transform", self.data / "maxilla.vtp", "--file", cut, "-o", self.folder / "cut.stl")
+        self.assertEqual((answer.returncode, len(answer.stderr.strip().splitlines())), (2, 1), answer.stderr)
+        self.assertIn("cut.h5: ", answer.stderr)
+        try:
+            import h5py
+        except ImportError:
+            self.skipTest("not installed: apt-get install python3-h5py")
+        with h5py.File(data / "advanced_motion.h5") as file:
+            group = file["TransformGroup/0"]
+            self.assertEqual(group["TransformType"][0], b"AffineTransform_double_3_3")
+            numbers = group["TranformParameters"][:]
+        matrix = np.eye(4)
+        matrix[:3, :3], matrix[:3, 3] = np.reshape(numbers[:9], (3, 3)), numbers[9:]
+        self.assertTrue(np.array_equal(np.linalg.inv(matrix), self.motion("advanced")))
+
     def test_each_node_refers_to_a_file_and_to_nodes_that_are_there(self):
         ids = [node.get("id") for node in self.nodes]
         self.assertEqual(len(ids), len(set(ids)))

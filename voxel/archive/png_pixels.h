@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string_view>
+#include <vector>
+
+namespace octotomy::voxel {
+
+/// Pixels in colour, row by row from the top left, three bytes each.
+struct ColourPixels {
+  glm::ivec2 size_px{0};
+  std::vector<std::uint8_t> rgb;
+};
+
+/// The pixels of a PNG of 8 bits a channel, grey or colour, not interlaced; transparency is dropped. read_images() reads
+/// only grey. Throws Error, Input, without a path, if the PNG is of another kind, damaged, or has a side of more than 8192
+/// pixels. Memory: twice the pixels. Source: PNG specification, second edition.
+ColourPixels png_pixels(std::string_view png);
+
+}  // namespace octotomy::voxel
