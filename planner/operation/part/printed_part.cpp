@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/operation/part/printed_part.h"
 
+#include <algorithm>
+
 #include "brep/mesh/flat_triangles.h"
 #include "brep/mesh/health.h"
 #include "brep/shape/offset.h"
@@ -21,6 +23,10 @@ constexpr double standing_off = 0.1;
 voxel::Expression rounded(const voxel::Expression& solid, double radius_mm, const VoxelBench& bench) {
   const voxel::Octree octree = bench.combined(solid);
   if (octree.is_empty()) return voxel::Expression(octree);
+  // Distances to edges are overstated by up to 2/3 of a voxel's diagonal: of parts that are few voxels thick,
+  // balls narrower than a voxel would cut off the most.
+  const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
+  if (std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z}) > 2.0 * radius_mm) return solid;
   const voxel::Expression core(
       voxel::offset(octree, bench.within_universe(solid), -radius_mm, bench.progress));
   const voxel::Octree cores = bench.combined(core);

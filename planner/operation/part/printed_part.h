@@ -13,6 +13,7 @@ namespace octotomy::planner {
 
 /// What balls of the radius within a solid hold: edges are rounded, and walls thinner than twice the radius are
 /// cut off. Cuts stand off those balls by a tenth of the radius, so that the other surfaces do not move.
+/// Voxels wider than the balls do not resolve them: then the solid is returned as it is.
 voxel::Expression rounded(const voxel::Expression& solid, double radius_mm, const VoxelBench& bench);
 
 /// Keeps the largest piece. What is not of it is taken away with a voxel around it.
