@@ -73,7 +73,7 @@ constexpr double screw_off_bone_mm = 3.0;
 /// Cells of the mesh's offsets. Triangles lie within a 16th of their cell, and on the mean within a third of that.
 /// A ball of the bending radius touches all triangles of the patch on which it rests, so that their number
 /// determines the running time.
-constexpr double plate_outer_cell_mm = 1.5;
+constexpr double plate_outer_cell_mm = 0.6;
 double grown_cell_mm(const Plate& plate) {
   return plate.bend_radius_mm / 5.0;
 }
