@@ -4,8 +4,8 @@
 #include <array>
 #include <string_view>
 
+#include "voxel/dicom/dicom_file.h"
 #include "voxel/scan/dicom_derived.h"
-#include "voxel/scan/dicom_file.h"
 #include "voxel/space/file_text.h"
 
 namespace octotomy::voxel {

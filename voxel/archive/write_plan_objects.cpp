@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "voxel/scan/character_set.h"
+#include "voxel/dicom/character_set.h"
 #include "voxel/scan/dicom_derived.h"
 #include "voxel/space/error.h"
 #include "voxel/space/staged_files.h"

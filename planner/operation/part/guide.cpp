@@ -8,10 +8,12 @@
 // 3 The region's bone grown by clearance and thickness, so that the guide's rim is round; about each slot walls
 //   that reach as far before the bone as the slot is deep: that shadow moved back along the saw; a rod for each
 //   sleeve. Edges of the walls are rounded.
-// 4 3 less 2, then less slots and holes.
-// 5 The largest piece, with points that files for printers can hold. Slots and holes may leave slivers at the
-//   edges of the bone, which `printable` finds.
+// 4 3 less 2, less slots and holes. Of that only what balls as wide as the least wall hold: slots and holes leave
+//   slivers at the edges of the bone, which no printer makes.
+// 5 The largest piece, with points that files for printers can hold.
 //
+// The mesh kernel does 3 and 4 without Booleans, on distances to the surfaces (brep/shape/level_body.h). The voxel
+// kernel combines windows of distances.
 // 1 is settled once and is a shared value of both kernels.
 #include <algorithm>
 #include <cmath>
@@ -20,7 +22,7 @@
 #include <stdexcept>
 
 #include "brep/measure/gap.h"
-#include "brep/shape/offset.h"
+#include "brep/shape/level_body.h"
 #include "brep/shape/shadow.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/object/provenance.h"
@@ -61,6 +63,7 @@ struct Guide {
   std::string slot_form = "closed";
   std::vector<ObjectName> screws;
   double drill_mm = 1.5, sleeve_wall_mm = 1.5, sleeve_height_mm = 6.0;
+  double least_wall_mm = 0.8;
   // Settled.
   GuideSite site;
   std::vector<SawSlot> slots;
@@ -72,9 +75,9 @@ struct Guide {
   double sleeve_radius_mm() const { return hole_radius_mm() + sleeve_wall_mm; }
 };
 
-/// Cell sizes of the mesh's offsets: for the fitting surface and for the outer surface. Triangles of the
-/// fitting surface lie within a 16th of a cell of it, a third of a printer's error of 0.16 mm.
-constexpr double base_cell_mm = 1.0, outer_cell_mm = 2.0;
+/// Cells of the mesh's level sets. Triangles lie within a 16th of a cell of each of the two: together an eighth of a
+/// millimetre at worst, below a printer's error of 0.16 mm, and a third of that on the mean.
+constexpr double guide_cell_mm = 1.0;
 /// Room about the region beyond what the guide needs.
 constexpr double room_mm = 1.0;
 /// How far rods and holes extend below the bone's surface, because a screw's point may lie slightly off it.
@@ -98,6 +101,9 @@ void check(const Guide& guide, const FieldLocation& place) {
   if (guide.region) check_view(guide.region->view, place.at("region").at("view"));
   if (guide.rounding_mm > 0.9 * guide.slot_wall_mm)
     place.at("rounding_mm").refuse("is more than 0.9 of 'slot_wall_mm': rounding would cut the walls off");
+  check_least_wall(guide.least_wall_mm, guide.thickness_mm, "thickness_mm", place);
+  check_least_wall(guide.least_wall_mm, guide.slot_wall_mm, "slot_wall_mm", place);
+  check_least_wall(guide.least_wall_mm, guide.sleeve_wall_mm, "sleeve_wall_mm", place);
   if (place.scope == nullptr) return;
   for (std::size_t i = 0; i < guide.cuts.size(); ++i) {
     const std::string& maker = place.scope->maker_of(guide.cuts[i].name).name;
@@ -231,17 +237,13 @@ void voxels(const Guide& guide, const VoxelBench& bench, VoxelSide& made) {
   for (const Sleeve& sleeve : guide.sleeves)
     whole = whole - rod_of(sleeve.through_mm(-beyond_mm(guide)), sleeve.through_mm(beyond_mm(guide)),
                            guide.hole_radius_mm());
-  keep_largest(whole, bench, made);
+  keep_largest(rounded(whole, 0.5 * guide.least_wall_mm, bench), bench, made);
   if (made.octree.is_empty()) has_none();
 }
 
 void triangles(const Guide& guide, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "guide");
   const brep::Progress progress{bench.progress.stop, bench.progress.report};
-  const auto of = [&](const brep::Solid& a, brep::Operation operation, const brep::Solid& b) {
-    return noted(brep::boolean(a, operation, b, bench.progress.stop), made);
-  };
-  using enum brep::Operation;
   made.lineage = "level sets of the distance to the bone less their exact shadow";
   const brep::Solid bone = noted(guide.site.bone, made);
   if (bone.empty()) throw std::runtime_error("no bone of the mesh lies in the region");
@@ -250,39 +252,39 @@ void triangles(const Guide& guide, const MeshBench& bench, MeshSide& made) {
     return work();
   };
   // The shadow of the grown bone is the bone's shadow grown, and that has fewer triangles.
-  const brep::Solid behind = timed("guide_shadow", [&] {
-    return brep::shadow(bone, {guide.site.along, guide.site.end_mm, progress}).solid;
-  });
-  const brep::Solid taken = timed("guide_offset", [&] {
-    return brep::offset(behind, {guide.clearance_mm, base_cell_mm, progress});
-  });
+  const brep::Level taken{
+      timed("guide_shadow",
+            [&] {
+              return brep::shadow(bone, {guide.site.along, guide.site.end_mm, progress}).solid;
+            }),
+      guide.clearance_mm};
   const brep::Solid base = guide.site.base.solid();
-  const brep::Solid patch = of(bone, Intersection, base);
+  const brep::Solid patch =
+      noted(brep::boolean(bone, brep::Operation::Intersection, base, bench.progress.stop), made);
   if (patch.empty()) throw std::runtime_error("no bone of the mesh lies in the region");
-  const brep::Solid outer = timed("guide_offset", [&] {
-    return brep::offset(patch, {guide.clearance_mm + guide.thickness_mm, outer_cell_mm, progress});
-  });
-  std::vector<brep::Solid> parts{outer};
+  brep::LevelBody body;
+  body.without.push_back(taken);
   for (const SawSlot& slot : guide.slots) {
-    const brep::Solid walls = of(of(slot.walls.solid(guide.walls_width_mm(slot)), Intersection, base),
-                                 Intersection, brep::moved(taken, to_rim(guide, slot)));
-    parts.push_back(timed("guide_rounding", [&] {
-      return rounded(walls, {guide.rounding_mm, guide.rounding_mm}, bench, made);
-    }));
+    const brep::LevelBody walls{{{{slot.walls.solid(guide.walls_width_mm(slot)), 0.0},
+                                  {base, 0.0},
+                                  {brep::moved(taken.solid, to_rim(guide, slot)), taken.by_mm}}},
+                                {}};
+    const brep::Solid core = timed("guide_rounding", [&] {
+      return brep::core_of(walls, {-guide.rounding_mm, guide.rounding_mm, progress});
+    });
+    if (!core.empty()) body.parts.push_back({{core, guide.rounding_mm}});
+    body.without.push_back({slot.opening.solid(guide.slot_width_mm(slot)), 0.0});
   }
-  for (const Sleeve& sleeve : guide.sleeves)
-    parts.push_back(rod(sleeve.outer_mm, sleeve.through_mm(below_mm), guide.sleeve_radius_mm()));
-  brep::Solid whole = noted(brep::boolean(parts, Union, bench.progress.stop), made);
-  whole = of(whole, Difference, taken);
-  if (whole.empty()) throw std::runtime_error("nothing of the guide is left: make the region larger");
-  std::vector<brep::Solid> operands{whole};
-  for (const SawSlot& slot : guide.slots) operands.push_back(slot.opening.solid(guide.slot_width_mm(slot)));
-  for (const Sleeve& sleeve : guide.sleeves)
-    operands.push_back(rod(sleeve.through_mm(-beyond_mm(guide)), sleeve.through_mm(beyond_mm(guide)),
-                           guide.hole_radius_mm()));
-  if (operands.size() > 1) whole = noted(brep::boolean(operands, Difference, bench.progress.stop), made);
-  whole = largest_piece(whole, "guide", made);
-  made.whole = timed("guide_printed", [&] { return printed(whole, "guide", made); });
+  for (const Sleeve& sleeve : guide.sleeves) {
+    body.parts.push_back(
+        {{rod(sleeve.outer_mm, sleeve.through_mm(below_mm), guide.sleeve_radius_mm()), 0.0}});
+    body.without.push_back({rod(sleeve.through_mm(-beyond_mm(guide)), sleeve.through_mm(beyond_mm(guide)),
+                                guide.hole_radius_mm()),
+                            0.0});
+  }
+  body.parts.push_back({{patch, guide.clearance_mm + guide.thickness_mm}});
+  made.whole = thick_part(body, {guide.least_wall_mm, guide_cell_mm}, "guide", bench, made);
+  if (made.whole->empty()) throw std::runtime_error("nothing of the guide is left: make the region larger");
   made.details["holes"] = nlohmann::ordered_json::array();
   for (const Sleeve& sleeve : guide.sleeves) {
     const std::optional<double> off_mm = hole_off_mm(*made.whole, sleeve.axis, guide.hole_radius_mm());
@@ -300,12 +302,13 @@ void bound(const Guide& guide, const BoundBench& bench, Object& made) {
   inherit(object, made);
   if (object.mesh.whole && made.mesh.whole && !made.mesh.whole->empty()) {
     const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
-    double apart_mm =
-        verify::offset_allowance_mm({object.witness,
-                                     voxel::combine(bench.universe, voxel::Expression(object.voxel.octree) &
-                                                                        guide.site.near.expression()),
-                                     guide.site.bone.solid, is_whole_voxels(object.voxel)},
-                                    {guide.clearance_mm, base_cell_mm}, made.mesh.whole->measures().area_mm2);
+    double apart_mm = verify::offset_allowance_mm(
+                          {object.witness,
+                           voxel::combine(bench.universe, voxel::Expression(object.voxel.octree) &
+                                                              guide.site.near.expression()),
+                           guide.site.bone.solid, is_whole_voxels(object.voxel)},
+                          {guide.clearance_mm, guide_cell_mm}, made.mesh.whole->measures().area_mm2) +
+                      thick_part_allowance_mm({guide.least_wall_mm, guide_cell_mm});
     if (is_whole_voxels(object.voxel)) apart_mm += 0.5 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
     made.bound.measured_apart_mm += apart_mm;
     made.bound.reshaped.push_back(object.id);
@@ -416,6 +419,7 @@ Operation guide_operation() {
                    "project's choice.")
                  .from(1.0)
                  .to(40.0))
+      .takes(least_wall(&Guide::least_wall_mm))
       .example(R"({"id": "saw_guide", "do": "guide", "object": "skull", "side": "anterior",
         "points": [[-24, -70, -30], [-14, -80, -34], [14, -80, -34], [24, -70, -30]], "radius_mm": 9,
         "cuts": ["sawn"], "screws": ["left_1"]})")

@@ -8,10 +8,12 @@
 //   radius, so that the plate bridges gaps. It still contains all that lies behind it, so that the plate slides
 //   on.
 // 3 What is left of the thickness above the rounding, on a band narrower by the rounding; grown by the rounding,
-//   so that all outer edges are round. Less 2.
-// 4 Less the holes. The largest piece, with points that files for printers can hold. Thin walls may remain,
-//   which `printable` finds.
+//   so that all outer edges are round. Less 2, less the holes.
+// 4 Of that only what balls as wide as the least wall hold: where the bone falls away beside the plate, a flange
+//   runs out to nothing. The largest piece, with points that files for printers can hold.
 //
+// The mesh kernel does 3 and 4 without Booleans, on distances to the surfaces (brep/shape/level_body.h). The voxel
+// kernel combines windows of distances.
 // 1 is settled once and is a shared value of both kernels.
 #include <algorithm>
 #include <array>
@@ -20,10 +22,10 @@
 #include <stdexcept>
 #include <tbb/parallel_for.h>
 
-#include "brep/boolean/boolean.h"
 #include "brep/mesh/distance.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/segment.h"
+#include "brep/shape/level_body.h"
 #include "brep/shape/offset.h"
 #include "brep/shape/shadow.h"
 #include "planner/operation/measure/result_json.h"
@@ -53,6 +55,7 @@ struct Plate {
   double play_mm = 0.2, hole_wall_mm = 1.0;
   std::vector<ObjectName> away_from;
   double least_mm = 1.0;
+  double least_wall_mm = 0.8;
   // Set by settle().
   GuideSite site;
   Slab ridge;  ///< the band that the rounding makes as wide as the plate
@@ -70,7 +73,7 @@ constexpr double screw_off_bone_mm = 3.0;
 /// Cells of the mesh's offsets. Triangles lie within a 16th of their cell, and on the mean within a third of that.
 /// A ball of the bending radius touches all triangles of the patch on which it rests, so that their number
 /// determines the running time.
-constexpr double plate_fit_cell_mm = 1.0, plate_outer_cell_mm = 1.5;
+constexpr double plate_outer_cell_mm = 0.6;
 double grown_cell_mm(const Plate& plate) {
   return plate.bend_radius_mm / 5.0;
 }
@@ -93,6 +96,9 @@ void check(const Plate& plate, const FieldLocation& place) {
         .refuse(
             "is less than twice 'thickness_mm': a plate that is bent this sharply breaks, and its outer "
             "side would cross itself");
+  check_least_wall(plate.least_wall_mm, plate.thickness_mm, "thickness_mm", place);
+  if (plate.least_wall_mm > plate.hole_wall_mm)
+    place.at("least_wall_mm").refuse("is more than 'hole_wall_mm': walls beside holes would be cut off");
 }
 
 /// The distance of a place from the border of an outline; negative outside.
@@ -254,7 +260,7 @@ void voxels(const Plate& plate, const VoxelBench& bench, VoxelSide& made) {
     whole = whole - voxel::Expression(voxel::Cylinder{axis.head_mm - by_mm, axis.head_mm + by_mm,
                                                       plate.hole_radius_mm(axis)});
   }
-  keep_largest(whole, bench, made);
+  keep_largest(rounded(whole, 0.5 * plate.least_wall_mm, bench), bench, made);
   if (made.octree.is_empty()) has_none();
 }
 
@@ -341,9 +347,6 @@ std::optional<FitGap> voxel_gap(const VoxelSide& plate, const glm::dvec3& along,
 void triangles(const Plate& plate, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "plate");
   const brep::Progress progress{bench.progress.stop, bench.progress.report};
-  const auto of = [&](const brep::Solid& a, brep::Operation operation, const brep::Solid& b) {
-    return noted(brep::boolean(a, operation, b, bench.progress.stop), made);
-  };
   const auto grown = [&](const brep::Solid& solid, double by_mm, double cell_mm) {
     const Stopwatch part(bench.timings, "plate_offset");
     return brep::offset(solid, {by_mm, cell_mm, progress});
@@ -353,20 +356,26 @@ void triangles(const Plate& plate, const MeshBench& bench, MeshSide& made) {
   if (bone.empty()) throw std::runtime_error("no bone of the mesh lies along the plate");
   const brep::Solid behind = brep::shadow(bone, {plate.site.along, plate.site.end_mm, progress}).solid;
   const brep::Solid big = grown(behind, plate.bend_radius_mm + plate.clearance_mm, grown_cell_mm(plate));
-  const brep::Solid closed = grown(big, -plate.bend_radius_mm, plate_fit_cell_mm);
-  if (closed.empty()) throw std::runtime_error("no bone of the mesh lies along the plate");
-  const brep::Solid ridge = of(grown(big, plate.flat_mm() - plate.bend_radius_mm, plate_outer_cell_mm),
-                               brep::Operation::Intersection, plate.ridge.solid());
+  if (big.empty()) throw std::runtime_error("no bone of the mesh lies along the plate");
+  // Shrunk by the radius: what lies at most that deep in `big` is no bone, and its depth states how far off.
+  const brep::Level closed{big, -plate.bend_radius_mm};
+  // The ridge ends below the bone's surface, deeper than the rounding reaches.
+  const brep::LevelBody ridge_body{
+      {{{big, plate.flat_mm() - plate.bend_radius_mm}, {plate.ridge.solid(), 0.0}}},
+      {{big, -plate.bend_radius_mm - plate.rounding_mm - plate_room_mm}}};
+  const brep::Solid ridge = [&] {
+    const Stopwatch part(bench.timings, "plate_offset");
+    return brep::core_of(ridge_body, {0.0, plate_outer_cell_mm, progress});
+  }();
   if (ridge.empty()) throw std::runtime_error("no bone of the mesh lies along the plate");
-  std::vector<brep::Solid> operands{grown(ridge, plate.rounding_mm, plate_outer_cell_mm), closed};
+  brep::LevelBody body{{{{ridge, plate.rounding_mm}}}, {closed}};
   for (const ScrewAxis& axis : plate.axes) {
     const glm::dvec3 by_mm = through_mm(plate) * axis.along;
-    operands.push_back(rod(axis.head_mm - by_mm, axis.head_mm + by_mm, plate.hole_radius_mm(axis)));
+    body.without.push_back(
+        {rod(axis.head_mm - by_mm, axis.head_mm + by_mm, plate.hole_radius_mm(axis)), 0.0});
   }
-  const brep::Solid whole =
-      noted(brep::boolean(operands, brep::Operation::Difference, bench.progress.stop), made);
-  if (whole.empty()) throw std::runtime_error("nothing of the plate is left: make it thicker");
-  made.whole = printed(whole, "plate", made);
+  made.whole = thick_part(body, {plate.least_wall_mm}, "plate", bench, made);
+  if (made.whole->empty()) throw std::runtime_error("nothing of the plate is left: make it thicker");
   made.details["holes"] = nlohmann::ordered_json::array();
   constexpr double goal_mm = 0.01;
   for (const ScrewAxis& axis : plate.axes) {
@@ -423,9 +432,8 @@ void bound(const Plate& plate, const BoundBench& bench, Object& made) {
         made.mesh.whole->measures().area_mm2);
     // Later offsets start from smooth surfaces, where triangles are off by a third of the tolerance on
     // average.
-    for (const auto& [by_mm, cell_mm] : {std::pair(plate.bend_radius_mm, plate_fit_cell_mm),
-                                         std::pair(plate.rounding_mm, plate_outer_cell_mm)})
-      apart_mm += brep::offset_tolerance_mm({by_mm, cell_mm, {}}) / 3.0;
+    apart_mm += brep::offset_tolerance_mm({plate.rounding_mm, plate_outer_cell_mm, {}}) / 3.0 +
+                thick_part_allowance_mm({plate.least_wall_mm});
     if (is_whole_voxels(bone.voxel)) apart_mm += 0.5 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
     made.bound.measured_apart_mm += apart_mm;
     made.bound.reshaped.push_back(bone.id);
@@ -506,6 +514,7 @@ Operation plate_operation() {
                 "The least distance to these; nearer ones are findings. The default is a project's choice.")
               .from(0.0)
               .to(20.0))
+      .takes(least_wall(&Plate::least_wall_mm))
       .example(R"({"id": "left_plate", "do": "plate", "object": "advanced", "side": "anterior",
         "points": [[18, -82, -36], [18, -82, -20]], "screws": ["left_1"]})")
       .on_files("octotomy plate bone.stl --side anterior --points 18,-82,-36 18,-82,-20 -o plate.stl")

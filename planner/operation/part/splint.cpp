@@ -7,11 +7,11 @@
 // 3 From the slab are taken the teeth grown by the offset, and the shadow of the teeth grown by the offset less
 //   the tolerated undercut. That shadow lies within the grown teeth where there is no undercut, so that there
 //   the fitting surface is that of the grown teeth.
-// 4 Walls thinner than asked are cut off: only what balls of that diameter within the splint hold stays. Cuts
-//   stand off those balls, so that the fitting surface itself does not move.
+// 4 Walls thinner than asked are cut off: only what balls of that diameter within the splint hold stays.
 // 5 The largest piece, with points that files for printers can hold.
 //
-// 1 and 2 are settled once, by mesh and voxels, and are shared values of both kernels.
+// The mesh kernel does 3 and 4 without Booleans, on distances to the surfaces (brep/shape/level_body.h). The voxel
+// kernel combines windows of distances. 1 and 2 are settled once, by mesh and voxels, and are shared values of both kernels.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,6 +19,7 @@
 
 #include "brep/boolean/boolean.h"
 #include "brep/mesh/error.h"
+#include "brep/shape/level_body.h"
 #include "brep/shape/offset.h"
 #include "brep/shape/shadow.h"
 #include "planner/operation/measure/result_json.h"
@@ -252,50 +253,39 @@ void voxels(const Splint& splint, const VoxelBench& bench, VoxelSide& made) {
 }
 
 /// The same of a jaw's mesh.
-std::vector<brep::Solid> taken_by(const Splint& splint, int jaw, const MeshBench& bench, MeshSide& made) {
+std::vector<brep::Level> taken_by(const Splint& splint, int jaw, const MeshBench& bench, MeshSide& made) {
   const brep::Progress progress{bench.progress.stop, bench.progress.report};
   const brep::BooleanResult near =
       brep::boolean(bench.object(name_of(splint, jaw).name), brep::Operation::Intersection,
                     splint.jaws[jaw].near.solid(), bench.progress.stop);
   made.shift_mm += near.shift_mm;
   if (near.solid.empty()) return {};
-  std::vector<brep::Solid> taken{brep::offset(near.solid, {splint.offset_mm, fit_cell_mm, progress})};
-  const double by_mm = shadow_by_mm(splint);
-  const brep::Solid casts =
-      by_mm == 0.0 ? near.solid : brep::offset(near.solid, {by_mm, fit_cell_mm, progress});
-  const brep::Shadow shadow =
-      brep::shadow(casts, {splint.jaws[jaw].along, splint.jaws[jaw].end_mm, progress});
-  taken.push_back(shadow.solid);
+  const auto shadow_of = [&](const brep::Solid& casts) {
+    return brep::shadow(casts, {splint.jaws[jaw].along, splint.jaws[jaw].end_mm, progress}).solid;
+  };
+  std::vector<brep::Level> taken{{near.solid, splint.offset_mm}};
+  // The shadow of the grown teeth is the teeth's shadow grown; that of shrunk ones is no such thing.
+  if (const double by_mm = shadow_by_mm(splint); by_mm >= 0.0) {
+    taken.push_back({shadow_of(near.solid), by_mm});
+  } else if (const brep::Solid casts = brep::offset(near.solid, {by_mm, fit_cell_mm, progress});
+             !casts.empty()) {
+    taken.push_back({shadow_of(casts), 0.0});
+  }
   return taken;
 }
 
 void triangles(const Splint& splint, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "splint");
-  const brep::Progress progress{bench.progress.stop, bench.progress.report};
-  std::vector<brep::Solid> operands{splint.slab.solid()};
+  made.lineage = "level sets of the distances to the slab, the teeth and their exact shadows";
+  brep::LevelBody body{{{{splint.slab.solid(), 0.0}}}, {}};
   for (int jaw = 0; jaw < 2; ++jaw) {
-    const std::vector<brep::Solid> taken = taken_by(splint, jaw, bench, made);
-    operands.insert(operands.end(), taken.begin(), taken.end());
+    const std::vector<brep::Level> taken = taken_by(splint, jaw, bench, made);
+    body.without.insert(body.without.end(), taken.begin(), taken.end());
   }
-  brep::Solid whole = operands.front();
-  for (std::size_t i = 1; i < operands.size(); ++i)
-    whole = noted(brep::boolean(whole, brep::Operation::Difference, operands[i], bench.progress.stop), made);
-  made.details["before_opening_mm3"] = brep::volume_mm3(whole);
-  made.lineage = "the slab's mesh less level sets of the distance to the teeth and their exact shadows";
-  if (whole.empty()) {
-    made.whole = whole;
-    return;
-  }
-  const brep::Solid opened =
-      rounded(whole, {0.5 * splint.thickness_mm, splint.thickness_mm / 3.0}, bench, made);
-  if (opened.empty()) {
+  made.whole = thick_part(body, {splint.thickness_mm, fit_cell_mm}, "splint", bench, made);
+  if (made.whole->empty())
     made.findings.push_back("no part of the splint is " + three_figures(splint.thickness_mm) +
                             " mm thick: open the bite, or raise 'depth_mm' or 'width_mm'");
-    made.whole = opened;
-    return;
-  }
-  made.whole = printed(opened, "splint", made);
-  made.details["thin_mm3"] = made.details["before_opening_mm3"].get<double>() - brep::volume_mm3(*made.whole);
 }
 
 void bound(const Splint& splint, const BoundBench& bench, Object& made) {
@@ -305,9 +295,11 @@ void bound(const Splint& splint, const BoundBench& bench, Object& made) {
     const Object& object = bench.objects.at(name_of(splint, jaw).name);
     inherit(object, made);
     if (!object.mesh.whole || !made.mesh.whole || made.mesh.whole->empty()) continue;
-    double of_mm = verify::offset_allowance_mm(
-        {object.witness, object.voxel.octree, *object.mesh.whole, is_whole_voxels(object.voxel)},
-        {splint.offset_mm, fit_cell_mm}, made.mesh.whole->measures().area_mm2);
+    double of_mm =
+        verify::offset_allowance_mm(
+            {object.witness, object.voxel.octree, *object.mesh.whole, is_whole_voxels(object.voxel)},
+            {splint.offset_mm, fit_cell_mm}, made.mesh.whole->measures().area_mm2) +
+        thick_part_allowance_mm({splint.thickness_mm, fit_cell_mm});
     if (is_whole_voxels(object.voxel)) of_mm += 0.5 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
     apart_mm = std::max(apart_mm, of_mm);
     made.bound.reshaped.push_back(object.id);

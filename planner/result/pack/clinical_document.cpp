@@ -7,8 +7,8 @@
 
 #include "planner/plan/sha256.h"
 #include "planner/result/report/drawn_page.h"
-#include "voxel/scan/character_set.h"
-#include "voxel/scan/dicom_attributes.h"
+#include "voxel/dicom/character_set.h"
+#include "voxel/dicom/dicom_attributes.h"
 
 namespace octotomy::planner {
 namespace {

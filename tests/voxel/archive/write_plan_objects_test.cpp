@@ -5,7 +5,7 @@
 
 #include "tests/file_bytes.h"
 #include "tests/voxel/scratch_folder.h"
-#include "voxel/scan/dicom_file.h"
+#include "voxel/dicom/dicom_file.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::voxel {

@@ -101,6 +101,35 @@ TEST(GuideStep, ASlotIsAsWideAsKerfAndPlayAndItsWallsLeadTheSawOverItsDepth) {
   EXPECT_EQ(measured.at(0).at("verdict"), "PASS") << measured.dump(1);
 }
 
+const Json& line_of(const Json& printable, const std::string& check) {
+  for (const Json& line : printable.at("checks"))
+    if (line.at("check") == check) return line;
+  throw std::runtime_error("no line about " + check);
+}
+
+TEST(GuideStep, ASlotThatRunsOutAtTheGuidesEdgeLeavesNoSliver) {
+  const ScratchFolder folder;
+  EvaluateOptions options;
+  options.certify = false;
+  // The slot's upper side lies 0.002 mm below the upper end of a drawn region, and its end is open.
+  const std::string cut =
+      R"({"id": "sawn", "do": "saw", "object": "ball", "line_mm": [[-40, -40, 5], [40, -40, 5]],
+      "direction": [0, 1, 0], "depth_mm": 90, "kerf_mm": 0.8}, )";
+  const Plan plan = ball_plan(folder, cut + guide_step(R"("side": "anterior", "region": {"view": "anterior",
+          "polygons_mm": [[[-10, -6], [10, -6], [10, 5.502], [-10, 5.502]]]},
+          "cuts": ["sawn"], "slot_form": "three_sided", "slot_depth_mm": 6)") +
+                                          R"(, {"id": "prints", "do": "printable", "object": "jig"})");
+  const Evaluation made = evaluate(plan, options);
+  const Object& jig = made.objects.at("jig");
+  ASSERT_TRUE(jig.mesh.within) << testing::PrintToString(jig.findings);
+  EXPECT_GT(jig.mesh.details.at("thin_mm3").get<double>(), 0.0);
+  EXPECT_NE(testing::PrintToString(jig.findings).find("walls thinner than 0.800 mm"), std::string::npos);
+  const Json measured = measurements_json(plan, made);
+  for (const char* check : {"closed", "self_crossing", "outward", "pieces", "cavities", "wall"})
+    EXPECT_EQ(line_of(measured.at(0), check).at("verdict"), "PASS") << line_of(measured.at(0), check).dump(1);
+  EXPECT_GT(line_of(measured.at(0), "wall").at("least_mm").get<double>(), 0.7);
+}
+
 TEST(GuideStep, AMaskGetsASlotWhereItsWallCutsBoneInTheRegionWhicheverViewDrewIt) {
   const ScratchFolder folder;
   EvaluateOptions options;
@@ -127,6 +156,7 @@ TEST(GuideStep, RefusesWhatMakesNoGuideInASentenceThatSaysWhy) {
   const ScratchFolder folder;
   const auto refusal = [&](const std::string& steps) { return made_refusal(folder, steps); };
   expect_says(refusal(guide_step(at_front + R"(, "thickness_mm": 0.1)")), "thickness_mm: must be from 1");
+  expect_says(refusal(guide_step(at_front + R"(, "least_wall_mm": 1.9)")), "more than 0.9 of 'slot_wall_mm'");
   expect_says(refusal(guide_step(at_front + R"(, "direction": [1, 0, 0])")), "degrees off the view");
   expect_says(refusal(guide_step(R"("side": "anterior", "points": [[-19.3, -5, 0]], "radius_mm": 3,
                                     "direction": [0, 1, 0])")),

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "brep/mesh/measure.h"
+#include "brep/mesh/solid.h"
+#include "brep/shape/offset.h"
+
+// The surface on which a field of signed distances is 0: the last step of offsets and of bodies of levels.
+namespace octotomy::brep {
+
+/// Values at points, LPS, negative inside; they change no faster than places do. `nearest` has one number for
+/// each point: SurfaceTree::unknown_triangle, or what an earlier call stored there for a point near this one.
+using LevelField = std::function<std::vector<double>(const std::vector<glm::dvec3>& points_mm,
+                                                     std::vector<std::uint32_t>& nearest)>;
+
+/// The surface where the field is 0, about a solid of that size moved by `options.by_mm`, with the options'
+/// cells. Guarantees, throws and costs as offset().
+Solid level_surface(const LevelField& field, const Size& size, const OffsetOptions& options);
+
+}  // namespace octotomy::brep
