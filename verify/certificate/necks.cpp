@@ -22,6 +22,7 @@
 #include "brep/mesh/components.h"
 #include "brep/mesh/triangles.h"
 #include "convert/voxel/voxelise.h"
+#include "verify/certificate/place_fault.h"
 #include "verify/witness/witness.h"
 #include "voxel/filter/components.h"
 #include "voxel/filter/morphology.h"
@@ -34,12 +35,8 @@ constexpr int fine = 4;
 /// The search ends at this number of points, which is a few thousand voxels without a contact.
 constexpr std::size_t most_followed = 200000;
 
-bool is_within(const voxel::Octree& octree, const glm::ivec3& at) {
-  return glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) &&
-         glm::all(glm::lessThan(at, glm::ivec3(octree.universe().side())));
-}
 bool has(const voxel::Octree& octree, const glm::ivec3& at) {
-  return is_within(octree, at) && octree.contains(at);
+  return is_within(at, octree) && octree.contains(at);
 }
 glm::ivec3 beside(const glm::ivec3& at, int neighbour) {
   return at + glm::ivec3(neighbour % 3 - 1, neighbour / 3 % 3 - 1, neighbour / 9 - 1);

@@ -15,7 +15,7 @@
 namespace octotomy::planner::serve {
 namespace {
 
-[[noreturn]] void refuse(const std::string& why) {
+[[noreturn]] void refuse_contours(const std::string& why) {
   throw voxel::Error(voxel::ErrorCode::Input, why);
 }
 
@@ -45,31 +45,31 @@ Json polygons_json(const PlaneContours& polygons, double thin_mm) {
 
 Json trace_contours(Session& session, const Json& said, const Watched&) {
   const Snapshot snapshot = session.snapshot();
-  if (!snapshot.evaluation) refuse("nothing is evaluated yet");
+  if (!snapshot.evaluation) refuse_contours("nothing is evaluated yet");
   const ViewPlane plane{voxel::parse_view(said.at("view")), said.at("position_mm").get<double>()};
   const double thin_mm = number_of(said, "thin_mm").value_or(0.1);
   if (said.contains("object")) {
     const std::string id = said["object"];
     for (const Object& object : snapshot.evaluation->objects) {
       if (object.id != id) continue;
-      if (!object.mesh.within) refuse("'" + id + "' has no surface: see its findings");
+      if (!object.mesh.within) refuse_contours("'" + id + "' has no surface: see its findings");
       const Json polygons = polygons_json(contours_in_plane(object.mesh.within->mesh(), plane), thin_mm);
-      if (polygons.empty()) refuse("the slice does not meet '" + id + "': choose another slice");
+      if (polygons.empty()) refuse_contours("the slice does not meet '" + id + "': choose another slice");
       return {{"polygons_mm", polygons}};
     }
-    refuse("'" + id + "' is not evaluated yet");
+    refuse_contours("'" + id + "' is not evaluated yet");
   }
   const auto& loaded = snapshot.evaluation->loaded;
-  if (loaded.empty()) refuse("no scan is open");
+  if (loaded.empty()) refuse_contours("no scan is open");
   const auto named = loaded.find(said.value("scan", loaded.begin()->first));
-  if (named == loaded.end()) refuse("scan: there is none of that name");
+  if (named == loaded.end()) refuse_contours("scan: there is none of that name");
   const voxel::Scene& scene = named->second->scene();
   const auto seed_mm = point_of(said, "seed_mm");
-  if (!seed_mm) refuse("seed_mm: give a point");
+  if (!seed_mm) refuse_contours("seed_mm: give a point");
   const glm::dvec3 p_voxel = scene.lattice.voxel(*seed_mm);
   if (glm::any(glm::lessThan(p_voxel, glm::dvec3(-0.5))) ||
       glm::any(glm::greaterThan(p_voxel, glm::dvec3(scene.lattice.dims) - 0.5)))
-    refuse("the scan has no sample there: click within it");
+    refuse_contours("the scan has no sample there: click within it");
   const double sample = voxel::interpolate(scene, p_voxel);
   double low = number_of(said, "low").value_or(-std::numeric_limits<double>::infinity()),
          high = number_of(said, "high").value_or(std::numeric_limits<double>::infinity());
@@ -80,8 +80,8 @@ Json trace_contours(Session& session, const Json& said, const Watched&) {
   const PlaneContours region =
       region_around(contours_in_plane(scene, low, high, plane), plane.view.project(*seed_mm));
   if (region.empty())
-    refuse("the sample there is " + plain(std::round(10.0 * sample) / 10.0) +
-           ", which lies outside the window: click within the region, or choose other bounds");
+    refuse_contours("the sample there is " + plain(std::round(10.0 * sample) / 10.0) +
+                    ", which lies outside the window: click within the region, or choose other bounds");
   return {{"polygons_mm", polygons_json(region, thin_mm)}, {"sample", sample}};
 }
 

@@ -278,7 +278,7 @@ void ViewPane::add_objects(Session& session, const Json& said, Drawing& drawing,
   if (moved != nullptr) {
     drawing.of_plan.push_back(moved);
     Json entry = Json::object();
-    if (const Json& asked = said.at("preview"); asked.contains("colour")) entry["colour"] = asked["colour"];
+    if (asked.contains("colour")) entry["colour"] = asked["colour"];
     drawing.add(planner::drawn(*moved, glm::vec3(1.0f)), dragged, entry);
   }
   if (!difference.is_null()) {

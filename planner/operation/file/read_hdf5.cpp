@@ -31,7 +31,6 @@ enum MessageType : std::uint32_t {
   symbols_message = 0x11
 };
 enum Filter : std::uint32_t { deflate_filter = 1, shuffle_filter = 2, checksum_filter = 3 };
-enum class Layout { Compact, Contiguous, Chunked };
 
 [[noreturn]] void refuse_file(const std::string& what) {
   throw std::runtime_error(what);
@@ -74,7 +73,7 @@ struct Hdf5File::Dataset {
   std::size_t element_bytes = 0;
   bool is_big_endian = false;
   std::size_t count = 0;  ///< elements
-  Layout layout = Layout::Contiguous;
+  enum class Layout { Compact, Contiguous, Chunked } layout = Layout::Contiguous;
   std::string_view compact;
   Address at = 0;
   std::uint64_t bytes = 0;
@@ -412,7 +411,7 @@ Hdf5File::Dataset Hdf5File::dataset(const std::string& path) const {
   }
   for (const std::uint32_t needed : {space_message, type_message, layout_message})
     if (!seen.contains(needed)) refuse_file(path + " is no row of values, or is damaged");
-  if (made.layout == Layout::Chunked && (made.chunk_count == 0 || made.chunk_count > most_numbers))
+  if (made.layout == Dataset::Layout::Chunked && (made.chunk_count == 0 || made.chunk_count > most_numbers))
     refuse_file(path + " has chunks of " + std::to_string(made.chunk_count) + " values");
   return made;
 }
@@ -471,7 +470,7 @@ void Hdf5File::take_chunks(Address tree, int levels, const Dataset& from, std::s
 std::string Hdf5File::stored(const Dataset& from, const std::string& path) const {
   const std::size_t needed = from.count * from.element_bytes;
   if (needed == 0) return "";
-  if (from.layout == Layout::Chunked) {
+  if (from.layout == Dataset::Layout::Chunked) {
     if (from.at == undefined) refuse_file(path + " was never written");
     std::string made(needed, '\0');
     if (!from.is_one_chunk) {
@@ -484,9 +483,10 @@ std::string Hdf5File::stored(const Dataset& from, const std::string& path) const
     if (chunk.size() < needed) refuse_file(path + " has fewer values than it states");
     return chunk.substr(0, needed);
   }
-  if (from.layout == Layout::Contiguous && from.at == undefined) refuse_file(path + " was never written");
+  if (from.layout == Dataset::Layout::Contiguous && from.at == undefined)
+    refuse_file(path + " was never written");
   const std::string_view bytes =
-      from.layout == Layout::Compact ? from.compact : part(from.at, from.bytes, "row of values");
+      from.layout == Dataset::Layout::Compact ? from.compact : part(from.at, from.bytes, "row of values");
   if (bytes.size() < needed) refuse_file(path + " has fewer values than it states");
   return std::string(bytes.substr(0, needed));
 }

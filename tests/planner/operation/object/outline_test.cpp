@@ -11,7 +11,7 @@ namespace {
 
 using namespace tests;
 
-Exported written(const ScratchFolder& folder, const std::string& rest) {
+Exported written_outline(const ScratchFolder& folder, const std::string& rest) {
   const Plan plan =
       ball_plan(folder, R"({"id": "o", "do": "outline", "object": "ball", "path": "o.json", )" + rest + "}");
   Timings timings;
@@ -21,7 +21,7 @@ Exported written(const ScratchFolder& folder, const std::string& rest) {
 TEST(OutlineStep, PlanesOfAnyViewCutTheBallInCirclesAtMultiplesOfTheirDistance) {
   const ScratchFolder folder;
   for (const std::string view : {"anterior", "35,15"}) {
-    const Exported made = written(folder, R"("every_mm": 2.4, "view": ")" + view + "\"");
+    const Exported made = written_outline(folder, R"("every_mm": 2.4, "view": ")" + view + "\"");
     ASSERT_TRUE(made.written) << testing::PrintToString(made.findings);
     const voxel::SliceMask mask = read_slices(folder / "o.json");
     ASSERT_EQ(mask.slices.size(), 19u) << "from -19.2 to 19.2, and an empty one at either end";
@@ -39,7 +39,7 @@ TEST(OutlineStep, PlanesOfAnyViewCutTheBallInCirclesAtMultiplesOfTheirDistance) 
 
 TEST(OutlineStep, NamedPlanesAreTheirs) {
   const ScratchFolder folder;
-  const Exported made = written(folder, R"("at_mm": [7, -3], "thin_mm": 0.1)");
+  const Exported made = written_outline(folder, R"("at_mm": [7, -3], "thin_mm": 0.1)");
   ASSERT_TRUE(made.written) << testing::PrintToString(made.findings);
   const voxel::SliceMask mask = read_slices(folder / "o.json");
   ASSERT_EQ(mask.slices.size(), 4u);
@@ -62,7 +62,7 @@ TEST(OutlineStep, PlanesThatCannotBeAreRefusedInALine) {
   expect(R"("at_mm": [1], "every_mm": 3)", "leave 'at_mm' out");
   expect(R"("every_mm": 0)", "every_mm");
   const auto unwritten = [&](const std::string& rest, const std::string& part) {
-    const Exported made = written(folder, rest);
+    const Exported made = written_outline(folder, rest);
     EXPECT_FALSE(made.written);
     EXPECT_NE(testing::PrintToString(made.findings).find(part), std::string::npos)
         << testing::PrintToString(made.findings);
