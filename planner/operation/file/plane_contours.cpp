@@ -53,11 +53,11 @@ float depth_at(const voxel::Scene& scene, const glm::dvec3& p_mm, double low, do
   const double sample = voxel::interpolate(scene, glm::clamp(at, glm::dvec3(0.0), last));
   if (std::isnan(sample)) return static_cast<float>(-most);
   const auto depth = static_cast<float>(std::clamp(std::min(sample - low, high - sample), -most, most));
-  // Samples speak for half a voxel beyond the outermost ones: there the depth is reversed, so that an object ends half
-  // way to the next point.
+  // Samples stand for half a voxel beyond the outermost ones. Beyond that the depth is reversed, so that an object
+  // ends half way to the next point; a depth of 0, as of labels at their own value, would reach on.
   const bool is_outside =
       glm::any(glm::lessThan(at, glm::dvec3(-0.5))) || glm::any(glm::greaterThan(at, last + 0.5));
-  return is_outside ? -std::abs(depth) : depth;
+  return is_outside ? std::min(-std::abs(depth), -1e-6f) : depth;
 }
 
 PlaneContours points_of(std::vector<brep::Contour> contours) {

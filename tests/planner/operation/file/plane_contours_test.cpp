@@ -54,6 +54,23 @@ TEST(PlaneContours, APlaneThatMissesHasNone) {
   EXPECT_TRUE(contours_in_plane(ball, 0.0, unbounded, {voxel::parse_view("left"), 250.0}).empty());
 }
 
+TEST(PlaneContours, LabelsAtTheirOwnValueEndWithTheScan) {
+  voxel::Scene labels = tests::ball_scene(20.0, 16);
+  labels.samples = voxel::Int16Samples(16 * 16 * 16, 1);
+  const double reach_mm = labels.lattice.spacing_mm().x * 8.0;
+  for (const char* view : {"anterior", "35,15"}) {
+    const voxel::View looking = voxel::parse_view(view);
+    const glm::dvec3 middle_mm = labels.lattice.lps_mm(glm::dvec3(7.5));
+    const ViewPlane plane{looking, glm::dot(middle_mm, looking.look)};
+    const PlaneContours found = contours_in_plane(labels, 1.0, unbounded, plane);
+    ASSERT_EQ(found.size(), 1u) << view;
+    for (const glm::dvec2& p : found[0]) {
+      const glm::dvec3 apart_mm = glm::abs(plane.lps_mm(p) - middle_mm);
+      EXPECT_LE(std::max({apart_mm.x, apart_mm.y, apart_mm.z}), reach_mm + 1e-6) << view;
+    }
+  }
+}
+
 TEST(PlaneContours, ARegionIsTheInnermostOutlineWithItsHoles) {
   const PlaneContours all{square(20.0), square(10.0), square(5.0), square(3.0, 50.0), square(2.0, 15.0)};
   const auto sizes = [&](const glm::dvec2& p) {
