@@ -2,13 +2,13 @@
 // A mesh of any program, repaired in the requested ways, as an object. Its voxels are digitised from it, so
 // that it has no certificate of its own.
 #include "brep/shape/repair.h"
-#include "brep/shape/repair_effect.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "brep/io/write_mesh.h"
 #include "brep/mesh/health.h"
+#include "brep/shape/repair_effect.h"
 #include "planner/operation/file/mesh_file.h"
 #include "planner/operation/file/mesh_in.h"
 #include "planner/operation/file/outputs.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "brep/shape/repair.h"
-#include "brep/shape/repair_effect.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -10,6 +9,7 @@
 #include "brep/io/read_mesh.h"
 #include "brep/mesh/health.h"
 #include "brep/mesh/measure.h"
+#include "brep/shape/repair_effect.h"
 #include "tests/brep/shapes.h"
 #include "tests/reference_data.h"
 
