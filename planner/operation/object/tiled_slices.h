@@ -4,7 +4,7 @@
 #include <optional>
 #include <stop_token>
 
-#include "brep/contour/tile.h"
+#include "brep/contour/tile_sections.h"
 #include "brep/mesh/solid.h"
 #include "planner/operation/table/object.h"
 #include "verify/witness/reading.h"

@@ -109,7 +109,7 @@ TEST(BrushStep, RefusesWhatCannotBeDrawn) {
   expect_said(refused(R"("points_mm": [[0, 0, 0]], "shape": "slab", "normal": [0, 0, 1])"), "thickness_mm");
   expect_said(refused(R"("points_mm": [[0, 0, 0]], "shape": "slab", "normal": [0, 0, 0], "thickness_mm": 2)"),
               "normal");
-  expect_said(refused(R"("points_mm": [[0, 0, 0]], "thickness_mm": 2)"), "is of a slab");
+  expect_said(refused(R"("points_mm": [[0, 0, 0]], "thickness_mm": 2)"), "set 'shape' to \"slab\"");
   expect_said(refused(R"("points_mm": [[0, 0, 0], [0, 0, 0.0001]])"), "0.001 mm apart");
   expect_said(refused(R"("points_mm": [[0, 0, 1e300]])"), "1000 m from the origin");
 }

@@ -235,13 +235,13 @@ TEST(SegmentStep, WhatCannotBeMeantIsRefused) {
   const auto refusal = [&](const std::string& rest) {
     return ball_refusal(folder, R"({"id": "s", "do": "segment", "scan": "ct")" + rest + "}");
   };
-  EXPECT_NE(refusal("").find("needs one of"), std::string::npos);
-  EXPECT_NE(refusal(R"(, "window": "0:", "label": 2)").find("needs one of"), std::string::npos);
+  EXPECT_NE(refusal("").find("exactly one of"), std::string::npos);
+  EXPECT_NE(refusal(R"(, "window": "0:", "label": 2)").find("exactly one of"), std::string::npos);
   EXPECT_NE(refusal(R"(, "tolerance": 3)").find("seeds_mm"), std::string::npos);
   EXPECT_NE(refusal(R"(, "otsu": 2, "class": 3)").find("one of the classes"), std::string::npos);
   EXPECT_NE(refusal(R"(, "clusters": 3, "class": 4)").find("one of the classes"), std::string::npos);
   EXPECT_NE(refusal(R"(, "clusters": 9)").find("8"), std::string::npos);
-  EXPECT_NE(refusal(R"(, "clusters": 3, "otsu": 3)").find("needs one of"), std::string::npos);
+  EXPECT_NE(refusal(R"(, "clusters": 3, "otsu": 3)").find("exactly one of"), std::string::npos);
   EXPECT_NE(refusal(R"(, "window": "0:", "running_mean": true)").find("'tolerance'"), std::string::npos);
   EXPECT_NE(refusal(R"(, "window": "bonne")").find("did you mean 'bone'"), std::string::npos);
   EXPECT_NE(refusal(R"(, "window": "0:", "neighbours": 7)").find("18"), std::string::npos);
