@@ -99,7 +99,7 @@ TEST(MotionOfPoints, WhatLeavesTheTurnOpenIsRefused) {
     return "";
   };
   EXPECT_NE(refusal({}).find("no point"), std::string::npos);
-  EXPECT_NE(refusal({{"a", {0, 0, 0}, {1, 0, 0}}, {"b", {0, 0, 0}, {2, 0, 0}}}).find("one place"),
+  EXPECT_NE(refusal({{"a", {0, 0, 0}, {1, 0, 0}}, {"b", {0, 0, 0}, {2, 0, 0}}}).find("coincide"),
             std::string::npos);
   EXPECT_NE(refusal({{"a", {0, 0, 0}, {9, 0, 0}}, {"b", {9, 0, 0}, {0, 0, 0}}}).find("third point"),
             std::string::npos);
