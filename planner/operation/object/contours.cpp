@@ -28,7 +28,7 @@ struct Contours {
   std::optional<double> tolerance;
   double least_area_mm2 = 0.0, thin_mm = 0.0, by_mm = 0.0;
   std::optional<int> harmonics;
-  // Of the command only.
+  // Options of the command line only.
   std::filesystem::path edits, codes;
   double code_spacing_mm = 1.0;
 
@@ -49,7 +49,8 @@ std::vector<SliceWindow> own_windows(const Contours& contours) {
   return own;
 }
 
-/// Says why options do not go together, by the names that `name` has for them; empty where they do.
+/// The reason why options contradict each other, with the names that `name` returns for them; empty if they
+/// do not.
 std::string conflict_of(const Contours& contours, const std::function<std::string(const char*)>& name) {
   if (!contours.seeds_mm.empty() && has_windows(contours))
     return name("seeds_mm") + ": choose the thresholds themselves: leave " + name("window") + " out";
@@ -58,12 +59,12 @@ std::string conflict_of(const Contours& contours, const std::function<std::strin
   if (contours.tolerance && contours.around_mm.empty())
     return name("tolerance") + ": is of a region around a seed: add " + name("around_mm");
   if (contours.tolerance && has_windows(contours))
-    return name("tolerance") + ": chooses the window itself: leave " + name("window") + " out";
+    return name("tolerance") + ": selects the samples in place of a window: leave " + name("window") + " out";
   if (!contours.around_mm.empty() && !contours.slice_windows.empty())
-    return name("slice_windows") + ": are of whole slices: leave " + name("around_mm") + " out";
+    return name("slice_windows") + ": cannot be combined with regions around pixels: leave " + name("around_mm") + " out";
   if (!contours.around_mm.empty() && !contours.window && !contours.tolerance)
     return name("around_mm") + ": add " + name("window") + " or " + name("tolerance") +
-           ", which say what belongs to the region";
+           ", which bounds the samples of the region";
   return "";
 }
 

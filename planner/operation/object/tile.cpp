@@ -68,7 +68,7 @@ voxel::SliceMask drawn_in(const Tile& tile, const std::filesystem::path& folder,
   return mask;
 }
 
-/// The contours that no object has: those that cross themselves or each other.
+/// Refuses contours that bound no area of an object: those that cross themselves or each other.
 void need_uncrossed(const Tile& tile, const FieldLocation& place) {
   for (std::size_t i = 0; i < tile.contours.size(); ++i) {
     const FieldLocation at = place.at("contours[" + std::to_string(i) + "]");
