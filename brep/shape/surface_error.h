@@ -10,7 +10,7 @@
 
 namespace octotomy::brep {
 
-/// Where two surfaces lie further apart than a limit.
+/// The places at which two surfaces are further apart than a limit.
 struct FarPlaces {
   double largest_mm = 0.0;                                ///< over all samples, both ways
   std::vector<std::uint32_t> given_points, coarse_faces;  ///< ascending; empty: the limit holds

@@ -159,7 +159,7 @@ class GreySamples {
     return inside(-infinity, infinity);
   }
 
-  /// From the first call on whose window contains the background, samples beyond the scan are not measured.
+  /// After the first call whose window contains the background, samples beyond the scan are not measured.
   InsideBits inside(double low, double high) {
     InsideBits bits(lattice_.dims, 16);
     const std::optional<voxel::Window16> window = voxel::window16(low, high);

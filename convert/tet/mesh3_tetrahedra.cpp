@@ -169,7 +169,8 @@ struct Given {
   brep::SurfaceTree tree;
 };
 
-/// How far each node of the surface may move: as far as a facet's middle may lie from the surface there.
+/// The distance by which each node of the surface may move: the largest allowed distance between a facet's
+/// middle and the surface there.
 std::vector<double> play_mm(const Given& given, const std::vector<brep::Foot>& feet) {
   std::vector<double> play;
   for (const brep::Foot& foot : feet) {

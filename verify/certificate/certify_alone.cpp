@@ -98,7 +98,7 @@ Certificate certify_alone(const voxel::Octree& octree, const AloneInputs& inputs
                          volume_mm3};
     certificate.reasons.push_back(text_of(*certificate.worst));
   }
-  // Where either side is allowed, any answer passes.
+  // At voxels where the witness allows both sides, any answer passes.
   certificate.limit = DetectionLimit{voxel_mm3 + mm3(count.on_surface + count.unknown), std::nullopt};
   const std::string alone = "Not independent: the voxel kernel alone made this object";
   lower(certificate, Verdict::Warn,

@@ -27,7 +27,7 @@ static_assert(bridge_voxels == 3);
 /// is connected to the voxels of both. Safe to call from several threads.
 class Necks {
  public:
-  /// Both answers, the mesh's as the voxels whose centre lies inside it, and a witness of the whole object
+  /// The two answers, the mesh's as the voxels whose centre lies inside it, and a witness of the whole object
   /// from which the parts were chosen.
   Necks(voxel::Octree octree, voxel::Octree digitised, Witness whole);
   /// The same; the mesh is digitised at the first use. `decided_mm` are the places of necks that the plan

@@ -420,7 +420,7 @@ class SeriesAssembler {
     return members;
   }
 
-  /// Of several stacks at one place, keeps the largest.
+  /// If several stacks lie at one place, keeps the largest.
   void keep_one_stack(std::vector<DicomSlice>& members) {
     std::vector<DicomSubseries> stacks = parted_at_one_place(std::move(members));
     members = std::move(stacks.front().slices);

@@ -102,7 +102,8 @@ void read_ome(const StoredImage& image, StatedPicture& stated) {
   if (image.orientation >= 5) std::swap(stated.size_mm[0], stated.size_mm[1]);
 }
 
-/// Print resolutions are default values of programs and say nothing about a pixel's size.
+/// Whether a resolution is one for print. Programs write these as defaults, so they are no information about
+/// a pixel's size.
 bool is_of_print(double pixels_per_mm) {
   constexpr std::array<double, 6> per_inch{72.0, 96.0, 100.0, 150.0, 300.0, 600.0};
   return std::any_of(per_inch.begin(), per_inch.end(),

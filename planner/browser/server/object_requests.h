@@ -42,7 +42,7 @@ Json outcome(Session& session, const Json& said, const Watched& watched);
 /// commands that add it to a plan.
 Json command_of_step(Session& session, const Json& said, const Watched& watched);
 
-/// Where the open plan's exports and reports are written: "NAME files" beside it.
+/// The folder of the open plan's exports and reports: "NAME files" beside the plan.
 std::filesystem::path files_folder(const Session& session);
 
 }  // namespace octotomy::planner::serve

@@ -85,7 +85,8 @@ class Session {
     std::shared_ptr<const Evaluation> evaluation;
     static constexpr const char* moved = "dragged_piece";
     static constexpr const char* overlap = "dragged_overlap";
-    /// What only the object holds, only the other one, and both.
+    /// Names of the volumes that only the object contains, that only the other one contains, and that both
+    /// contain.
     static constexpr const char* only_moved = "dragged_only_moved";
     static constexpr const char* only_other = "dragged_only_other";
     static constexpr const char* common = "dragged_common";
@@ -133,8 +134,8 @@ class Session {
   std::optional<std::pair<std::shared_ptr<const voxel::Scene>, voxel::GreyOctree>> alone_;
 
   std::mutex preview_mutex_;
-  /// By the text of their plans, newest last. Cached because the panes of one window request the same
-  /// preview.
+  /// Previews by the text of their plans, newest last. They are cached because the panes of one window
+  /// request the same preview.
   std::deque<std::pair<std::string, Preview>> previews_;
 };
 

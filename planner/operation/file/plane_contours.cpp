@@ -53,8 +53,8 @@ float depth_at(const voxel::Scene& scene, const glm::dvec3& p_mm, double low, do
   const double sample = voxel::interpolate(scene, glm::clamp(at, glm::dvec3(0.0), last));
   if (std::isnan(sample)) return static_cast<float>(-most);
   const auto depth = static_cast<float>(std::clamp(std::min(sample - low, high - sample), -most, most));
-  // Samples speak for half a voxel beyond the outermost ones: there the depth is reversed, so that an object ends half
-  // way to the next point.
+  // The outermost samples represent another half voxel beyond them. There the depth is reversed, so that an
+  // object ends half way to the next point.
   const bool is_outside =
       glm::any(glm::lessThan(at, glm::dvec3(-0.5))) || glm::any(glm::greaterThan(at, last + 0.5));
   return is_outside ? -std::abs(depth) : depth;

@@ -54,7 +54,7 @@ voxel::SliceMask refined(const voxel::SliceMask& mask, const Refinement& refinem
 /// Throws std::runtime_error naming the file, the edit and what is wrong, a contour that crosses itself too.
 voxel::SliceMask edited(const voxel::SliceMask& mask, const std::filesystem::path& edits);
 
-/// As read_slices() in region_file.h reads it.
+/// The mask in the format that read_slices() in region_file.h reads.
 nlohmann::ordered_json to_json(const voxel::SliceMask& mask);
 
 /// Freeman's codes of the contours on samples `spacing_mm` apart:

@@ -15,9 +15,9 @@
 // function. FileBench::step distinguishes them: names are paths of files, or objects of the plan.
 namespace octotomy::planner {
 
-/// Whether a name stands for an octree: an .octree file, or any object of the plan.
+/// Whether a name refers to an octree: an .octree file, or any object of the plan.
 bool names_octree(const std::string& name, const FileBench& bench);
-/// The octree that a name stands for; "read" in the timings. Throws as read_timed().
+/// The octree with a name; "read" in the timings. Throws as read_timed().
 voxel::OctreeFile octree_named(const std::string& name, const FileBench& bench);
 /// The triangles that a name stands for: those of a mesh file, or of an object's mesh within the universe.
 /// Throws as read_mesh_in(), and std::runtime_error if the object has no mesh.

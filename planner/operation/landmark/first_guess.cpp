@@ -179,7 +179,7 @@ double scatter(const std::string& name, const glm::dvec3& first_mm, const std::v
   return most;
 }
 
-/// The same bone from a higher threshold on; none without samples.
+/// The bone from a higher threshold on; none if the object has no samples.
 std::optional<voxel::DrawnObject> with_higher_threshold(const voxel::DrawnObject& bone) {
   if (!bone.grey) return std::nullopt;
   constexpr double zero = -150.0;

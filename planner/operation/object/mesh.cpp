@@ -43,7 +43,7 @@ bool is_contour_file(const Meshed& asked) {
   return std::filesystem::path(asked.file.name).extension() == ".json";
 }
 
-/// The surface that is made: contours have no other one than theirs.
+/// The kind of surface that is made. Contours can only be tiled.
 std::string surface_of(const Meshed& asked) {
   return is_contour_file(asked) ? "contours" : asked.surface;
 }
