@@ -218,7 +218,7 @@ void PictureStatements::report(Scene& scene, bool is_stated) const {
       warn("picture_spacing", "the pictures state " + print(what[static_cast<std::size_t>(axis)], *size) +
                                   print(", but --spacing states %.6g mm, which is used", spacing_mm[axis]));
   if (differs_)
-    warn("picture_spacing", "the pictures state different sizes of their pixels: one is taken for all");
+    warn("picture_spacing", "the pictures state different sizes of their pixels: one size is used for all");
   if (!first_.further_axis.empty())
     warn("picture_axes",
          "the pictures state " + first_.further_axis + ", which are read as slices: export one volume");

@@ -373,7 +373,7 @@ class NrrdReader {
     const std::optional<std::string> low = text_.field("oldmin"), high = text_.field("oldmax");
     if (low || high)
       header_.audit.push_back({"old_range", Verdict::Warn,
-                               "the file's numbers stand for values from " + low.value_or("?") + " to " +
+                               "the file's numbers represent values from " + low.value_or("?") + " to " +
                                    high.value_or("?") +
                                    " before they were quantised (old min, old max): the numbers "
                                    "were taken as they are"});

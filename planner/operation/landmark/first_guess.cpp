@@ -327,7 +327,7 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
     if (is_at_scan_end(bone, p_mm))
       missing[name] = "the scan ends there";
     else if (first.doubt_mm[name] > most_within_mm)
-      missing[name] = "the bone is so flat there that its extremal point is not known to 15 mm";
+      missing[name] = "the bone is so flat there that its extremal point is uncertain by more than 15 mm";
     else if (!(within_mm <= most_within_mm))
       missing[name] = "a slightly different position of the head moves it far or loses it";
     else

@@ -109,7 +109,7 @@ constexpr auto members_of(const FitDetails&) {
 /// The resulting motion, with its results for the report.
 struct Laid {
   glm::dmat4 onto_from_object{1.0};
-  std::optional<double> rms_mm;  ///< none of scans, which have no points to be apart
+  std::optional<double> rms_mm;  ///< none for scans, which have no points to compare
   FitDetails details = {};
   std::vector<std::string> findings = {};
 };

@@ -215,34 +215,34 @@ Operation contours_operation() {
   return Describe<Contours>(
              "contours", "Writes contours on a scan's slices: followed, thinned, smoothed, offset, edited.",
              Makes::File)
-      .takes(field("scan", &Contours::scan, "The scan; of the verb also a .json of regions on slices.")
+      .takes(field("scan", &Contours::scan, "The scan; for the verb also a .json of regions on slices.")
                  .required()
                  .positional("file"))
       .takes(field("path", &Contours::out, "A .json of regions on slices, as masks read it.")
                  .required()
                  .called("out"))
-      .takes(field("window", &Contours::window, "Of a scan: LOW:HIGH or LOW: in sample units, or a tissue."))
+      .takes(field("window", &Contours::window, "For a scan: LOW:HIGH or LOW: in sample units, or a tissue."))
       .takes(
           field(
               "seeds_mm", &Contours::seeds_mm,
-              "Of a scan, in place of a window: pixels on edges, LPS. Each gives its slice the threshold of "
-              "its sample, and the contour nearest to it.")
+              "For a scan, in place of a window: pixels on edges, LPS. A pixel's sample is the threshold of its "
+              "slice, whose contour nearest to the pixel is written.")
               .repeated()
               .called("seed"))
       .takes(
           field("slice_windows", &Contours::slice_windows,
-                "Of a scan: windows of slices of their own, POSITION=LOW:HIGH, the position in mm along the "
-                "contours' view. Other slices have the window, or none.")
+                "For a scan: separate windows of single slices, POSITION=LOW:HIGH, the position in mm along the "
+                "contours' view. Other slices use 'window' if it is set; otherwise they have no contours.")
               .repeated()
               .called("slice-window"))
       .takes(
           field("around_mm", &Contours::around_mm,
-                "Of a scan: pixels within regions, LPS. Each leaves of its slice the connected region of the "
-                "window in which it lies, with its holes.")
+                "For a scan: pixels within regions, LPS. Each keeps in its slice the connected region of the "
+                "window around it, with the region's holes.")
               .repeated()
               .called("around"))
       .takes(field("tolerance", &Contours::tolerance,
-                   "Of regions around pixels, in place of a window: how far samples may be from the pixel's.")
+                   "For regions around pixels, in place of a window: the largest difference from the pixel's sample.")
                  .from(0.0))
       .takes(field("least_area_mm2", &Contours::least_area_mm2, "Leaves contours out that enclose less.")
                  .from(0.0)
@@ -253,15 +253,15 @@ Operation contours_operation() {
       .takes(field("harmonics", &Contours::harmonics, "Number of Fourier harmonics that smooth each contour.")
                  .from(1)
                  .to(10000))
-      .takes(field("by_mm", &Contours::by_mm, "Moves them out by this; in where it is below zero.")
+      .takes(field("by_mm", &Contours::by_mm, "Moves contours outward by this; inward if it is below zero.")
                  .from(-1e6)
                  .to(1e6))
       .verb_takes(
-          field("edits", &Contours::edits, "Edits by hand, made after all else, in order: a .json file.")
+          field("edits", &Contours::edits, "A .json file of manual edits, which are made last, in order.")
               .a_file())
       .verb_takes(field("codes", &Contours::codes, "Writes Freeman's chain codes too, to this .json."))
       .verb_takes(
-          field("code_spacing_mm", &Contours::code_spacing_mm, "Of the samples that the codes step on.")
+          field("code_spacing_mm", &Contours::code_spacing_mm, "The spacing of the samples on which chain codes step.")
               .greater_than(0.0))
       .reads_scans()
       .example(

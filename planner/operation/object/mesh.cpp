@@ -133,7 +133,7 @@ Made of_octree(const FileBench& bench, const Meshed& asked, std::vector<std::str
   const auto& octree = std::get<voxel::Octree>(file.tree);
   if (cubes) return cuberille_of(octree, asked);
   findings.push_back(
-      "surface: the octree knows voxels only as inside or outside, so that the isosurface runs half way "
+      "surface: the octree stores voxels only as inside or outside, so that the isosurface runs half way "
       "between "
       "them in steps and its area is too large, on a ball by 9 %: a grey or partial octree has a smooth one");
   return convert::isosurface(octree.universe(), octree);

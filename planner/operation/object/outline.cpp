@@ -226,7 +226,7 @@ Operation outline_operation() {
                  .required()
                  .called("out"))
       .verb_takes(
-          field("window", &Outline::window, "Of samples: LOW:HIGH or LOW: in their unit, or a tissue."))
+          field("window", &Outline::window, "For samples: LOW:HIGH or LOW: in their unit, or a tissue."))
       .reads_scans()
       .example(
           R"({"id": "lines", "do": "outline", "object": "skull", "view": "left", "every_mm": 5, "path": "skull.json"})")

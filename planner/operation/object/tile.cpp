@@ -176,14 +176,14 @@ Operation tile_operation() {
                 "a DICOM structure set.")
               .a_file())
       .takes(
-          field("structure", &Tile::structure, "Of a structure set: the name or ROI number of the structure.")
+          field("structure", &Tile::structure, "For a structure set: the name or ROI number of the structure.")
               .read_if<Tile>([](const Tile& tile) { return tile.has_file(); },
                              "is about a structure set: add the set as 'slices'"))
       .takes(
           field(
               "between", &Tile::between,
-              "Between two slices: shape_based interpolates the distances to both outlines; nearest goes on "
-              "straight, half way from each.")
+              "Between two slices: shape_based interpolates the distances to both outlines; nearest extends "
+              "either outline unchanged to half way.")
               .one_of({"shape_based", "nearest"})
               .read_if<Tile>([](const Tile& tile) { return !tile.has_file(); },
                              "is the file's: leave it out"))
