@@ -236,7 +236,8 @@ std::optional<std::string> lost_details(Try& t, const Given& given, const std::v
   if (static_cast<double>(gone) <= lost_share() * static_cast<double>(triangles.size())) return std::nullopt;
   const glm::dvec3& first_mm = given.surface.points_mm[t.lost.front()];
   return "lost details: " + std::to_string(gone) + " of " + std::to_string(triangles.size()) +
-         " triangles of the given surface are further from the new surface than the size of a facet, the first at " +
+         " triangles of the given surface are further from the new surface than the size of a facet, the "
+         "first at " +
          rounded(first_mm) + " mm";
 }
 

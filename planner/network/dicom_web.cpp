@@ -195,8 +195,7 @@ void store_by_web(const WebArchive& archive, const fs::path& path, const std::st
   request.post(body.bytes(), [&](char* to, std::size_t count) { return body.read(to, count); });
   std::string said;
   const long status = request.run([&](const std::string&, std::string_view bytes) {
-    if (said.size() + bytes.size() > most_answer)
-      throw PeerError(archive.url + ": its answer exceeds 16 MB");
+    if (said.size() + bytes.size() > most_answer) throw PeerError(archive.url + ": its answer exceeds 16 MB");
     said.append(bytes);
   });
   // A response with the tag 00081197 lists instances that were not stored, with the reason (PS3.18, I.2).

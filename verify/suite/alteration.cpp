@@ -198,8 +198,8 @@ std::vector<Alteration> altered_block(const ScanToAlter& from, int voxels, int c
     const Alterations alterations(subject);
     if (!alterations.is_empty()) return alterations.drawn(count, chance);
   }
-  throw voxel::InvalidInput(from.name + ": no block of the scan contains an object from " + std::to_string(from.low) +
-                            " on: alter another scan");
+  throw voxel::InvalidInput(from.name + ": no block of the scan contains an object from " +
+                            std::to_string(from.low) + " on: alter another scan");
 }
 
 }  // namespace

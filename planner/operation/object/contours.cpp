@@ -61,7 +61,8 @@ std::string conflict_of(const Contours& contours, const std::function<std::strin
   if (contours.tolerance && has_windows(contours))
     return name("tolerance") + ": selects the samples in place of a window: leave " + name("window") + " out";
   if (!contours.around_mm.empty() && !contours.slice_windows.empty())
-    return name("slice_windows") + ": cannot be combined with regions around pixels: leave " + name("around_mm") + " out";
+    return name("slice_windows") + ": cannot be combined with regions around pixels: leave " +
+           name("around_mm") + " out";
   if (!contours.around_mm.empty() && !contours.window && !contours.tolerance)
     return name("around_mm") + ": add " + name("window") + " or " + name("tolerance") +
            ", which bounds the samples of the region";
@@ -222,19 +223,18 @@ Operation contours_operation() {
                  .required()
                  .called("out"))
       .takes(field("window", &Contours::window, "For a scan: LOW:HIGH or LOW: in sample units, or a tissue."))
-      .takes(
-          field(
-              "seeds_mm", &Contours::seeds_mm,
-              "For a scan, in place of a window: pixels on edges, LPS. A pixel's sample is the threshold of its "
-              "slice, whose contour nearest to the pixel is written.")
-              .repeated()
-              .called("seed"))
-      .takes(
-          field("slice_windows", &Contours::slice_windows,
-                "For a scan: separate windows of single slices, POSITION=LOW:HIGH, the position in mm along the "
-                "contours' view. Other slices use 'window' if it is set; otherwise they have no contours.")
-              .repeated()
-              .called("slice-window"))
+      .takes(field("seeds_mm", &Contours::seeds_mm,
+                   "For a scan, in place of a window: pixels on edges, LPS. A pixel's sample is the "
+                   "threshold of its "
+                   "slice, whose contour nearest to the pixel is written.")
+                 .repeated()
+                 .called("seed"))
+      .takes(field("slice_windows", &Contours::slice_windows,
+                   "For a scan: separate windows of single slices, POSITION=LOW:HIGH, the position in mm "
+                   "along the "
+                   "contours' view. Other slices use 'window' if it is set; otherwise they have no contours.")
+                 .repeated()
+                 .called("slice-window"))
       .takes(
           field("around_mm", &Contours::around_mm,
                 "For a scan: pixels within regions, LPS. Each keeps in its slice the connected region of the "
@@ -242,7 +242,8 @@ Operation contours_operation() {
               .repeated()
               .called("around"))
       .takes(field("tolerance", &Contours::tolerance,
-                   "For regions around pixels, in place of a window: the largest difference from the pixel's sample.")
+                   "For regions around pixels, in place of a window: the largest difference from the pixel's "
+                   "sample.")
                  .from(0.0))
       .takes(field("least_area_mm2", &Contours::least_area_mm2, "Leaves contours out that enclose less.")
                  .from(0.0)
@@ -260,9 +261,9 @@ Operation contours_operation() {
           field("edits", &Contours::edits, "A .json file of manual edits, which are made last, in order.")
               .a_file())
       .verb_takes(field("codes", &Contours::codes, "Writes Freeman's chain codes too, to this .json."))
-      .verb_takes(
-          field("code_spacing_mm", &Contours::code_spacing_mm, "The spacing of the samples on which chain codes step.")
-              .greater_than(0.0))
+      .verb_takes(field("code_spacing_mm", &Contours::code_spacing_mm,
+                        "The spacing of the samples on which chain codes step.")
+                      .greater_than(0.0))
       .reads_scans()
       .example(
           R"({"id": "lines", "do": "contours", "scan": "ct", "path": "bone.json",

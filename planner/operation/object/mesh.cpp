@@ -229,10 +229,11 @@ FileAnswer on_files(const Meshed& asked, const FileBench& bench) {
 
 Operation mesh_operation() {
   return Describe<Meshed>("mesh", "Makes the surface of a scan's window or of an octree.", Makes::File)
-      .takes(field("object", &Meshed::file,
-                   "The object; on the command line a scan, an .octree file, or a .json of regions on slices.")
-                 .required()
-                 .positional("file"))
+      .takes(
+          field("object", &Meshed::file,
+                "The object; on the command line a scan, an .octree file, or a .json of regions on slices.")
+              .required()
+              .positional("file"))
       .verb_takes(field("window", &Meshed::window, "LOW:HIGH or LOW: in sample units, or a tissue."))
       .takes(field("surface", &Meshed::surface,
                    "isosurface: where samples or shares cross the bound; cuberille: the voxels' own faces; "

@@ -175,10 +175,10 @@ Operation tile_operation() {
                 "In place of contours: a .json of regions on slices, as the operation contours writes it, or "
                 "a DICOM structure set.")
               .a_file())
-      .takes(
-          field("structure", &Tile::structure, "For a structure set: the name or ROI number of the structure.")
-              .read_if<Tile>([](const Tile& tile) { return tile.has_file(); },
-                             "is about a structure set: add the set as 'slices'"))
+      .takes(field("structure", &Tile::structure,
+                   "For a structure set: the name or ROI number of the structure.")
+                 .read_if<Tile>([](const Tile& tile) { return tile.has_file(); },
+                                "is about a structure set: add the set as 'slices'"))
       .takes(
           field(
               "between", &Tile::between,
