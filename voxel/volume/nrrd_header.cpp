@@ -404,8 +404,9 @@ class NrrdReader {
     samples.stored.big_endian = endian && lower_case(*endian) == "big";
     const bool matters = samples.encoding != SampleFiles::Encoding::Text && bytes_of(samples.stored.type) > 1;
     if (!endian && matters)
-      header_.audit.push_back({"byte_order", Verdict::Warn,
-                               "the file does not state the order of its bytes (endian): little is assumed"});
+      header_.audit.push_back(
+          {"byte_order", Verdict::Warn,
+           "the file does not state the order of its bytes (endian): little-endian is assumed"});
   }
 
   void take_skips() {

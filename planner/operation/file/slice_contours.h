@@ -26,9 +26,9 @@ struct SliceWindow {
 /// Reads POSITION=WINDOW: "30=250:". Throws std::runtime_error with an example.
 SliceWindow parse_slice_window(const std::string& text);
 
-/// The same, where the slice at each of these positions has its own window; `window` is that of the others, which have
-/// no contours without it. Throws std::runtime_error if no slice is within half a slice's distance of a position, or
-/// two positions are of one slice.
+/// Follows contours with separate windows for the slices at these positions; `window` is that of the others,
+/// which have no contours without it. Throws std::runtime_error if no slice is within half a slice's distance
+/// of a position, or two positions are of one slice.
 voxel::SliceMask slice_contours(const voxel::Scene& scene, const std::optional<SampleWindow>& window,
                                 const std::vector<SliceWindow>& own);
 

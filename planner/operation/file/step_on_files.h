@@ -29,8 +29,8 @@ void write_by_verb(const std::string& object, const std::filesystem::path& path,
                    const std::function<FileAnswer(const FileBench& bench)>& run, const AnswerBench& bench,
                    Exported& made);
 
-/// The same as the `write` of an operation whose value has its objects in `Value::inputs()` and its output in
-/// `Value::out`.
+/// Runs `on_files` as the `write` of an operation whose value has its objects in `Value::inputs()` and its
+/// output in `Value::out`.
 template <typename Value, FileAnswer (*on_files)(const Value&, const FileBench&)>
 void write_step(const Value& asked, const AnswerBench& bench, Exported& made) {
   const std::vector<std::string> objects = asked.inputs();
