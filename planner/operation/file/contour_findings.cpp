@@ -252,7 +252,7 @@ std::optional<std::string> slices_without_contours(const voxel::SliceMask& mask,
     const auto &below = mask.slices[i - 1], &above = mask.slices[i];
     if (below.polygons_mm.empty() || above.polygons_mm.empty()) continue;
     const double apart_mm = above.position_mm - below.position_mm;
-    // Two slices or more: one left out now and then is a habit of drawing.
+    // Reports gaps of two missing slices or more, because people often leave out a single slice.
     if (apart_mm < 2.5 * slice_mm) continue;
     ++gaps;
     if (apart_mm <= widest_mm) continue;
