@@ -8,7 +8,7 @@
 
 namespace octotomy::tests {
 
-/// All of a file; empty where it cannot be read.
+/// All bytes of a file; empty if it cannot be read.
 inline std::string bytes_of(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};

@@ -24,7 +24,7 @@ inline std::vector<std::string> page_rows(const std::filesystem::path& page, con
   return rows;
 }
 
-/// Prints rows that a test has found, and fails where the page of the manual does not hold the same ones.
+/// Prints rows that a test has computed, and fails if the page of the manual does not contain the same rows.
 inline void expect_on_page(const std::vector<std::string>& rows, const std::filesystem::path& page,
                            const std::string& first) {
   for (const std::string& row : rows) std::printf("%s\n", row.c_str());

@@ -18,7 +18,7 @@ struct CommandAnswer {
   std::string errors;
 };
 
-/// Runs a shell's command line to its end; `scratch` is a folder for what it says on standard error.
+/// Runs a shell's command line to its end; `scratch` is a folder for its output on standard error.
 inline CommandAnswer run_command(const std::string& command, const std::filesystem::path& scratch) {
   const std::filesystem::path errors = scratch / "stderr.txt";
   std::FILE* pipe = ::popen((command + " 2>'" + errors.string() + "'").c_str(), "r");
@@ -51,6 +51,6 @@ inline bool has_program(const std::string& name) {
   if (!octotomy::tests::has_program(name))    \
   GTEST_SKIP() << "'" << (name) << "' is not installed (package " << (package) << ")"
 
-/// Skips the test where Python lacks a package: tests/planner/cli/*.py then answer with status 77.
+/// Skips the test if Python lacks a package: tests/planner/cli/*.py then end with status 77.
 #define OCTOTOMY_NEEDS_PYTHON(answer) \
   if ((answer).status == 77) GTEST_SKIP() << "/usr/bin/python3: " << (answer).errors

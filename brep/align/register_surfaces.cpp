@@ -519,7 +519,7 @@ void tell_trust(SurfaceFit& fit) {
         "WARN registration: " + std::to_string(trust.equals.size()) +
         (trust.equals.size() == 1 ? " other motion matches" : " other motions match") +
         " as much of the surface, within " + short_text(trust.tolerance_mm) +
-        " mm: the shape is symmetric, and which of the answers is meant is a guess; give --landmarks");
+        " mm: the shape is symmetric, so the choice among the answers is a guess; give --landmarks");
   if (trust.verdict == FitVerdict::Right) return;
   const std::string figures = trust.reason + "; the residual is " + short_text(fit.rms_mm) +
                               " mm, the surfaces' own noise " + short_text(trust.noise_mm) + " mm";

@@ -47,7 +47,7 @@ struct MotionDoubt {
   double turn_deviation(const glm::dvec3& axis) const;
 };
 
-/// Whether a fit is the true position. Doubtful: something speaks for it, but not enough.
+/// Whether a fit is the true position. Doubtful: there is evidence for it, but not enough.
 enum class FitVerdict { Right, Doubtful, Failed };
 
 /// Why a fit can be relied on, or not.

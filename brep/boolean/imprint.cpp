@@ -93,7 +93,7 @@ class Imprint {
     return !pairs_.empty();
   }
 
-  /// Both surfaces divided. Throws NotDivided.
+  /// Divides both surfaces and returns them. Throws NotDivided.
   std::array<Triangles, 2> divided() {
     std::array<Triangles, 2> surfaces;
     std::vector<std::vector<FacePoints>> parts_of_a(faces_[0].size());

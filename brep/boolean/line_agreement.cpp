@@ -74,7 +74,7 @@ std::vector<Line> lines_through(const std::vector<Corners>& triangles, double cl
   return lines;
 }
 
-/// Where a line crosses a surface.
+/// A crossing of a line with a surface.
 struct Crossing {
   std::uint32_t line;
   std::uint8_t surface;

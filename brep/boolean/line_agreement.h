@@ -41,8 +41,8 @@ std::optional<LineDisagreement> disagreement_along_lines(const Solid& a, const S
                                                          const Results& results, const Wanted& wanted,
                                                          const std::vector<Corners>& through);
 
-/// The same, through widest_triangles() of the operands and the wanted results. Cost: additionally that of
-/// widest_triangles().
+/// Tests along lines through widest_triangles() of the operands and the wanted results. Cost: additionally
+/// that of widest_triangles().
 std::optional<LineDisagreement> disagreement_along_lines(const Solid& a, const Solid& b,
                                                          const Results& results, const Wanted& wanted);
 

@@ -292,7 +292,8 @@ bool turns_round(std::size_t result, bool of_a) {
   return result == (of_a ? of_b_minus_a : of_a_minus_b);
 }
 
-/// Classifies each part by the borders of one result, or checks its class by those of a further one.
+/// Decides from the borders of a result whether each part is inside. If an earlier result has decided that,
+/// checks that both agree.
 void place_parts(const std::set<Edge>& edges, bool inside_where_there, Side& side) {
   for (const auto& [edge, part] : side.border) {
     assert(part < side.known.size());

@@ -39,9 +39,9 @@ Contour closed(const Contour& contour);
 /// share. Exact. Cost: n log n, and the pairs of pieces whose boxes overlap.
 std::optional<std::pair<std::size_t, std::size_t>> first_crossing(const Contour& contour);
 
-/// The same after an edit that created or moved the pieces `changed`. Precondition: no two other pieces have
-/// such a common point, which holds if the contour did not cross itself before the edit. Cost: linear for
-/// each changed piece.
+/// As first_crossing(), after an edit that created or moved the pieces `changed`. Precondition: no two other
+/// pieces have such a common point, which holds if the contour did not cross itself before the edit. Cost:
+/// linear for each changed piece.
 std::optional<std::pair<std::size_t, std::size_t>> first_crossing_of(const Contour& contour,
                                                                      std::span<const std::size_t> changed);
 

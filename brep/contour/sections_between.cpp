@@ -31,7 +31,7 @@ struct Box2 {
   }
 };
 
-/// The outline of a section, whose sides are found by square cells.
+/// The outline of a section, with a grid of square cells that finds the sides near a point.
 class Outline {
  public:
   Outline(const std::vector<Contour>& contours, double cell_mm) {
@@ -67,8 +67,7 @@ class Outline {
   double signed_distance_mm(const glm::dvec2& p) const {
     const int x = column_of(p.x), y = row_of(p.y);
     double square = std::numeric_limits<double>::infinity();
-    // Cells that are farther than `ring` from the cell of p, or from the cell nearest to p, have no place nearer
-    // than that many cells.
+    // Sides in cells beyond `ring` are at least `ring` cells away from p.
     for (int ring = 0; ring <= std::max(width_, height_); ++ring) {
       for (int j = std::max(0, y - ring); j <= std::min(height_ - 1, y + ring); ++j) {
         const bool is_whole_row = std::abs(j - y) == ring;
@@ -124,7 +123,7 @@ class Outline {
   std::vector<std::vector<std::uint32_t>> cells_, rows_;
 };
 
-/// The samples of one gap, and the distances to both of its outlines there.
+/// Samples in the plane for one gap, with their distances to the outlines at both ends of the gap.
 class Gap {
  public:
   Gap(const Section& below, const Section& above, double sample_mm)
@@ -135,7 +134,7 @@ class Gap {
     const glm::dvec2 extent = box.high - box.low;
     constexpr double most_samples = 4096.0;
     sample_mm_ = std::max(sample_mm, std::max(extent.x, extent.y) / most_samples);
-    // Off the numbers that people type, so that few samples lie on an outline.
+    // Irrational offsets, so that few samples coincide with typed coordinates of outlines.
     low_ = box.low - sample_mm_ * glm::dvec2(2.3819660, 2.4142136);
     const glm::dvec2 samples = glm::floor((box.high - low_) / sample_mm_) + 4.0;
     width_ = static_cast<std::uint32_t>(samples.x);
@@ -143,7 +142,7 @@ class Gap {
     measure();
   }
 
-  /// The outline at a share of the way up.
+  /// The outline at a share of the gap's height.
   std::vector<Contour> outline(double share) const {
     std::vector<float> depth(from_below_.size());
     for (std::size_t s = 0; s < depth.size(); ++s)
@@ -189,11 +188,12 @@ class Gap {
     return (1.0 - share) * below_.signed_distance_mm(p) + share * above_.signed_distance_mm(p);
   }
 
-  /// The zero on the edge between samples on which a followed point lies, in samples (Illinois method).
+  /// Moves a followed point, which lies on an edge between samples, to the exact zero on that edge (Illinois
+  /// method).
   glm::dvec2 exact(const glm::dvec2& p, double share) const {
     const glm::dvec2 nearest = glm::round(p), off = glm::abs(p - nearest);
     const int axis = off.x > off.y ? 0 : 1;
-    // At a sample there is nothing to look for.
+    // A point at a sample is already exact.
     if (off[axis] < 1e-6) return p;
     glm::dvec2 a = nearest, b = nearest;
     a[axis] = std::floor(p[axis]);
@@ -244,7 +244,7 @@ void check(const std::vector<Section>& drawn, const SectionsBetweenOptions& opti
   }
 }
 
-/// The contours with sides no longer than this.
+/// Divides the contours' sides so that none is longer than this.
 std::vector<Contour> divided(const std::vector<Contour>& contours, double most_mm) {
   std::vector<Contour> all;
   for (const Contour& contour : contours) {
@@ -260,7 +260,7 @@ std::vector<Contour> divided(const std::vector<Contour>& contours, double most_m
   return all;
 }
 
-/// The sections of a gap, without its ends.
+/// The sections within a gap, without those at its ends.
 std::vector<Section> sections_in_gap(const Section& below, const Section& above,
                                      const SectionsBetweenOptions& options) {
   if (below.contours.empty() && above.contours.empty()) return {};
@@ -281,8 +281,8 @@ std::vector<Section> sections_in_gap(const Section& below, const Section& above,
   return sections;
 }
 
-/// The tiles with the points of sections where the sections have them, and those of a step half way in one plane. The
-/// tiles' points begin with those of the sections, in their order; contours may be reversed.
+/// Moves the tiles' points back to the points of their sections, and those of a step half way into one plane.
+/// The tiles' points begin with those of the sections, in the sections' order; contours may be reversed.
 Triangles put_back(const Triangles& tiles, const std::vector<Section>& sections) {
   Triangles back = tiles;
   std::size_t first = 0;
@@ -316,7 +316,7 @@ std::vector<Section> sections_between(const std::vector<Section>& drawn,
   std::vector<Section> whole = drawn;
   for (Section& section : whole) section.contours = divided(section.contours, options.step_mm);
   const std::size_t last = drawn.size() - 1;
-  // Empty sections as far beyond either end as the next one is.
+  // Adds an empty section at either end, as far beyond it as its neighbour is.
   whole.insert(whole.begin(), {2.0 * drawn[0].z_mm - drawn[1].z_mm, {}});
   whole.push_back({2.0 * drawn[last].z_mm - drawn[last - 1].z_mm, {}});
   std::vector<std::vector<Section>> gaps(whole.size() - 1);

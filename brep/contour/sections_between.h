@@ -31,15 +31,17 @@ constexpr double half_terrace_mm() {
   return 1e-3;
 }
 
-/// Drawn sections and others between them, so that tile_sections() makes the object whose drawn sections they
-/// are. Between two sections that are not empty, sections follow at most step_mm apart; their points lie on the
-/// interpolated outline to about 1e-3 of the step. A section without contours ends the object half way to it,
-/// in a flat face; so do the first and the last one, half the distance to the next one beyond them. Sides longer than step_mm are divided.
-/// The first and last section of the result are empty. Throws std::invalid_argument unless two or more sections ascend; a contour is open, has fewer than three points or one that is not finite; an
-/// option is out of its range. Precondition: contours do not cross. Stopped. Cost: about a microsecond for each
-/// sample beside an outline; parallel, the same bits on any number of threads. Source: Raya and Udupa,
-/// "Shape-based interpolation of multidimensional objects", IEEE Trans. Medical Imaging 9, 1990; with exact
-/// distances, and outlines followed on samples and then moved onto the exact outline along the samples' edges.
+/// Adds sections between drawn ones, so that tile_sections() makes the object that the drawn sections
+/// describe. Between two sections that are not empty, sections follow at most step_mm apart; their points lie
+/// on the interpolated outline to about 1e-3 of the step. A section without contours ends the object half way
+/// to it, in a flat face. The first and the last section end it at half the distance to their neighbours.
+/// Sides longer than step_mm are divided. The first and last section of the result are empty. Throws
+/// std::invalid_argument unless there are two or more sections in ascending order; if a contour is open, has
+/// fewer than three points or one that is not finite; or if an option is out of its range. Precondition:
+/// contours do not cross. Throws Stopped. Cost: about a microsecond for each sample beside an outline;
+/// parallel, the same bits on any number of threads. Source: Raya and Udupa, "Shape-based interpolation of
+/// multidimensional objects", IEEE Trans. Medical Imaging 9, 1990. Departure: distances are exact, and
+/// outlines are followed on samples and then moved onto the exact outline along the samples' edges.
 std::vector<Section> sections_between(const std::vector<Section>& drawn,
                                       const SectionsBetweenOptions& options = {});
 
@@ -51,9 +53,10 @@ struct TiledBetween {
   bool is_apart = false;       ///< no two of its triangles meet, by an exact search
 };
 
-/// Tiles drawn sections with others between them. Where that leaves a solid, the points of the sections are put back
-/// from where tile_sections() and half_terrace_mm() moved them, so that flat parts lie exactly in their planes. Throws
-/// as sections_between() and tile_sections(). Cost: that of both, and of one or two searches by health().
+/// Tiles drawn sections with others between them. If the result is a solid, points that tile_sections() and
+/// half_terrace_mm() moved are moved back to their sections, so that flat parts lie exactly in their planes.
+/// Throws as sections_between() and tile_sections(). Cost: that of both, and of one or two searches by
+/// health().
 TiledBetween tile_between(const std::vector<Section>& drawn, const SectionsBetweenOptions& options = {},
                           std::optional<TileCost> cost = TileCost::shortest_span);
 

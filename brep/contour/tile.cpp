@@ -57,8 +57,9 @@ std::vector<glm::dvec2> in_unit_square(const std::vector<glm::dvec2>& points) {
   return scaled;
 }
 
-/// What speaks against the spans of two rings: 0 for a span over the area of one ring alone that crosses no side,
-/// 1 for one over both or neither, as where the rings cross, otherwise more by the sides that it crosses.
+/// Scores the spans between two rings; lower is better. 0: the span lies over the area of exactly one ring
+/// and crosses no side. 1: it lies over both areas or neither, as where the rings cross. Otherwise more for
+/// each side that it crosses.
 class Blame {
  public:
   Blame(const Ring& lower, const Ring& upper, const SpanClearance& sides,
@@ -83,9 +84,9 @@ class Blame {
     }
   }
 
-  /// Of the span between two points, counted on beyond the rings' ends.
+  /// The score of the span between two points; numbers beyond the rings' ends continue at their starts.
   int operator()(std::size_t i, std::size_t j) const { return of_[i % m_ * n_ + j % n_]; }
-  /// Of a step from a span: of its triangle, and of the span that it leads to.
+  /// The score of a step from a span: that of the step's triangle and of the span that it leads to.
   int of(std::size_t i, std::size_t j, Step step) const {
     const int of_span = (*this)(i + (step == along_lower), j + (step == along_upper));
     return of_span + (of_step_[step].empty() ? 0 : of_step_[step][i % m_ * n_ + j % n_]);
@@ -94,9 +95,10 @@ class Blame {
  private:
   static double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
-  /// Twice the largest distance of a point to the nearest of the other ring, and the longest side. Every strip
-  /// has a span of the largest distance at least; longer ones than this leave their neighbourhood, and are as
-  /// bad as those that cross most sides. Without the limit most of the time is spent on them.
+  /// Twice the largest distance from a point to the nearest point of the other ring, plus the longest side.
+  /// Every strip has a span of at least the largest distance. Longer spans than this limit leave their
+  /// neighbourhood and score as those that cross the most sides. Without the limit, most of the time would be
+  /// spent on them.
   static double reach_of(const Ring& lower, const Ring& upper) {
     constexpr double far = std::numeric_limits<double>::infinity();
     std::vector<double> of_upper(upper.points_mm.size(), far);
@@ -120,7 +122,7 @@ class Blame {
     return 2.0 * std::sqrt(farthest) + longest_side_mm;
   }
 
-  /// Whether the way from a ring's point leads on the ring's left first, where the object is.
+  /// Whether the direction from a ring's point starts on the ring's left, where the object is.
   static bool starts_inside(const Ring& ring, std::size_t at, const glm::dvec2& to) {
     const std::size_t count = ring.points_mm.size();
     const glm::dvec2& p = ring.points_mm[at];
@@ -135,7 +137,8 @@ class Blame {
   std::array<std::vector<int>, 2> of_step_;  ///< empty if no triangle is to be avoided
 };
 
-/// The nearest two points of the rings' scaled shapes, of those with the least blame.
+/// Among the pairs of points with the lowest score, the pair that is nearest after both rings are scaled to
+/// the unit square.
 std::array<std::size_t, 2> start_of(const Ring& lower, const Ring& upper, const Blame* blame = nullptr) {
   const auto a = in_unit_square(lower.points_mm), b = in_unit_square(upper.points_mm);
   std::array<std::size_t, 2> start{};
@@ -189,7 +192,8 @@ struct Path {
 /// The path of least cost among all starts (Fuchs, Kedem and Uselton 1977).
 class LeastPath {
  public:
-  /// With `blame`, of those with the least sum of it; `start` is the pair's in its rings.
+  /// With `blame`, the least cost among the paths with the lowest sum of scores; `start` is the pair's start
+  /// in its rings.
   LeastPath(const Pair& pair, TileCost cost, const Blame* blame = nullptr,
             const std::array<std::size_t, 2>& start = {0, 0})
       : m_(pair.m()), n_(pair.n()) {
@@ -207,7 +211,7 @@ class LeastPath {
           costs_[step][i * (n_ + 1) + j] = cost_of(pair.triangle(i, j, step), step);
     }
     if (blame == nullptr) return;
-    // More than the costs of two strips can differ by.
+    // An upper bound on the difference between the costs of two strips.
     double dearest = 0.0;
     for (const std::vector<double>& costs : costs_)
       for (const double cost_of_one : costs) dearest = std::max(dearest, std::abs(cost_of_one));
@@ -218,7 +222,7 @@ class LeastPath {
           costs_[step][i * (n_ + 1) + j] += weight * blame->of(start[0] + i, start[1] + j, step);
   }
 
-  /// The least path from (0, 0) between two others.
+  /// The least path from (0, 0) between two other paths.
   Path find_between(const Path& low, const Path& high) const { return from(0, &low, &high); }
 
   /// The path of least cost from (0, 0) to (m, n).
@@ -233,11 +237,11 @@ class LeastPath {
     return best;
   }
 
-  /// The path of least cost from (0, 0) to (m, n) whose strip is a surface: one whose steps along the upper ring
-  /// start at two points of the lower ring at least. All others have a span twice. With three points on each
-  /// ring there is such a path.
+  /// The path of least cost from (0, 0) to (m, n) whose strip is a surface, which means that its steps along
+  /// the upper ring start at two or more points of the lower ring. Any other strip contains a span twice.
+  /// With three points on each ring such a path exists.
   std::vector<Step> surface_steps() const {
-    // Where the steps along the upper ring were so far.
+    // The points of the lower ring at which the steps along the upper ring have started so far.
     enum Held : std::uint8_t { nowhere, at_start, here, behind, at_two, held_count };
     constexpr double far = std::numeric_limits<double>::infinity();
     struct Came {
@@ -339,7 +343,8 @@ std::vector<Step> steps_of(const Path& path) {
   return steps;
 }
 
-/// The span at which a path's strip is two cones: all steps along one ring start at one point of the other.
+/// The span at which a path's strip degenerates into two cones: all steps along one ring start at one point
+/// of the other.
 std::optional<std::array<std::size_t, 2>> neck_of(const Path& path, std::size_t n) {
   const std::size_t m = path.last.size() - 1;
   for (std::size_t i = 0; i < m; ++i) {
@@ -367,7 +372,7 @@ Band all_of(const Pair& pair) {
   return {{0, 0.0, std::vector<std::size_t>(rows, 0)}, {0, 0.0, std::vector<std::size_t>(rows, pair.n())}};
 }
 
-/// The columns at most `reach` beside those of a path of steps from (0, 0).
+/// The columns within `reach` of those of a path of steps from (0, 0).
 Band about(const std::vector<Step>& steps, const Pair& pair, std::size_t reach) {
   Band band = all_of(pair);
   std::size_t row = 0, column = 0;
@@ -387,7 +392,7 @@ Band about(const std::vector<Step>& steps, const Pair& pair, std::size_t reach) 
 std::vector<Step> least_angle_steps(const Pair& pair, const Band& band,
                                     std::array<std::size_t, 2> start = {0, 0}, const Blame* blame = nullptr) {
   const std::size_t m = pair.m(), n = pair.n();
-  // More than the angles of a strip can sum up to.
+  // An upper bound on the sum of a strip's angles.
   const double weight = 4.0 * static_cast<double>(m + n);
   constexpr double far = std::numeric_limits<double>::infinity();
   using Sums = std::array<double, 2>;

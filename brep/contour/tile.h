@@ -41,16 +41,18 @@ std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& up
 std::vector<std::array<std::uint32_t, 3>> tile_near(const Ring& lower, const Ring& upper, TileCost cost,
                                                     std::size_t band);
 
-/// The best strip by the cost among those whose spans cross the fewest sides of contours in projection and lie
-/// over the area of one ring alone, which keeps a strip from crossing itself: the rings' own crossings apart,
-/// such a strip exists unless a ring has folds that the other one does not see. Spans longer than twice the
-/// largest distance of a point to the nearest of the other ring, and a side, count as those that cross most.
-/// `avoided` are triangles of earlier strips of these rings that crossed something, once for each crossing:
-/// each weighs as a side that a span crosses. shortest_span and least_angle start at the shortest of the best
-/// spans. With triangles to avoid, shortest_span minimises the sum of its spans instead of choosing step by
-/// step, as a step cannot see what it leads to; on rings too long for that it does not. Where the best strip by least_area or greatest_volume is two cones that meet at one span, which is
-/// no surface, the best surface with this span takes its place. Throws and costs as tile(), and a test of each
-/// span against the sides near it.
+/// The best strip by the cost among those whose spans cross the fewest sides of contours in projection and
+/// lie over the area of exactly one ring. This keeps a strip from crossing itself: apart from crossings of
+/// the rings themselves, such a strip exists unless one ring has folds that are invisible from the other.
+/// Spans longer than twice the largest distance of a point to the nearest of the other ring, plus the longest
+/// side, count as crossing the most sides. `avoided` are triangles of earlier strips of these rings that
+/// crossed something, repeated once for each crossing: each weighs as a side that a span crosses.
+/// shortest_span and least_angle start at the shortest of the best spans. With triangles to avoid,
+/// shortest_span minimises the sum of its spans instead of choosing step by step, because a single step does
+/// not show which triangles follow; rings too long for the tables are still tiled step by step. If the best
+/// strip by least_area or greatest_volume is two cones that meet at one span, which is no surface, the best
+/// surface that contains this span is returned. Throws and costs as tile(), plus a test of each span against
+/// the sides near it.
 std::vector<std::array<std::uint32_t, 3>> tile_clear(
     const Ring& lower, const Ring& upper, TileCost cost, const SpanClearance& sides,
     const std::vector<std::array<std::uint32_t, 3>>& avoided = {});

@@ -83,8 +83,8 @@ struct Tiled {
   std::size_t strips = 0, clear_strips = 0, narrowed_strips = 0, crossed_strips = 0, overlaid = 0;
 };
 
-/// Whether a strip is a surface: not so one whose triangles all meet at one span's two points, as the least
-/// area of rings that hardly overlap may have.
+/// Whether a strip is a surface. It is none if all its triangles meet at the two points of one span, as the
+/// strip of least area may between rings that hardly overlap.
 bool is_surface(const FaceList& strip) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   edges.reserve(3 * strip.size());
@@ -94,8 +94,9 @@ bool is_surface(const FaceList& strip) {
   return std::adjacent_find(edges.begin(), edges.end()) == edges.end();
 }
 
-/// Pairs of triangles that cross; at most a number that bounds the memory, since all of a long strip may lie in
-/// another surface. Triangles without area cross nothing: their neighbours do.
+/// Pairs of triangles that cross, at most a number that bounds the memory, because all of a long strip may
+/// lie in another surface. Triangles without area are left out: if they cross something, their neighbours do
+/// too.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_pairs(const Triangles& surface) {
   constexpr std::size_t most_pairs = 100000;
   std::vector<std::uint8_t> is_flat(surface.faces.size(), 0);
@@ -108,7 +109,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_pairs(const Triang
   return self_intersections({surface, MortonTree(surface), is_flat, most_pairs}).first;
 }
 
-/// Puts strips into a slab's surface.
+/// Replaces parts of a slab's surface by strips.
 class Strips {
  public:
   Strips(const Slab& slab, TileCost cost, std::optional<double> most_span_mm, SlabSurface& surface)
@@ -132,22 +133,23 @@ class Strips {
         std::count_if(strips_.begin(), strips_.end(), [](const FaceList& strip) { return !strip.empty(); }));
   }
 
-  /// Groups that a strip may join.
+  /// The number of groups that a strip may join.
   std::size_t wanted() const {
     return static_cast<std::size_t>(std::count_if(surface_.groups.begin(), surface_.groups.end(),
                                                   [&](const auto& group) { return is_pair(group); }));
   }
 
-  /// Those that are the best by their cost whose spans are clear of contours.
+  /// The number of strips that are the best by their cost among those whose spans cross no contour.
   std::size_t clear_count() const {
     return count_if([](int attempt) { return clear_attempt <= attempt && attempt <= last_clear_attempt; });
   }
-  /// Those that are not even this.
+  /// The number of strips that had to be narrowed further.
   std::size_t narrowed_count() const {
     return count_if([](int attempt) { return attempt > last_clear_attempt; });
   }
 
-  /// Narrows the strips that cross anything until none does, and drops those that always do.
+  /// Retries strips that cross anything until none does, and drops those for which every attempt crosses
+  /// something.
   void settle() {
     while (count() > 0) {
       std::vector<std::uint32_t> group;
@@ -170,12 +172,13 @@ class Strips {
   }
 
  private:
-  /// Attempts after the best strip: the best whose spans are clear of contours; several times the best of these
-  /// that also avoids the triangles of clear strips before that crossed something; by the same cost near the
-  /// shortest spans, within an eighth and a thirty-second of the rings' points and within two points; the
-  /// shortest spans themselves; and the least area, which crosses itself least, near them and anywhere.
+  /// Attempts after the best strip, in order. 1: the best strip whose spans cross no contour. Up to 12: the
+  /// same, while avoiding triangles of earlier attempts that crossed something. Then the best strips near the
+  /// shortest spans: within an eighth and a thirty-second of the rings' points, and within two points. Then
+  /// the shortest spans themselves. Last the least area, which crosses itself least, near the shortest spans
+  /// and anywhere.
   static constexpr int clear_attempt = 1, last_clear_attempt = 12, shortest_attempt = 16, most_attempts = 18;
-  /// The greatest volume of all is that of a strip that crosses itself and encloses much of it twice.
+  /// The strip of greatest volume may cross itself and enclose a region twice, so it is not tried first.
   static int first_attempt(TileCost cost) { return cost == TileCost::greatest_volume ? clear_attempt : 0; }
 
   template <typename Wanted>
@@ -208,7 +211,8 @@ class Strips {
                                    : tile(below, above, TileCost::least_area);
   }
 
-  /// The next strip of a group whose strip is none or crosses something; none after all attempts.
+  /// Tries the next strip of a group whose present strip is missing or crosses something; none after all
+  /// attempts.
   void retry(std::size_t g) {
     strips_[g].clear();
     while (strips_[g].empty() && attempts_[g] < most_attempts) {
@@ -249,7 +253,7 @@ class Strips {
                (signed_area_mm2(slab_.upper[group.upper[0]]) > 0.0);
   }
 
-  /// Where a group's rings stand in the row of all points.
+  /// Positions of a group's rings in the array of all points.
   struct Place {
     const Contour &lower, &upper;
     std::uint32_t m, of_lower, of_upper;
@@ -276,7 +280,7 @@ class Strips {
     return strip;
   }
 
-  /// Records a triangle of a group's clear strip, in the numbers of its rings, that crosses something.
+  /// Records that a triangle of a group's clear strip crosses something, numbered by the group's rings.
   void avoid(std::size_t g, std::array<std::uint32_t, 3> face) {
     if (strips_[g].empty() || attempts_[g] < clear_attempt) return;
     const Place place = place_of(surface_.groups[g]);
@@ -363,7 +367,7 @@ TiledSections joined(const std::vector<std::vector<Contour>>& contours, const st
   for (std::size_t s = 0; s < slabs.size(); ++s) {
     const std::uint32_t lower = point_count(contours[s]), upper = lower + point_count(contours[s + 1]);
     const auto inner = static_cast<std::uint32_t>(tiled.surface.points_mm.size());
-    // Leaves out points of an overlay that a strip replaced.
+    // Removes points of an overlay that a strip has replaced.
     std::vector<std::uint32_t> number(slabs[s].surface.inner_mm.size(), 0);
     for (const auto& face : slabs[s].surface.faces)
       for (const std::uint32_t v : face)

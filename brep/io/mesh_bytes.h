@@ -34,7 +34,7 @@ struct GlbPart {
   std::string name;
   std::vector<std::array<std::uint32_t, 3>> faces;
 };
-/// The same with one named node per part; all parts share the points and have no normals.
+/// A GLB file with one named node per part; all parts share the points and have no normals.
 std::string glb_of(const std::vector<glm::dvec3>& points_mm, const std::vector<GlbPart>& parts);
 
 /// The extension in lower case, with its dot.

@@ -32,7 +32,7 @@ struct PolygonCounts {
 /// triangles, so that neighbours stay joined; corners in the middle of a straight side stay, too.
 class PolygonSplitter {
  public:
-  /// Both must outlive this object.
+  /// `triangles` and `counts` must outlive this object.
   PolygonSplitter(Triangles& triangles, PolygonCounts& counts) : triangles_(triangles), counts_(counts) {}
 
   /// Appends a polygon, which winds as its triangles do:

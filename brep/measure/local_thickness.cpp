@@ -37,7 +37,7 @@ struct VolumePoint {
   std::uint32_t line = 0;
 };
 
-/// Where a line along x passes the plane of a face.
+/// The x at which a line along x passes the plane of a face.
 double x_of(const Triangles& surface, std::uint32_t face, const glm::dvec3& p) {
   const auto& [i, j, k] = surface.faces[face];
   const glm::dvec3 &a = surface.points_mm[i], &b = surface.points_mm[j], &c = surface.points_mm[k];

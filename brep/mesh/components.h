@@ -25,7 +25,7 @@ struct Component {
 /// is open. Cost: n log n, one ray per shell.
 std::vector<Component> components(const Mesh& mesh);
 
-/// The same for triangles with their neighbours. `tree` returns their tree and is called only if there are
+/// The components of triangles with their neighbours. `tree` returns their tree and is called only if there are
 /// cavities. Cost: linear, one ray per cavity.
 std::vector<Component> components(const Linked& linked, const std::function<const SurfaceTree&()>& tree);
 

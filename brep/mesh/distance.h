@@ -58,7 +58,7 @@ class SurfaceTree {
   /// the surface has no triangles. Cost: about log n per point, parallel.
   std::vector<double> distances_mm(const std::vector<glm::dvec3>& points_mm) const;
 
-  /// The same for one point. The search starts with `triangle`, a number in the tree (such as 0), and stores
+  /// The distance of one point. The search starts with `triangle`, a number in the tree (such as 0), and stores
   /// the nearest one there, which makes the next search fast if its point is near. The search ends at the
   /// first distance below `enough_mm`, which need not be the least.
   double distance_mm(const glm::dvec3& p_mm, std::uint32_t& triangle, double enough_mm = 0.0) const;
@@ -69,7 +69,7 @@ class SurfaceTree {
 
   /// The foot of each point, by the same search. Throws as distances_mm() and costs as much.
   std::vector<Foot> feet(const std::vector<glm::dvec3>& points_mm) const;
-  /// The same. Calls `visit` with each point's number and foot, from several threads.
+  /// As feet(), but calls `visit` with each point's number and foot, from several threads.
   void visit_feet(const std::vector<glm::dvec3>& points_mm,
                   const std::function<void(std::size_t point, const Foot& foot)>& visit) const;
 
@@ -87,7 +87,7 @@ class SurfaceTree {
   /// Precondition: closed. Parallel.
   std::vector<std::uint8_t> inside(const std::vector<glm::dvec3>& points_mm) const;
 
-  /// The same for one point.
+  /// Whether one point is inside.
   bool is_inside(const glm::dvec3& p_mm) const;
 
   /// Whether `meets(face)` is true for any triangle that a segment may meet. Calls it for all triangles that

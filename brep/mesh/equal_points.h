@@ -19,7 +19,7 @@ class PointNumbers {
   /// empty, outlives this object and is not changed by others.
   explicit PointNumbers(std::vector<glm::dvec3>& points_mm, std::size_t expected = 0);
   std::uint32_t number_of(const glm::dvec3& p_mm);
-  /// The same for several points, in their order; faster than single calls, because table slots are
+  /// The numbers of several points, in their order; faster than single calls, because table slots are
   /// prefetched. Precondition: `numbers` has as many entries as `points_mm`.
   void number(std::span<const glm::dvec3> points_mm, std::span<std::uint32_t> numbers);
 

@@ -31,7 +31,7 @@ struct Measures {
 /// same bits on any number of threads. Cost: linear, parallel, 24 bytes per face.
 Measures measure(const Mesh& mesh);
 
-/// The same for triangles with their neighbours; if closed, with the same bits as for mesh_of() of them.
+/// Measures triangles with their neighbours; if closed, with the same bits as for mesh_of() of them.
 /// Cost: linear, parallel, 30 bytes per triangle.
 Measures measure(const Linked& linked);
 

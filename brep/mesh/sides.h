@@ -93,8 +93,8 @@ void each_edge(const std::vector<Side>& sides, const Visit& visit) {
   each_edge(sides.data(), sides.size(), visit);
 }
 
-/// The same from several threads, with edges in arbitrary order; the sides of one edge are ordered by
-/// `corner`. Preconditions are those of SidesOfPoints.
+/// As each_edge(), but from several threads, with edges in arbitrary order; the sides of one edge are ordered
+/// by `corner`. Preconditions are those of SidesOfPoints.
 template <typename Visit>
 void each_edge_in_parallel(const SidesOfPoints& sides, const Visit& visit) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides.point_count(), 4096), [&](const auto& range) {

@@ -53,7 +53,8 @@ void join_by_angle(const Triangles& triangles, const Side* begin, const Side* en
     const double across = glm::dot(d, y) / std::sqrt(std::max(length2, std::numeric_limits<double>::min()));
     turned.push_back({std::atan2(across, glm::dot(d, x)), side});
   }
-  // Among coinciding triangles those that close come first, so that no part without thickness is created.
+  // Among coinciding triangles, those that close a part come first, so that no part without thickness is
+  // created.
   std::sort(turned.begin(), turned.end(), [](const Turned& a, const Turned& b) {
     return std::tuple(-a.angle, a.side->upward, a.side->corner) <
            std::tuple(-b.angle, b.side->upward, b.side->corner);

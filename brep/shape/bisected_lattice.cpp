@@ -203,7 +203,7 @@ class Bisection {
       const double at_a = known(a), at_b = known(b);
       if ((at_a < 0.0) != (at_b < 0.0)) corners.push_back(at(a) + at_a / (at_a - at_b) * (at(b) - at(a)));
     }
-    // Of four corners any three make a triangle; together these cover the piece.
+    // Any three of four corners make a triangle; together these triangles cover the piece.
     for (std::size_t left_out = 0; left_out < (corners.size() == 4 ? 4 : corners.size() / 3); ++left_out) {
       std::array<glm::dvec3, 3> triangle{};
       std::size_t count = 0;
@@ -218,7 +218,8 @@ class Bisection {
     }
   }
 
-  /// Of tetrahedra in which distances seem linear, those whose piece of plane the surface does not follow.
+  /// Among tetrahedra in which distances seem linear, drops those whose piece of plane differs from the
+  /// surface.
   void drop_bumpy(const std::vector<Open>& level, std::vector<std::uint8_t>& is_kept) const {
     std::vector<glm::dvec3> places;
     std::vector<std::size_t> owners;
@@ -255,7 +256,7 @@ class Bisection {
     for (std::size_t k = 0; k < numbers.size(); ++k) at_centres_mm[numbers[k]] = distances[k];
   }
 
-  /// Of these tetrahedra, those that satisfy a condition, in their order.
+  /// Selects those of the given tetrahedra that satisfy a condition, in their order.
   template <typename Condition>
   static std::vector<std::size_t> those(const std::vector<std::size_t>& numbers, const Condition& condition) {
     const std::vector<std::uint8_t> is =
@@ -278,7 +279,7 @@ class Bisection {
     });
   }
 
-  /// Of these tetrahedra, those in which distances seem linear. Most are not linear on the edge at which they
+  /// Selects the tetrahedra in which distances seem linear. Most are not linear on the edge at which they
   /// would be bisected: the other distances are computed only for the rest.
   std::vector<std::size_t> linear(const std::vector<Open>& level, const std::vector<std::size_t>& numbers,
                                   std::vector<double>& at_centres_mm) {
@@ -300,8 +301,8 @@ class Bisection {
     return those(on_edges, [&](std::size_t i) { return is_linear_at_centre(level[i], at_centres_mm[i]); });
   }
 
-  /// Both halves of a tetrahedron, but those that a corner shows to be beside the surface; of the finest, only
-  /// those that the surface passes.
+  /// Adds both halves of a tetrahedron, except halves that a corner's distance shows to be beside the
+  /// surface. Of the finest halves, adds only those that the surface passes.
   void add_halves(const Open& open, std::vector<Open>& made) const {
     const double at_middle_mm = known(middle_of(open.simplex));
     const std::array<Simplex, 2> simplices = halves(open.simplex);

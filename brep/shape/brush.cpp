@@ -116,7 +116,7 @@ std::vector<Plane> disc_planes(const BrushTrace::Disc& disc, double radius_mm) {
   return planes;
 }
 
-/// Both ends may be one point.
+/// The hull of the polyhedron at both ends of a line; the ends may be one point.
 Solid hull_of(const Polyhedron& polyhedron, const glm::dvec3& start_mm, const glm::dvec3& end_mm) {
   Triangles hull;
   std::map<std::pair<std::uint32_t, bool>, std::uint32_t> numbers;

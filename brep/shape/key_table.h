@@ -31,7 +31,7 @@ class KeyTable {
     return *value;
   }
 
-  /// Adds a key, and returns whether it was new; a known key keeps its value.
+  /// Adds a key, and returns whether it was new; a key that exists keeps its value.
   bool insert(std::uint64_t key, const Value& value) {
     assert(key != none);
     if (4 * (count_ + 1) > 3 * slots_.size()) grow();

@@ -27,12 +27,12 @@ double to_box_mm(const Size& box, const glm::dvec3& p_mm) {
   return glm::length(glm::max(glm::max(box.low_mm - p_mm, p_mm - box.high_mm), 0.0));
 }
 
-/// Signed distances to levels, negative inside, computed for those points that ask for it.
+/// Signed distances to levels, negative inside. They are computed only for requested points.
 class LevelDistances {
  public:
   explicit LevelDistances(const std::vector<glm::dvec3>& points_mm) : points_mm_(points_mm) {}
 
-  /// The least that the distance of a point can be.
+  /// A lower bound on a point's distance.
   double least_mm(const Level& level, std::size_t i) const {
     const double box_mm = to_box_mm(level.solid.size(), points_mm_[i]);
     return box_mm > 0.0 ? box_mm - level.by_mm : -infinite;
@@ -58,7 +58,7 @@ class LevelDistances {
   std::vector<glm::dvec3> asked_mm_;
 };
 
-/// Signed distances to the body, negative inside: exact where it counts, see above.
+/// Signed distances to the body, negative inside. They are exact where the result depends on them, see above.
 std::vector<double> values_of(const LevelBody& body, const std::vector<glm::dvec3>& points_mm,
                               double far_mm) {
   LevelDistances distances(points_mm);
@@ -74,8 +74,8 @@ std::vector<double> values_of(const LevelBody& body, const std::vector<glm::dvec
       part[i] = -infinite;
       for (const Level& level : levels) part[i] = std::max(part[i], distances.least_mm(level, i));
     }
-    // A part that lies further off than another one does not count, nor does one in which a point lies
-    // deeper than it lies outside what is taken away.
+    // Skips parts that cannot change a point's result: parts farther off than another part, and parts in
+    // which the point lies less far outside than it lies inside `without`.
     for (const Level& level : levels)
       distances.of(
           level,
@@ -88,7 +88,7 @@ std::vector<double> values_of(const LevelBody& body, const std::vector<glm::dvec
   return value;
 }
 
-/// A box that holds the body.
+/// A box that contains the body.
 Size size_of(const LevelBody& body) {
   Size all{.low_mm = glm::dvec3(infinite), .high_mm = glm::dvec3(-infinite)};
   for (const std::vector<Level>& levels : body.parts) {
@@ -140,7 +140,7 @@ double volume_beyond_mm3(const LevelBody& body, const Solid& solid, double beyon
   check(body);
   const Size size = size_of(body);
   if (!glm::all(glm::lessThan(size.low_mm, size.high_mm))) return 0.0;
-  // Cubes are divided that may hold points of the body far enough outside the solid.
+  // Cubes are divided while they may contain points of the body that are far enough outside the solid.
   constexpr int halvings = 3;
   double edge_mm = step_mm * (1 << halvings);
   std::vector<glm::dvec3> middles_mm;

@@ -19,7 +19,7 @@
 namespace octotomy::brep {
 namespace {
 
-/// A lattice of places about the offset solid, a power of two along each side.
+/// A lattice around the offset solid, with a power of two of cells along each side.
 struct Lattice {
   glm::dvec3 origin_mm{0.0};
   double step_mm = 1.0;
@@ -29,8 +29,8 @@ struct Lattice {
   glm::dvec3 at(std::uint64_t key) const { return at(glm::dvec3(place_of(key))); }
 };
 
-/// Sharp edges of the offset surface are cut off within a step: they get finer ones than its rounded parts,
-/// which end where they are flat enough.
+/// Sharp edges of the offset surface are cut off within a step. So steps are finer than the cells of rounded
+/// parts, which are not divided further once they are flat enough.
 constexpr double steps_a_cell = 4.0;
 
 Lattice lattice_about(const Size& size, const OffsetOptions& options) {
@@ -49,8 +49,8 @@ Lattice lattice_about(const Size& size, const OffsetOptions& options) {
   return lattice;
 }
 
-/// A root between two places of either sign, by regula falsi; an end that stays has its value halved, so that
-/// it moves too (Illinois).
+/// The root between two places of opposite sign, by regula falsi. If the same end stays again, its value is
+/// halved, so that it moves as well (Illinois method).
 struct Root {
   double low = 0.0, high = 1.0, at_low = 0.0, at_high = 0.0, share = 0.5;
   int kept = 0;  // the end that did not move: -1 low, 1 high
@@ -90,8 +90,8 @@ std::vector<std::uint32_t> by_first_use(const std::vector<std::array<std::uint32
   return order;
 }
 
-/// Where the surface passes each edge, within a thousandth of a cell. `open` has the number of each edge once:
-/// the searches follow its order.
+/// The points where the surface crosses edges, within a thousandth of a cell. `open` contains the number of
+/// each edge once; the searches follow its order.
 std::vector<glm::dvec3> points_on(const std::vector<CutEdge>& edges, std::vector<std::uint32_t> open,
                                   const BisectedLattice& bisected, const LevelField& field,
                                   const Lattice& lattice) {
@@ -107,7 +107,7 @@ std::vector<glm::dvec3> points_on(const std::vector<CutEdge>& edges, std::vector
     const glm::dvec3 from = lattice.at(edges[i].from);
     return from + roots[i].share * (lattice.at(edges[i].to) - from);
   };
-  // Twenty-four rounds would do by halving alone, were it ever needed.
+  // Twenty-four rounds suffice even if each only halves the interval.
   for (int round = 0; round < 24 && !open.empty(); ++round) {
     std::vector<glm::dvec3> tried_mm(open.size());
     tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t k) { tried_mm[k] = place(open[k]); });
@@ -137,7 +137,7 @@ std::vector<glm::dvec3> points_on(const std::vector<CutEdge>& edges, std::vector
 
 Solid level_surface(const LevelField& field, const Size& size, const OffsetOptions& options) {
   const Lattice lattice = lattice_about(size, options);
-  // A ball of the offset's length rolls along its surface: bumps and dents are as wide as that.
+  // A ball of the offset's length can roll along the surface, so bumps and dents are at least that wide.
   const BisectionOptions bisection{.side = lattice.side,
                                    .step_mm = lattice.step_mm,
                                    .tolerance_mm = offset_tolerance_mm(options),

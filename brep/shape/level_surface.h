@@ -10,16 +10,17 @@
 #include "brep/mesh/solid.h"
 #include "brep/shape/offset.h"
 
-// The surface on which a field of signed distances is 0: the last step of offsets and of bodies of levels.
+// The surface on which a field of signed distances is 0. The last step of offsets and of level bodies.
 namespace octotomy::brep {
 
-/// Values at points, LPS, negative inside; they change no faster than places do. `nearest` has one number for
-/// each point: SurfaceTree::unknown_triangle, or what an earlier call stored there for a point near this one.
+/// Values at points, LPS, negative inside. A value changes by at most the distance between points. `nearest`
+/// has one number for each point: SurfaceTree::unknown_triangle, or the number that an earlier call stored
+/// for a nearby point.
 using LevelField = std::function<std::vector<double>(const std::vector<glm::dvec3>& points_mm,
                                                      std::vector<std::uint32_t>& nearest)>;
 
-/// The surface where the field is 0, about a solid of that size moved by `options.by_mm`, with the options'
-/// cells. Guarantees, throws and costs as offset().
+/// The surface where the field is 0, around a solid of that size that is offset by `options.by_mm`, with the
+/// options' cells. Guarantees, throws and costs as offset().
 Solid level_surface(const LevelField& field, const Size& size, const OffsetOptions& options);
 
 }  // namespace octotomy::brep

@@ -36,7 +36,7 @@ constexpr double film_share() {
   return 1e-8;
 }
 
-/// Whether the mesh has the reversed triangle, and no other neighbours of it.
+/// Whether the triangle's only neighbour in the mesh is its own reverse.
 bool is_lone(const Face& face, const Mesh& mesh) {
   const auto side = mesh.find_halfedge(Mesh::VertexHandle(static_cast<int>(face[1])),
                                        Mesh::VertexHandle(static_cast<int>(face[0])));
@@ -48,8 +48,8 @@ bool is_lone(const Face& face, const Mesh& mesh) {
   return is_border(side) && is_border(next) && is_border(last);
 }
 
-/// A reconstructed surface without the slivers and surplus triangles of the lattice; unchanged if it is large
-/// or if collapses would make it intersect itself.
+/// A reconstructed surface without slivers and surplus triangles of the lattice. Returned unchanged if it is
+/// large or if collapses would make it intersect itself.
 Triangles thinned(const Enclosed& made) {
   constexpr std::size_t most_thinned = 300'000;
   if (made.solid.triangles().faces.size() > most_thinned) return made.solid.triangles();

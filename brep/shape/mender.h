@@ -25,7 +25,7 @@ class Mender {
   void weld(double distance_mm);
   /// Removes triangles that repeat a point.
   void remove_repeats();
-  /// Removes triangles without area, or cuts along another diagonal there.
+  /// Removes triangles without area, or replaces them by cutting along another diagonal.
   void flip_flat();
   void remove_duplicates();
   /// Orients triangles; returns whether any was reversed.
@@ -34,11 +34,11 @@ class Mender {
   void remove_not_finite();
   /// Splits fans so that mesh_of() accepts the surface.
   void split();
-  /// Replaces the shells by their union; false if Booleans find none.
+  /// Replaces the shells by their union; returns false if Booleans compute none.
   bool unite(const std::stop_token& stop);
   /// Replaces the surface by one around the region that it encloses.
   void enclose(const RepairOptions& options);
-  /// Replaces the surface by a solid that was made in cells of that size.
+  /// Replaces the surface by a solid that was made with cells of that size.
   void replace(const Solid& solid, double cell_mm, const std::string& what);
   void fill_holes(const std::optional<double>& longest_mm);
   /// Removes triangles without neighbours, and closed shells without content: two coincident sheets.
@@ -46,12 +46,12 @@ class Mender {
   void remove_intersections();
 
   const Triangles& surface() const { return repair_.surface; }
-  /// The lattice's where the surface was made anew.
+  /// The cell size of the lattice, if the surface was reconstructed.
   const std::optional<double>& cell_mm() const { return repair_.enclosed_cell_mm; }
   /// Whether a side of a triangle is not shared by exactly one other.
   bool is_open() const;
   double extent_mm() const;
-  /// Ends the repair: points that no triangle has are left out.
+  /// Ends the repair. Points that belong to no triangle are left out.
   Repair result();
 
  private:

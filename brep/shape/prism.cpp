@@ -94,7 +94,7 @@ bool collide(const Side& a, const Side& b) {
   if (follows(b, a) && !follows(a, b)) return collide(b, a);
   if (!follows(a, b))
     return CGAL::do_intersect(Kernel::Segment_2(a.from, a.to), Kernel::Segment_2(b.from, b.to));
-  // They share a.to: they overlap only if b turns back along a.
+  // The edges share a.to, so they overlap only if b turns back along a.
   return CGAL::collinear(a.from, a.to, b.to) &&
          !CGAL::collinear_are_strictly_ordered_along_line(a.from, a.to, b.to);
 }

@@ -26,7 +26,7 @@ std::vector<glm::dvec2> moved_aside(const std::vector<glm::dvec2>& line, double 
   for (std::size_t k = 0; k < line.size(); ++k) {
     const glm::dvec2 before = left_of(k > 0 ? line[k] - line[k - 1] : line[1] - line[0]);
     const glm::dvec2 after = left_of(k + 1 < line.size() ? line[k + 1] - line[k] : line[k] - line[k - 1]);
-    // Both sides lie at `side` from the corner's point: m . before = m . after = side.
+    // The corner's point lies at the distance `side` from both edges: m . before = m . after = side.
     const double share = 1.0 + glm::dot(before, after);
     if (!(share > 0.0))
       throw InvalidInput("saw_blade: the line turns back on itself at point " + std::to_string(k));

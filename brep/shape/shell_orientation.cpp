@@ -13,8 +13,8 @@ namespace {
 
 using Face = std::array<std::uint32_t, 3>;
 
-/// The other closed shells that contain all of a shell's probes, by their first triangles. Shells that
-/// cross it do not contain all.
+/// The other closed shells that contain all of a shell's probes, identified by their first triangles. Shells
+/// that cross it do not contain all probes.
 std::vector<std::uint32_t> shells_around(std::uint32_t first, const Shell& own,
                                          const std::map<std::uint32_t, Shell>& shells,
                                          const std::vector<std::uint32_t>& shell, const Triangles& wound,
@@ -54,7 +54,7 @@ Neighbours neighbours_of(const Triangles& surface) {
   return neighbours;
 }
 
-/// Floods across edges of two triangles.
+/// Floods across edges that exactly two triangles share, and winds each shell consistently.
 Shells wind_alike(const Neighbours& neighbours) {
   const std::size_t count = neighbours.face.size() / 3;
   Shells shells{std::vector<std::uint32_t>(count, Neighbours::none), std::vector<std::uint8_t>(count, 0), 0};
@@ -133,7 +133,7 @@ void place_shells(const Triangles& surface, const Neighbours& neighbours, Nested
   std::map<std::uint32_t, std::vector<std::uint32_t>> around;
   for (const auto& [first, own] : placed)
     if (own.is_closed) around[first] = shells_around(first, own, placed, shells.of, wound, tree);
-  // If an outermost shell was inward or inconsistent in the input, the orientation of shells carries no
+  // If an outermost shell of the input faces inward or is inconsistent, the orientation of shells carries no
   // information.
   const bool ways_hold =
       nested == Nested::AsGiven && std::all_of(around.begin(), around.end(), [&](const auto& place) {

@@ -25,7 +25,7 @@ struct Neighbours {
 /// Cost: n log n.
 Neighbours neighbours_of(const Triangles& surface);
 
-/// Triangles that are connected across sides of two.
+/// Sets of triangles that are connected across sides shared by exactly two triangles.
 struct Shells {
   std::vector<std::uint32_t> of;     ///< of each triangle, the first triangle of its shell
   std::vector<std::uint8_t> turned;  ///< triangles to reverse, so that each shell winds one way
@@ -38,7 +38,8 @@ struct Shell {
   std::size_t turns = 0;  ///< of its triangles, reversed ones
   double volume_mm3 = 0.0, area_mm2 = 0.0;
   bool is_closed = true;
-  /// Its furthest points in both directions along each axis, without points that other shells share.
+  /// The shell's farthest points in both directions along each axis. Points that other shells share are left
+  /// out.
   std::array<std::optional<std::uint32_t>, 6> probes;
 };
 /// The shells of a surface whose triangles wind alike, by their first triangle.
@@ -50,8 +51,9 @@ std::map<std::uint32_t, Shell> shells_of(const Triangles& wound, const Neighbour
 /// an inward shell is a cavity, if the shells around it form a body there.
 enum class Nested { Alternating, AsGiven };
 
-/// Orients closed shells outward or inward by `nested`, and open shells so that fewer of their triangles are
-/// reversed: changes `shells.turned`. Cost: n log n, for a tree of the surface and six rays a closed shell.
+/// Orients closed shells outward or inward by `nested`, and each open shell so that fewer of its triangles
+/// are reversed: changes `shells.turned`. Cost: n log n for a tree of the surface, and six rays for each
+/// closed shell.
 void place_shells(const Triangles& surface, const Neighbours& neighbours, Nested nested, Shells& shells);
 
 }  // namespace octotomy::brep

@@ -181,7 +181,7 @@ FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Tria
   const std::vector<std::array<std::uint32_t, 2>> sides = sides_of(given);
   const double spacing_mm = mean_side_mm(given, sides);
 
-  // From the given surface to the coarse one.
+  // Measures from the given surface to the coarse one.
   std::vector<std::uint32_t> used;
   for (const auto& face : given.faces) used.insert(used.end(), face.begin(), face.end());
   sort_once(used);
@@ -201,7 +201,7 @@ FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Tria
                               sides[i - used.size()].end());
   }
 
-  // From the coarse surface to the given one.
+  // Measures from the coarse surface to the given one.
   points.clear();
   std::vector<std::uint32_t> face_of;
   for (std::uint32_t f = 0; f < coarse.faces.size(); ++f) spread(coarse, f, spacing_mm, points, face_of);

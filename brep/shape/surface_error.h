@@ -10,7 +10,7 @@
 
 namespace octotomy::brep {
 
-/// Where two surfaces lie further apart than a limit.
+/// The places at which two surfaces are further apart than a limit.
 struct FarPlaces {
   double largest_mm = 0.0;                                ///< over all samples, both ways
   std::vector<std::uint32_t> given_points, coarse_faces;  ///< ascending; empty: the limit holds
@@ -33,7 +33,7 @@ struct NearFaces {
   std::vector<std::array<std::uint32_t, 3>> of_sample;  ///< near each sample of the given surface
 };
 
-/// The same if the points of the coarse surface are points of the given one, `given_of_coarse`: measures
+/// As above, if the points of the coarse surface are points of the given one, `given_of_coarse`: measures
 /// only the new parts. Triangles and sides that both surfaces have are not measured. Triangles in `near`
 /// were measured before, and samples of the given surface are not searched again while the triangle near
 /// them still exists. `near` must be empty before the first call; all calls must have the same given

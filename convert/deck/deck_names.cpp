@@ -103,7 +103,7 @@ std::optional<std::string> name_clash(const Tetrahedra& tetrahedra, const DeckOp
 
 std::vector<std::string> make_names_unique(const Tetrahedra& tetrahedra, DeckOptions& options) {
   std::vector<std::string> changed;
-  // The sets by their places, because two sets may have one name.
+  // A set is identified by its position in the list, because two sets may have one name.
   const auto place_of = [](const auto& list, const std::string& name) {
     std::size_t place = 0;
     while (place < list.size() && list[place].name != name) ++place;

@@ -65,7 +65,7 @@ struct FlatCase {
   std::array<std::array<std::uint8_t, 3>, 5> triangles{};
 };
 
-/// From the numbers of marching_cubes.h.
+/// Converts from the edge numbers of marching_cubes.h.
 std::uint8_t edge_in_row(std::uint8_t edge) {
   if (edge < 4) return edge;
   return static_cast<std::uint8_t>((edge % 2 == 0 ? 4 : 8) + (edge - 4) / 2);
@@ -252,7 +252,7 @@ class Extraction {
     glm::dvec3* point_mm = surface_.points_mm.data() + planes_[z].vertices;
     for (std::size_t i = 0; i < edges.size(); ++i) {
       const glm::dvec3 p_voxel = glm::dvec3(edges[i].voxel) + parts[i] * unit[edges[i].axis];
-      // The same operations as in Lattice::lps_mm(), to the last bit.
+      // Uses the operations of Lattice::lps_mm() in the same order, so that the last bit agrees.
       *point_mm++ = (columns_mm_[0] * p_voxel.x + columns_mm_[1] * p_voxel.y) +
                     (columns_mm_[2] * p_voxel.z + columns_mm_[3]);
     }

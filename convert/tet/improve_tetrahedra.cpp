@@ -54,7 +54,7 @@ class Stars {
   std::vector<std::uint32_t> tets_;
 };
 
-/// To the corners and the faces' middles of a cube.
+/// The directions from a cube's centre to its corners and to the middles of its faces.
 const std::array<glm::dvec3, 14>& directions() {
   static const std::array<glm::dvec3, 14> all = [] {
     std::array<glm::dvec3, 14> made;

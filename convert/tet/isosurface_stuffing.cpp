@@ -84,7 +84,7 @@ Lattice lattice_about(const brep::Triangles& surface, double cell_mm) {
   return lattice;
 }
 
-/// Where the row along x through a point meets a face's plane, within the face.
+/// The x at which the row along x through a point meets a face's plane, within the face.
 double x_of(const brep::Triangles& surface, std::uint32_t face, const glm::dvec3& p) {
   const auto& corners = surface.faces[face];
   const glm::dvec3 &a = surface.points_mm[corners[0]], &b = surface.points_mm[corners[1]],

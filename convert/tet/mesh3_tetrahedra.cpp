@@ -169,7 +169,8 @@ struct Given {
   brep::SurfaceTree tree;
 };
 
-/// How far each node of the surface may move: as far as a facet's middle may lie from the surface there.
+/// The distance by which each node of the surface may move: the largest allowed distance between a facet's
+/// middle and the surface there.
 std::vector<double> play_mm(const Given& given, const std::vector<brep::Foot>& feet) {
   std::vector<double> play;
   for (const brep::Foot& foot : feet) {
@@ -235,7 +236,8 @@ std::optional<std::string> lost_details(Try& t, const Given& given, const std::v
   if (static_cast<double>(gone) <= lost_share() * static_cast<double>(triangles.size())) return std::nullopt;
   const glm::dvec3& first_mm = given.surface.points_mm[t.lost.front()];
   return "lost details: " + std::to_string(gone) + " of " + std::to_string(triangles.size()) +
-         " triangles of the given surface are further from the new one than a facet is large, the first at " +
+         " triangles of the given surface are further from the new surface than the size of a facet, the "
+         "first at " +
          rounded(first_mm) + " mm";
 }
 

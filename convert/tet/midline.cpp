@@ -21,7 +21,7 @@ std::vector<std::uint32_t> midline_nodes(const Tetrahedra& tetrahedra, const glm
       const auto [low, high] = std::minmax(corners.at(i), corners.at((i + 1) % 3));
       const double off_low = off(low), off_high = off(high);
       if (off_low * off_high > 0.0) continue;
-      // Both ends if the side lies in the plane.
+      // If the side lies in the plane, both its ends are added.
       if (std::abs(off_low) <= std::abs(off_high)) nodes.push_back(low);
       if (std::abs(off_high) < std::abs(off_low) || off_high == 0.0) nodes.push_back(high);
     }

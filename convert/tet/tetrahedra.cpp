@@ -30,7 +30,7 @@ TetMeasures measures_of(const TetCorners& p) {
       const std::size_t k = i == 0 ? (j == 1 ? 2 : 1) : 0;
       const std::size_t l = 6 - i - j - k;
       const glm::dvec3 edge = p.at(j) - p.at(i);
-      // The angle between the two faces at the edge, by their directions across it.
+      // The angle between the two faces at the edge equals that between their normals.
       const glm::dvec3 one = glm::cross(edge, p.at(k) - p.at(i));
       const glm::dvec3 other = glm::cross(edge, p.at(l) - p.at(i));
       const double angle = std::atan2(glm::length(glm::cross(one, other)), glm::dot(one, other));

@@ -31,8 +31,8 @@ void end_with_engine();
 /// out of time, memory or disk (status 3). Throws voxel::Stopped after the running process has ended.
 bool run_serial(const EngineRequest& request);
 
-/// The same with GNU parallel, whose log is code/parallel.log. It ends with this process, and so do its
-/// processes if they called end_with_engine(). Throws voxel::Error (Resource) if it is not installed.
+/// As run_serial(), but with GNU parallel, whose log is code/parallel.log. It ends with this process, and so
+/// do its processes if they called end_with_engine(). Throws voxel::Error (Resource) if it is not installed.
 bool run_parallel(const EngineRequest& request);
 
 /// Submits job arrays of at most 1,000 subjects and a group job that waits for them; the scripts and the logs

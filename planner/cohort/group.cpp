@@ -69,7 +69,7 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// Both kernels' answers of a column, for mesh minus voxel.
+/// Pairs of the two kernels' values in a column, from which the difference mesh minus voxel is computed.
 std::vector<std::pair<double, double>> of_kernels(const CohortColumn& column) {
   std::vector<std::pair<double, double>> answers;
   for (const CohortValue& value : column.values)

@@ -17,7 +17,7 @@ namespace octotomy::planner {
 struct GroupOptions {
   std::stop_token stop;
   std::function<void(const std::string& doing, double fraction)> progress;
-  /// The same cohort by another observer: the folder of its derivatives.
+  /// The same cohort, measured by another observer: the folder of its derivatives.
   std::optional<std::filesystem::path> against;
   std::vector<std::string> findings = {};  ///< findings on the cohort as a whole, listed before those of
                                            ///< subjects

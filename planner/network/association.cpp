@@ -181,7 +181,7 @@ int Association::read_unit(std::size_t most) {
   connection_.read(head.data(), head.size());
   const int kind = head[0];
   const std::size_t length = big_at({head.data(), head.size()}, 2, 4);
-  if (kind < asks || kind > aborts) break_off("sends what is not DICOM");
+  if (kind < asks || kind > aborts) break_off("sends data that are not DICOM");
   if (length > most)
     break_off("announces a unit of " + std::to_string(length) + " bytes, more than the " +
               std::to_string(most) + " allowed");
@@ -201,7 +201,7 @@ void Association::abort() {
     connection_.set_deadline(std::chrono::seconds(1));
     connection_.write(unit(aborts, std::string(4, '\0')));
   } catch (const PeerError&) {
-    // The other side has closed already.
+    // The other side has already closed the connection.
   }
 }
 

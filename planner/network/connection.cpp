@@ -253,7 +253,7 @@ Listener::Listener(const std::string& address, int port, const std::optional<Tls
   if (::bind(state_->socket.number(), found->ai_addr, found->ai_addrlen) != 0 ||
       ::listen(state_->socket.number(), 64) != 0)
     throw std::runtime_error(address + ":" + std::to_string(port) +
-                             ": cannot be listened on: " + std::strerror(errno));
+                             ": no connections can be accepted there: " + std::strerror(errno));
   make_ready(state_->socket.number());
 }
 

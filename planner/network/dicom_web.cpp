@@ -55,7 +55,7 @@ class Request {
     headers_.reset(curl_.slist_append(headers_.release(), line.c_str()));
     set(CURLOPT_HTTPHEADER, headers_.get());
   }
-  /// The body of a POST, of a known length.
+  /// Sets the request to a POST with a body of a known length.
   void post(std::uint64_t bytes, std::function<std::size_t(char*, std::size_t)> body) {
     body_ = std::move(body);
     set(CURLOPT_POST, 1L);
@@ -93,7 +93,8 @@ class Request {
  private:
   template <typename Value>
   void set(CURLoption option, Value value) {
-    // An option that an older library ignores may be one that keeps requests safe.
+    // An older library may ignore an unknown option, even one on which the safety of requests depends. So
+    // such an option is an error.
     if (const CURLcode code = curl_.easy_setopt(handle_.get(), option, value); code != CURLE_OK)
       throw voxel::Error(voxel::ErrorCode::Resource, "libcurl refuses option " + std::to_string(option) +
                                                          ": " + curl_.easy_strerror(code) +
@@ -194,11 +195,10 @@ void store_by_web(const WebArchive& archive, const fs::path& path, const std::st
   request.post(body.bytes(), [&](char* to, std::size_t count) { return body.read(to, count); });
   std::string said;
   const long status = request.run([&](const std::string&, std::string_view bytes) {
-    if (said.size() + bytes.size() > most_answer)
-      throw PeerError(archive.url + ": answers with more than 16 MB");
+    if (said.size() + bytes.size() > most_answer) throw PeerError(archive.url + ": its answer exceeds 16 MB");
     said.append(bytes);
   });
-  // The answer lists instances that were not stored with the reason (PS3.18, I.2).
+  // A response with the tag 00081197 lists instances that were not stored, with the reason (PS3.18, I.2).
   if (status != 200 || said.find("00081197") != std::string::npos)
     refuse(path.string() + ": not stored", status, status == 200 ? said.substr(0, 200) : request.reason());
 }
@@ -209,7 +209,7 @@ std::string search_by_web(const WebArchive& archive, const std::string& query, c
   std::string found;
   const long status = request.run([&](const std::string&, std::string_view bytes) {
     if (found.size() + bytes.size() > most_answer)
-      throw PeerError(archive.url + ": answers with more than 16 MB");
+      throw PeerError(archive.url + ": its answer exceeds 16 MB");
     found.append(bytes);
   });
   if (status == 204) return "[]";  // nothing was found

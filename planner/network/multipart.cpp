@@ -87,7 +87,8 @@ bool Multipart::step() {
 
 void Multipart::need_end(std::size_t more) {
   beside_ += more;
-  if (beside_ > most_beside) throw PeerError("the archive's answer has too many bytes outside of its parts");
+  if (beside_ > most_beside)
+    throw PeerError("the archive's answer has more bytes outside of its parts than is allowed");
 }
 
 void Multipart::finish() const {

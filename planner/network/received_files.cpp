@@ -99,8 +99,7 @@ ReceivedFile ReceivedFiles::Part::finish(const std::string& class_uid, const std
     made.class_uid = file.text(0x00080016);
     made.instance_uid = file.text(0x00080018);
   } catch (const voxel::DicomFile::NeedsMore&) {
-    // The attributes before the pixels are longer than the checked bytes: the identifiers are those that the
-    // peer announced.
+    // The attributes extend beyond the checked bytes, so the identifiers are those that the peer announced.
     made.class_uid = class_uid;
     made.instance_uid = instance_uid;
   } catch (const voxel::DicomFile::Deflated&) {

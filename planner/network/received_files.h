@@ -23,8 +23,8 @@ struct ReceivedFile {
   std::string class_uid, instance_uid;
 };
 
-/// The folder of received objects. Names are computed from the content alone, so nothing that a peer states can choose
-/// a path. May be used by several threads.
+/// The folder of received objects. Names are computed from the content alone, so no statement of a peer can
+/// choose a path. May be used by several threads.
 class ReceivedFiles {
  public:
   /// Makes the folder. Throws std::runtime_error with path and reason.
@@ -39,8 +39,8 @@ class ReceivedFiles {
     ~Part();
     /// Throws PeerError beyond the limits, std::runtime_error if the disk is full.
     void write(std::string_view bytes);
-    /// Checks that the bytes are a DICOM file whose attributes lie within it and, unless empty, of that class and
-    /// instance; renames it into place. Throws PeerError.
+    /// Checks that the bytes are a DICOM file whose attributes end within it and which has the given class
+    /// and instance, unless these are empty; renames it into place. Throws PeerError.
     ReceivedFile finish(const std::string& class_uid, const std::string& instance_uid);
 
    private:
@@ -49,7 +49,7 @@ class ReceivedFiles {
     std::unique_ptr<State> state_;
   };
 
-  /// In the order in which they arrived.
+  /// The received files, in the order in which they arrived.
   std::vector<ReceivedFile> files() const;
 
  private:

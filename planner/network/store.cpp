@@ -85,8 +85,8 @@ void send_file(Association& association, const OutgoingFile& file, std::uint16_t
     throw PeerError(stated() + " and did not store it");
 }
 
-/// Transfer syntaxes that are stored: little endian, and encapsulated pixels (PS3.5, annex A). Not deflated, and not
-/// big endian, which is retired.
+/// The transfer syntaxes that are stored: little endian, and encapsulated pixels (PS3.5, annex A). Deflated
+/// data sets are not stored, nor big endian ones, which are retired.
 bool is_taken(const std::string& syntax) {
   return syntax == implicit_little_endian || syntax == explicit_little_endian ||
          syntax == "1.2.840.10008.1.2.5" || syntax.starts_with("1.2.840.10008.1.2.4.");
@@ -96,8 +96,8 @@ bool is_stored(const std::string& class_uid) {
   return class_uid.starts_with("1.2.840.10008.5.1.4.");
 }
 
-/// The bytes of a file before its data set. They state only what the association agreed on; the peer sends no
-/// meta header.
+/// The bytes of a file before its data set. They contain only what the association agreed on, because the
+/// peer sends no meta header.
 std::string file_head(const std::string& class_uid, const std::string& instance_uid,
                       const std::string& syntax) {
   voxel::DicomAttributes meta;
@@ -137,7 +137,7 @@ class Receiver {
       if (command.kind != 0x0001 || !command.has_data || command.instance_uid.empty() ||
           command.class_uid != agreed.class_uid || !is_stored(agreed.class_uid)) {
         association.abort();
-        throw PeerError(association.peer() + ": sends a request other than storing an object or an echo");
+        throw PeerError(association.peer() + ": sends a request that is neither C-STORE nor C-ECHO");
       }
       take(association, context, agreed.syntaxes.front(), command);
       association.send(context, answer);
@@ -223,7 +223,7 @@ std::vector<std::string> store(const StorePeer& peer, const std::vector<Outgoing
                                const std::stop_token& stop) {
   std::vector<std::string> warnings;
   for (std::size_t first = 0; first < files.size();) {
-    // Takes files until one association has no context left for another kind.
+    // Adds files until one association has no context left for a further kind.
     std::set<std::pair<std::string, std::string>> kinds;
     std::size_t last = first;
     while (last < files.size() &&

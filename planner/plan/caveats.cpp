@@ -127,8 +127,8 @@ bool is_operated(const std::vector<ScanRecord>& records, std::string name) {
   }
 }
 
-/// As a share of an object's volume. More padding within the object makes its numbers wrong. Less padding
-/// may be dark samples of an MR that happen to have the padding's value, 0.
+/// A share of an object's volume. More padding within the object makes its numbers wrong. Less padding may be
+/// dark samples of an MR that happen to have the padding's value, 0.
 constexpr double most_missing_share = 0.005;
 
 void add_unmeasured(const MadeOf& from, Object& made) {

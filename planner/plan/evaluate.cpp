@@ -388,8 +388,8 @@ class Evaluator {
     return object;
   }
 
-  /// The same for operations that choose connected parts. Whether a neck thinner than a few voxels exists is
-  /// accidental, so parts that only one kernel joins by such a neck stay in both answers.
+  /// The agreed answer of operations that choose connected parts. Whether a neck thinner than a few voxels
+  /// exists is accidental, so parts that only one kernel joins by such a neck stay in both answers.
   Object agreed_answer(const Step& step, const void* value, const Object& begun) {
     constexpr int most_rounds = 4;
     Object made = answer(step, value, begun);

@@ -49,7 +49,7 @@ struct Plan {
 /// have an area, and that extensions of output files can be written. A step with "export" becomes surface,
 /// deck or label_map, by its path's extension. Throws std::runtime_error with file, step, key and a remedy.
 Plan read_plan(const std::filesystem::path& path);
-/// The same for a text; relative paths are relative to `folder`.
+/// Parses a plan's text as read_plan() does; relative paths are relative to `folder`.
 Plan parse_plan(const std::string& json, const std::filesystem::path& folder);
 
 /// The scan's path, made absolute against the plan's folder.

@@ -17,7 +17,7 @@ namespace {
 using voxel::Picture;
 using SharedPicture = std::shared_ptr<Picture>;
 
-/// As large as the program's pictures may be.
+/// The largest size of the program's pictures.
 constexpr int most_px = 8192;
 
 voxel::DrawnObject drawn(const voxel::Octree& octree, const std::optional<voxel::GreyOctree>& grey,

@@ -6,7 +6,8 @@
 
 namespace octotomy::bench {
 
-/// Adds a benchmark. Read its wall-clock time, `real_time`: the processor time is that of one of the threads.
+/// Adds a benchmark. Read its wall-clock time, `real_time`, because the processor time covers only one
+/// thread.
 template <typename Run>
 void add(const std::string& name, const Run& run) {
   benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMicrosecond);

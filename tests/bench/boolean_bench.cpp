@@ -30,7 +30,7 @@ void run(benchmark::State& state, const Pair& pair, Operator combine_two, int si
   state.counters["voxels"] = static_cast<double>(voxels);
 }
 
-// A new dense result of two dense operands, shared out to threads in parts of 256 KiB.
+// A new dense result of two dense operands, computed by threads in parts of 256 KiB.
 template <typename Operation>
 void run_dense(benchmark::State& state, const Pair& pair, Operation operation, int side) {
   const DenseBits a = dense_bits_of(pair.first(side));

@@ -11,7 +11,7 @@
 
 namespace octotomy::bench {
 
-/// CGAL's own surface mesh with its corefinement and measures called plainly, which is what its manual shows.
+/// CGAL's own surface mesh with its corefinement and measures, called as its manual shows.
 class CgalSurface {
  public:
   explicit CgalSurface(const brep::Triangles& triangles);
@@ -19,8 +19,7 @@ class CgalSurface {
   CgalSurface(CgalSurface&&) noexcept;
 
   enum class Operation { Union, Difference };
-  /// Triangles of the result. Corefinement spoils its operands, so it is of copies, which the answer's caller
-  /// makes beforehand.
+  /// The number of triangles of the result. Corefinement changes its operands, so callers pass copies.
   static std::size_t boolean(CgalSurface& a, CgalSurface& b, Operation operation);
   CgalSurface copy() const;
 
@@ -33,8 +32,8 @@ class CgalSurface {
 };
 
 using Segments = std::vector<std::pair<glm::dvec3, glm::dvec3>>;
-/// Asks which segments meet a surface, by CGAL's exact predicate: with CGAL's own tree, and with ours. Both
-/// return how many do.
+/// Counts the segments that meet a surface by CGAL's exact predicate, once with CGAL's own tree and once with
+/// ours.
 class SegmentQuestions {
  public:
   explicit SegmentQuestions(const brep::Triangles& triangles);

@@ -8,7 +8,7 @@
 
 namespace octotomy::bench {
 
-/// The plain rival: one bit a voxel of the whole universe, x fastest, 64 voxels a word.
+/// The simplest competitor: one bit a voxel of the whole universe, x fastest, 64 voxels a word.
 struct DenseBits {
   int side = 0;
   std::vector<std::uint64_t> words;

@@ -48,7 +48,7 @@ const voxel::Scene& ball_scan(int side) {
   return scans.emplace(side, std::move(scene)).first->second;
 }
 
-/// A scan of the head on the universe's lattice, so that whoever reads it reads the same samples.
+/// A scan of the head on the universe's lattice, so that all readers read the same samples.
 const voxel::Scene& head_on_universe(int side) {
   static std::map<int, voxel::Scene> scans;
   const auto found = scans.find(side);

@@ -7,7 +7,8 @@
 
 namespace octotomy::bench {
 
-/// A triangle mesh in Embree, its hierarchy built once, seen by coherent packets of sixteen rays.
+/// A triangle mesh in Embree, whose hierarchy is built once. It is traced by coherent packets of sixteen
+/// rays.
 class EmbreePeer {
  public:
   explicit EmbreePeer(const FlatMesh& mesh);
@@ -16,7 +17,7 @@ class EmbreePeer {
   EmbreePeer& operator=(const EmbreePeer&) = delete;
 
   /// Draws a picture with a head light on flat triangles, in parallel over tiles of 4 x 4 pixels; 3 bytes a
-  /// pixel. Gives back the number of lit pixels.
+  /// pixel. Returns the number of lit pixels.
   int draw(const PicturePlane& plane, std::vector<std::uint8_t>& rgb) const;
 
  private:

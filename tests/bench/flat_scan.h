@@ -8,7 +8,7 @@
 
 namespace octotomy::bench {
 
-/// A scan as peers take it: its samples stay where they are. Precondition: 16 bits a sample, on an
+/// A scan in the form that peers read. Its samples are not copied. Precondition: 16 bits a sample, on an
 /// axis-aligned lattice.
 inline FlatScan flat_scan(const voxel::Scene& scene) {
   FlatScan scan;

@@ -30,7 +30,7 @@ using octotomy::bench::Curve;
 using octotomy::voxel::Expression;
 using octotomy::voxel::Octree;
 
-// The median over so many runs that they take a fifth of a second, at least nine.
+// The median time of a run, from as many runs as take a fifth of a second, at least nine.
 double median_us(const std::function<void()>& run) {
   using Clock = std::chrono::steady_clock;
   std::vector<double> times;
@@ -144,7 +144,7 @@ class BallScan {
   std::filesystem::path folder_;
 };
 
-/// A mask with an outline of so many vertices, a circle in waves.
+/// A mask with an outline of this number of vertices, a circle in waves.
 std::string polygon(int vertices) {
   std::string points;
   for (int i = 0; i < vertices; ++i) {
@@ -156,7 +156,7 @@ std::string polygon(int vertices) {
          R"(]]}]},{"id": "cut", "do": "combine", "expression": "a & m"})";
 }
 
-/// An expression of so many operands.
+/// An expression with this number of operands.
 std::string operands(int count) {
   std::string expression = "a";
   for (int i = 1; i < count; ++i) expression += i % 2 == 0 ? " | b" : " - b";
@@ -165,7 +165,7 @@ std::string operands(int count) {
          expression + "\"}";
 }
 
-/// So many moves, one after another.
+/// A chain of this number of moves.
 std::string moves(int count) {
   std::string steps;
   for (int i = 0; i < count; ++i)

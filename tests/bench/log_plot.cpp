@@ -52,7 +52,7 @@ std::string line(double x1, double y1, double x2, double y2) {
   return svg.str();
 }
 
-// The curves' common places, or powers of ten where they have others.
+// The x values that all curves share, or powers of ten if the curves have different ones.
 std::vector<double> x_ticks(const LogPlot& plot, const Axis& x) {
   std::vector<double> common;
   for (const auto& [at, unused] : plot.curves.front().points) common.push_back(at);

@@ -19,8 +19,8 @@ struct LogPlot {
   std::vector<Curve> curves;
 };
 
-/// Draws curves on two logarithmic axes as SVG, each named with its fitted slope: the power that y grows by.
-/// Throws std::runtime_error where the file cannot be written.
+/// Draws curves on two logarithmic axes as SVG, each named with its fitted slope, the power of x by which y
+/// grows. Throws std::runtime_error if the file cannot be written.
 void write_svg(const LogPlot& plot, const std::filesystem::path& path);
 
 /// The power p of the line y = c x^p fitted to a curve's points by least squares of their logarithms.

@@ -11,7 +11,7 @@
 
 namespace {
 
-// What memory can do here and now: 256 MiB copied, counted as bytes read.
+// The memory bandwidth of this machine at present: 256 MiB copied, counted as bytes read.
 void run_memcpy(benchmark::State& state) {
   const std::vector<char> source(std::size_t{256} << 20, 1);
   std::vector<char> target(source.size());
@@ -26,7 +26,8 @@ void run_memcpy(benchmark::State& state) {
 
 int main(int argc, char** argv) {
 #if defined(__GLIBC__)
-  // As in a program that draws frame after frame: what is freed is kept for the next, ours and the peers'.
+  // Freed memory is kept for later allocations, ours and the peers', as in a program that draws frame after
+  // frame.
   mallopt(M_MMAP_THRESHOLD, 64 << 20);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
 #endif

@@ -14,7 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// As manifold_peer.mjs reads it: two counts, points in single precision, which is Manifold's, and corners.
+/// Appends a surface in the form that manifold_peer.mjs reads: two counts, points in single precision, which
+/// is Manifold's, and corners.
 void append(std::ofstream& out, const brep::Triangles& surface) {
   const auto put = [&](auto value) { out.write(reinterpret_cast<const char*>(&value), sizeof value); };
   put(static_cast<std::uint32_t>(surface.points_mm.size()));

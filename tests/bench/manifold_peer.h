@@ -8,8 +8,8 @@
 
 namespace octotomy::bench {
 
-/// The folder of npm's package manifold-3d: what OCTOTOMY_MANIFOLD names, or where npm installs for
-/// everybody; empty where there is none.
+/// The folder of npm's package manifold-3d: the one in OCTOTOMY_MANIFOLD, or npm's global folder; empty if
+/// neither exists.
 std::filesystem::path manifold_folder();
 
 /// A Boolean by Manifold, in WebAssembly under node: the median of several in one process, without loading

@@ -31,7 +31,7 @@ struct Pair {
   brep::Operation operation = brep::Operation::Union;
 };
 
-/// A ball of unit radius of 2 * rings * (rings - 1) triangles, turned so that nothing of it lies along an
+/// A ball of unit radius with 2 * rings * (rings - 1) triangles, turned so that no part of it lies along an
 /// axis.
 brep::Triangles ball(const glm::dvec3& centre, std::uint32_t rings) {
   brep::Triangles t;
@@ -62,13 +62,13 @@ Pair balls(std::uint32_t rings) {
   return {ball({0, 0, 0}, rings), ball({0.71, 0.33, 0.27}, rings), brep::Operation::Union};
 }
 
-/// The head phantom's bone less a box that holds a piece of its brow.
+/// The head phantom's bone minus a box that contains a piece of its brow.
 Pair bone_box(int side) {
   return {convert::isosurface(grey_skull(side), 300.0, std::numeric_limits<double>::infinity()),
           brep::shapes::box({-13.3, -120.1, 11.7}, {31.9, -60.2, 42.3}), brep::Operation::Difference};
 }
 
-/// Two balls that all but coincide: every triangle meets some of the other's.
+/// Two balls that almost coincide: every triangle meets some triangles of the other ball.
 Pair twins(std::uint32_t rings) {
   return {ball({0, 0, 0}, rings), ball({0.3 / rings, 0.2 / rings, 0.4 / rings}, rings),
           brep::Operation::Union};
@@ -94,7 +94,7 @@ void run_gap(benchmark::State& state, const brep::Triangles& a, const brep::Tria
   state.counters["gap_mm"] = gap_mm;
 }
 
-/// The least distance of all corners, one way, as the reference.
+/// The distances of all corners in one direction, as a lower bound for the comparison.
 void run_corners(benchmark::State& state, const brep::Triangles& a, const brep::Triangles& b) {
   double gap_mm = 0.0;
   for (auto _ : state) {
@@ -104,7 +104,7 @@ void run_corners(benchmark::State& state, const brep::Triangles& a, const brep::
   state.counters["gap_mm"] = gap_mm;
 }
 
-/// Takes triangles from a ball of unit radius.
+/// Removes triangles from a ball of unit radius.
 template <typename Decimate>
 void run_decimate(benchmark::State& state, const Decimate& decimate) {
   const brep::Mesh mesh = brep::mesh_of(ball({0, 0, 0}, 224));
@@ -127,7 +127,7 @@ void run_offset(benchmark::State& state, const brep::Triangles& surface) {
         static_cast<double>(brep::offset(solid, half_a_cell_out()).triangles().faces.size());
 }
 
-/// The signed distances at the offset's points, once: the least that makes such a surface.
+/// The signed distances at the offset's points, computed once: no offset can take less time.
 void run_offset_points(benchmark::State& state, const brep::Triangles& surface) {
   const brep::Solid solid = brep::solid_of(surface);
   const std::vector<glm::dvec3> points_mm = brep::offset(solid, half_a_cell_out()).triangles().points_mm;
@@ -157,7 +157,7 @@ void run_cgal_size(benchmark::State& state, const brep::Triangles& triangles) {
   for (auto _ : state) benchmark::DoNotOptimize(surface.volume_and_area());
 }
 
-/// Short ways about a ball's surface, as a mesher asks about them.
+/// Short segments around a ball's surface, like those that a mesher tests.
 void run_segments(benchmark::State& state, std::size_t (SegmentQuestions::*met)(const Segments&) const) {
   const brep::Triangles surface = ball({0, 0, 0}, 224);
   const SegmentQuestions questions(surface);
@@ -183,7 +183,7 @@ void run_manifold(benchmark::State& state, const Pair& pair) {
   }
 }
 
-/// Against Manifold alone where CGAL would take minutes.
+/// Compares only with Manifold, because CGAL would take minutes.
 template <typename Make>
 void add_large_boolean(const std::string& name, const Make& make) {
   add(name, [=](benchmark::State& state) { run_ours(state, make()); });

@@ -20,8 +20,8 @@ void run(benchmark::State& state, const voxel::Expression& still, const voxel::M
   state.counters["voxels"] = static_cast<double>(voxels);
 }
 
-// Every voxel of the universe looked up where it was: one row of 64 voxels at a time, in fixed point, so that
-// the compiler can keep the places in vectors.
+// Looks up every voxel of the universe at its place before the motion: one row of 64 voxels at a time, in
+// fixed point, so that the compiler can vectorise.
 void run_dense(benchmark::State& state, const voxel::Motion& motion, int side) {
   const DenseBits source = dense_bits_of(skull(side));
   const voxel::Lattice lattice = universe(side).lattice();
@@ -63,8 +63,8 @@ void run_dense(benchmark::State& state, const voxel::Motion& motion, int side) {
   }
 }
 
-// 36 turns of 10 degrees, evaluated at every one: how much of the volume that costs, and that composing the
-// motions first costs none.
+// 36 turns of 10 degrees, evaluated after each turn, to show the volume that this loses; and composed before
+// one evaluation, which loses none.
 void run_circle(benchmark::State& state, bool evaluated, const voxel::Resampling& resampling) {
   constexpr int side = 256;
   voxel::Motion ten;

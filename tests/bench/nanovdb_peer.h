@@ -5,11 +5,11 @@
 
 #include "tests/bench/picture_plane.h"
 
-// As OpenVDB, from which it takes its grid, behind a narrow door: its unit is compiled as C++17.
+// An interface without NanoVDB's headers, because its unit is compiled as C++17. The grid comes from OpenVDB.
 
 namespace octotomy::bench {
 
-/// A surface as a level set in NanoVDB, made once, seen by single rays.
+/// A surface as a level set in NanoVDB, built once and traced by single rays.
 class NanoVdbPeer {
  public:
   NanoVdbPeer(const FlatMesh& mesh, double voxel_mm);
@@ -18,7 +18,7 @@ class NanoVdbPeer {
   NanoVdbPeer& operator=(const NanoVdbPeer&) = delete;
 
   /// Draws a picture with a head light on the level set's gradient, in parallel over tiles of 8 x 8 pixels; 3
-  /// bytes a pixel. Gives back the number of lit pixels. The surface is found to a voxel.
+  /// bytes a pixel. Returns the number of lit pixels. The surface is located to a voxel.
   int draw(const PicturePlane& plane, std::vector<std::uint8_t>& rgb) const;
 
  private:

@@ -105,7 +105,7 @@ OpenVdbVoxeliser::~OpenVdbVoxeliser() = default;
 std::uint64_t OpenVdbVoxeliser::band_voxels() const {
   const openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> mesh(mesh_->points,
                                                                                         mesh_->triangles);
-  // The narrowest band in which its signs are sound.
+  // The narrowest band for which its signs are correct.
   const openvdb::FloatGrid::Ptr grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
       mesh, *openvdb::math::Transform::createLinearTransform(mesh_->voxel_mm), 1.0f, 1.0f);
   return grid->activeVoxelCount();

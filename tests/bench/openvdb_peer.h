@@ -8,7 +8,7 @@
 
 #include "tests/bench/picture_plane.h"
 
-// OpenVDB behind a narrow door: its headers and oneTBB's do not agree in C++20, so its unit is compiled as
+// An interface without OpenVDB's headers, which conflict with oneTBB's in C++20. So its unit is compiled as
 // C++17.
 
 namespace octotomy::bench {
@@ -16,18 +16,18 @@ namespace octotomy::bench {
 /// A set of voxels as a pruned MaskGrid, and as the BoolGrid that GridTransformer takes.
 class OpenVdbPeer {
  public:
-  /// From one bit a voxel, x fastest, 64 voxels a word.
+  /// `words` has one bit a voxel, x fastest, 64 voxels a word.
   OpenVdbPeer(int side, const std::vector<std::uint64_t>& words);
   ~OpenVdbPeer();
   OpenVdbPeer(const OpenVdbPeer&) = delete;
   OpenVdbPeer& operator=(const OpenVdbPeer&) = delete;
 
-  /// Copies this mask and applies a topology operation with the other one to the copy. Gives back its voxels
-  /// where `count`, as that costs time of its own.
+  /// Copies this mask and applies a topology operation with the other one to the copy. Returns the number of
+  /// voxels if `count` is true, because counting takes additional time.
   enum class Operation { Union, Intersection, Difference };
   std::uint64_t combine(Operation operation, const OpenVdbPeer& other, bool count) const;
-  /// Resamples by the nearest voxel under a map of voxel indices, columns first. Gives back voxels where
-  /// `count`.
+  /// Resamples by the nearest voxel under a map of voxel indices, columns first. Returns the number of voxels
+  /// if `count` is true.
   std::uint64_t transform(const std::array<double, 16>& target_from_source, bool count) const;
   std::uint64_t bytes() const;
 
@@ -44,7 +44,7 @@ class OpenVdbSurface {
   OpenVdbSurface(const OpenVdbSurface&) = delete;
   OpenVdbSurface& operator=(const OpenVdbSurface&) = delete;
 
-  /// Draws a picture with its diffuse shader and gives back the number of lit pixels.
+  /// Draws a picture with OpenVDB's diffuse shader and returns the number of lit pixels.
   int draw(const PicturePlane& plane) const;
 
  private:
@@ -52,7 +52,7 @@ class OpenVdbSurface {
   std::unique_ptr<Grid> grid_;
 };
 
-/// A closed mesh made a level set by meshToVolume, the way into OpenVDB's volumes, and its inside.
+/// Converts a closed mesh to a level set by meshToVolume, as OpenVDB reads volumes, and computes its inside.
 class OpenVdbVoxeliser {
  public:
   OpenVdbVoxeliser(const FlatMesh& mesh, double voxel_mm);
@@ -60,7 +60,7 @@ class OpenVdbVoxeliser {
   OpenVdbVoxeliser(const OpenVdbVoxeliser&) = delete;
   OpenVdbVoxeliser& operator=(const OpenVdbVoxeliser&) = delete;
 
-  /// Voxelises anew and gives back the active voxels of its narrow band.
+  /// Voxelises the mesh again and returns the number of active voxels of its narrow band.
   std::uint64_t band_voxels() const;
 
  private:

@@ -16,7 +16,7 @@ struct Pair {
 };
 std::span<const Pair> pairs();
 
-/// The motions that are measured: by whole voxels, and a turn of 5 degrees with a translation.
+/// The motions that are measured: a translation by whole voxels, and a turn of 5 degrees with a translation.
 voxel::Motion translation(int side);
 voxel::Motion rotation();
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "brep/mesh/mesh.h"
-// After mesh.h, which leaves OpenMesh's assertions out.
+// Included after mesh.h, which turns OpenMesh's assertions off.
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <cstdint>
 #include <filesystem>
@@ -39,7 +39,7 @@ const std::filesystem::path& series() {
   return folder;
 }
 
-// From a folder to a grey octree, all audits made.
+// Reads a folder into a grey octree, with all audits.
 void run_ours(benchmark::State& state) {
   const std::filesystem::path& folder = series();
   for (auto _ : state) {

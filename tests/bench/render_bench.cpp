@@ -52,8 +52,8 @@ voxel::DrawnObject drawn_skull(int side) {
   return {"skull", voxel::combine(universe(side), voxel::Window{grey, bone_hu, 32767.0}), {}, grey, bone_hu};
 }
 
-/// The skull with its upper jaw cut off by a mask of two regions and moved, as when a piece is under the
-/// hand: no octree is made of either.
+/// The skull with its upper jaw cut off by a mask of two regions and moved, as while a piece is dragged: no
+/// octree is built for either part.
 std::vector<voxel::DrawnObject> planned_skull(const voxel::DrawnObject& skull) {
   static const voxel::Expression cut(
       voxel::RegionMask{{{voxel::parse_view("anterior"), {{{{-40, -60}, {40, -60}, {40, -25}, {-40, -25}}}}},
@@ -97,7 +97,7 @@ void run(benchmark::State& state, const Case& the) {
   return {p.x, p.y, p.z};
 }
 
-// Where no peer is installed nobody asks for these.
+// Unused if no peer is installed.
 [[maybe_unused]] PicturePlane plane_of(const Case& the) {
   const std::vector<voxel::DrawnObject> objects{{"skull", skull(the.side)}};
   const glm::ivec2 size_px(the.side_px);

@@ -32,7 +32,7 @@ voxel::Expression sphere(int, double offset) {
 voxel::Octree chequered_sphere(int side) {
   const voxel::Box bounds = voxel::bounds(universe(side).lattice());
   const double cell_mm = (bounds.high_mm.x - bounds.low_mm.x) / 8.0;
-  // One slab set an axis; a cell is in where an odd number of axes say so.
+  // One set of slabs for each axis. A cell is inside if an odd number of axes contain it.
   std::optional<voxel::Expression> board;
   for (int axis = 0; axis < 3; ++axis)
     for (int slab = 0; slab < 8; slab += 2) {

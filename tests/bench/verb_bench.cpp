@@ -49,8 +49,8 @@ Path program() {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "octotomy";
 }
 
-/// Runs the program to its end, and calls `look` every few milliseconds meanwhile. Returns its exit status,
-/// or -1 where it did not start or was killed.
+/// Runs the program to its end, and calls `look` every few milliseconds in the meantime. Returns its exit
+/// status, or -1 if it did not start or was killed.
 int run_verb(std::vector<std::string> words, rusage& used, const std::function<void()>& look) {
   words.insert(words.begin(), program().string());
   std::vector<char*> arguments;
@@ -90,7 +90,7 @@ struct Verb {
   Path page = {};                 ///< in a folder of the verb's own: what it shows first, where it does
 };
 
-/// `make` prepares the data; it throws std::runtime_error to say what is missing.
+/// `make` prepares the data. If they are missing, it throws std::runtime_error with the reason.
 void run(benchmark::State& state, const std::function<Verb()>& make) {
   try {
     if (!std::filesystem::exists(program()))
@@ -109,7 +109,7 @@ void run(benchmark::State& state, const std::function<Verb()>& make) {
           first_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       };
       verb_s += seconds_of([&] { status = run_verb(verb.words, used, look); });
-      // 1 is a certificate that fails, which takes as long.
+      // Status 1 means a failed certificate, which takes the same time.
       if (status != 0 && status != 1)
         throw std::runtime_error("'" + verb.words.front() + "' ended with status " + std::to_string(status));
     }
@@ -122,8 +122,8 @@ void run(benchmark::State& state, const std::function<Verb()>& make) {
   }
 }
 
-/// The head phantom's scan at 1 mm, interpolated between its samples to other dimensions, as a NRRD file.
-/// Throws std::runtime_error where the disk has no room for it.
+/// The head phantom's scan at 1 mm, interpolated to other dimensions, as a NRRD file. Throws
+/// std::runtime_error if the disk has no room for it.
 Path fine_head(const glm::ivec3& dims) {
   const Path path = workspace() / ("head_" + std::to_string(dims.x) + "_" + std::to_string(dims.z) + ".nrrd");
   if (std::filesystem::exists(path)) return path;
@@ -218,7 +218,7 @@ Verb run_plan() {
           }};
 }
 
-/// The phantom's bone and itself reflected.
+/// The phantom's bone and its mirror image.
 std::pair<Path, Path> bones() {
   const std::pair paths(bone_file(".ply"), workspace() / "reflected.ply");
   if (std::filesystem::exists(paths.second)) return paths;
@@ -239,7 +239,7 @@ Verb compare() {
           }};
 }
 
-/// A surface read, known to be a solid, reflected and written.
+/// A surface is read, recognised as a solid, reflected and written.
 Verb mirror() {
   const Path bone = bone_file(".ply");
   return {{"mirror", bone.string(), "-o", (workspace() / "mirrored.ply").string()}, [bone] {

@@ -18,8 +18,8 @@ namespace {
 using std::numbers::pi;
 using verify::Facet;
 
-/// Stars of 60 sides in planes of every direction, as windows of a scan end in at its edges; large ones
-/// first.
+/// Stars of 60 sides in planes of every direction, like the ends of scan windows at a scan's border; large
+/// ones first.
 std::vector<Facet> stars(int count) {
   std::vector<Facet> facets;
   for (int i = 0; i < count; ++i) {
@@ -43,7 +43,7 @@ std::vector<Facet> stars(int count) {
   return facets;
 }
 
-/// The seconds of the sum by its definition.
+/// The time in seconds of the sum by its definition.
 double plain_seconds(const std::vector<Facet>& facets) {
   const auto start = std::chrono::steady_clock::now();
   const std::vector<glm::ivec3> vectors = verify::count_vectors(facets);

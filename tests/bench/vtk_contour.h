@@ -8,7 +8,8 @@
 
 namespace octotomy::bench {
 
-/// A dense scan in VTK's flying edges, on as many threads as given; normals and gradients are not asked for.
+/// A dense scan in VTK's flying edges, on the given number of threads; normals and gradients are not
+/// computed.
 class VtkContour {
  public:
   VtkContour(const FlatScan& scan, double value, int threads);
@@ -16,7 +17,7 @@ class VtkContour {
   VtkContour(const VtkContour&) = delete;
   VtkContour& operator=(const VtkContour&) = delete;
 
-  /// Extracts the surface anew and gives back its number of triangles.
+  /// Extracts the surface again and returns its number of triangles.
   std::size_t triangles() const;
   /// The surface that triangles() extracted last, in LPS millimetres.
   FlatMesh surface() const;

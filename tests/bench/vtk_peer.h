@@ -16,7 +16,7 @@ class VtkPeer {
   VtkPeer(const VtkPeer&) = delete;
   VtkPeer& operator=(const VtkPeer&) = delete;
 
-  /// Draws a picture and gives back the number of lit pixels.
+  /// Draws a picture and returns the number of lit pixels.
   int draw(const PicturePlane& plane) const;
 
  private:

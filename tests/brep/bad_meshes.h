@@ -12,13 +12,13 @@
 
 #include "tests/brep/shapes.h"
 
-// Meshes as other programs leave them, each spoiled in one way, or in several where those come together.
+// Meshes as other programs write them, each spoiled in one way, or in several ways that occur together.
 namespace octotomy::brep::shapes {
 
 struct BadMesh {
   std::string name;
   Triangles triangles;
-  /// Of the solid that is meant, in mm3; none where nothing is enclosed, and a solid must be refused.
+  /// The volume of the intended solid, mm3; none if nothing is enclosed, and a solid must be refused.
   std::optional<double> volume_mm3;
   bool any_volume = false;  ///< no volume is meant, but closing the holes makes one
 };
@@ -45,7 +45,7 @@ inline Triangles unwelded(const Triangles& t, double noise = 0.0) {
   return soup;
 }
 
-/// Points that coincide are one.
+/// Merges points that coincide.
 inline Triangles welded(Triangles t) {
   std::map<std::array<double, 3>, std::uint32_t> first;
   const auto place = [&](std::size_t v) -> std::array<double, 3> {
@@ -68,7 +68,7 @@ inline Triangles scaled(Triangles t, const glm::dvec3& by) {
   return t;
 }
 
-/// A strip with half a turn in it, or with whole ones.
+/// A strip with one or several half turns.
 inline Triangles strip(int half_turns, int around) {
   Triangles t;
   for (int i = 0; i < around; ++i) {

@@ -68,7 +68,7 @@ inline Triangles torus(double ring, double tube, int around, int across) {
   return t;
 }
 
-/// Both, side by side in one list.
+/// Both surfaces in one list.
 inline Triangles together(Triangles a, const Triangles& b) {
   const auto shift = static_cast<std::uint32_t>(a.points_mm.size());
   a.points_mm.insert(a.points_mm.end(), b.points_mm.begin(), b.points_mm.end());

@@ -8,7 +8,7 @@
 
 namespace octotomy::tests {
 
-/// Findings in one line, for what a failed test prints.
+/// Findings in one line, for the output of a failed test.
 inline std::string told(const std::vector<std::string>& findings) {
   std::string text;
   for (const std::string& finding : findings) text += finding + "; ";

@@ -5,8 +5,8 @@
 
 namespace octotomy::tests {
 
-/// A cube of 1 mm from its lowest corner on, cut in five: four corners, and in its middle an element whose
-/// four nodes are on the surface too.
+/// A cube of 1 mm with its lowest corner at `corner_mm`, cut in five: four corners, and in its middle an
+/// element whose four nodes are also on the surface.
 inline convert::Tetrahedra cube_in_five(const glm::dvec3& corner_mm = glm::dvec3(0.0)) {
   convert::Tetrahedra t;
   for (int c = 0; c < 8; ++c) t.nodes_mm.push_back(corner_mm + glm::dvec3(c & 1, (c >> 1) & 1, c >> 2));

@@ -15,15 +15,15 @@
 #include "brep/mesh/triangles.h"
 #include "tests/brep/shapes.h"
 
-// Closed surfaces with known volumes, and an independent proof of closedness.
+// Closed surfaces with known volumes, and an independent test of closedness.
 
 namespace octotomy::tests {
 
 using brep::shapes::inside_out;
 using brep::shapes::together;
 
-/// Why the triangles are no closed oriented manifold surface: the first edge that has not exactly one
-/// triangle in each direction, the first triangle that repeats a point. None where they are one.
+/// The reason why the triangles are no closed oriented manifold surface: the first edge that has not exactly
+/// one triangle in each direction, or the first triangle that repeats a point. None if they are one.
 inline std::optional<std::string> fault_in_closedness(const brep::Triangles& triangles) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
   edges.reserve(3 * triangles.faces.size());

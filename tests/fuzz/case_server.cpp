@@ -65,7 +65,7 @@ int serve(int count, char** arguments, char** environment) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   const int socket = std::atoi(arguments[1]);
   fcntl(socket, F_SETFD, FD_CLOEXEC);
-  // A thread's locks would be held for ever in a child. Its harness sees the server's end.
+  // A child would hold another thread's locks for ever. The harness detects that the server ended.
   const std::filesystem::directory_iterator threads("/proc/self/task");
   if (std::distance(begin(threads), end(threads)) != 1) std::abort();
   for (;;) {

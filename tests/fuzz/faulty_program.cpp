@@ -13,7 +13,7 @@ namespace {
 int calls = 0;
 std::vector<std::string> kept;
 
-/// Holds so many MiB that are written to.
+/// Allocates this number of MiB and writes to them.
 void keep(std::size_t mib) {
   kept.emplace_back(mib << 20, 'x');
 }

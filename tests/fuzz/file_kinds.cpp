@@ -84,7 +84,7 @@ std::string ramp_text() {
   return text;
 }
 
-/// A NRRD that states what others leave out.
+/// A NRRD with statements that others leave out.
 std::string nrrd_text() {
   return "NRRD0005\n# text\ntype: double\ndimension: 4\nspace: right-anterior-superior\nsizes: 1 20 20 20\n"
          "space directions: none (1,0,0) (0,1,0) (0.1,0,1.5)\nspace origin: (-10,-9.5,3e1)\n"
@@ -122,7 +122,7 @@ std::string nifti_samples(const std::string& whole) {
   return whole.substr(static_cast<std::size_t>(offset));
 }
 
-/// What the sound files are made with, and lie in.
+/// The tools that make the sound files, and the folder that contains these.
 class SoundFiles {
  public:
   SoundFiles(fs::path folder, const std::function<void(const Command&)>& make)
@@ -201,7 +201,7 @@ class Kinds {
     return all_.back();
   }
 
-  /// A scan, with the options that every verb needs to read it, and a window of samples that it has.
+  /// A scan, with the options that every verb needs to read it, and a window of samples that occur in it.
   FileKind& scan(const std::string& name, const std::string& file, std::string sound,
                  const Command& options = {}, const std::string& window = "300:") {
     FileKind& kind = add(name, file, std::move(sound));
@@ -408,7 +408,7 @@ class Kinds {
     add("frd", "face.frd", frd(), {"warp", at("box.stl"), "--result", "MUTANT", "-o", "OUT.stl"});
   }
 
-  /// What is drawn or marked by hand.
+  /// Adds the kinds of files that contain drawings or marks.
   void add_drawings() {
     const auto mask = [&](const std::string& name, const std::string& file, std::string sound,
                           Command command) {

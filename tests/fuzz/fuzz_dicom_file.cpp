@@ -19,7 +19,7 @@ void need(bool holds) {
   if (!holds) std::abort();
 }
 
-/// Asks for all that a slice's reader asks for, in sequences as well.
+/// Reads everything that a slice's reader reads, in sequences as well.
 void ask(const DicomFile& file, std::size_t file_bytes, int depth) {
   for (const DicomTag tag : {0x00080005u, 0x00080008u, 0x00080060u, 0x0008103eu, 0x00281054u})
     need(file.readable_text(tag).size() <= 3 * file_bytes);

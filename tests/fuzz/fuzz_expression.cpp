@@ -52,7 +52,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } catch (const std::invalid_argument&) {
     return 0;
   }
-  // What was printed has to be read, and printed the same.
+  // A printed expression must be readable, and must print the same.
   const Expression again = parse_expression(printed, dictionary.names());
   if (print_expression(again, dictionary.labels()) != printed) std::abort();
   if (octotomy::voxel::names_in(text) != octotomy::voxel::names_in(printed)) std::abort();

@@ -42,7 +42,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::ofstream(folder / "header.img", std::ios::binary) << std::string(4096, '\1');
   try {
     const octotomy::voxel::VolumeHeader header = octotomy::voxel::read_volume_header(path, kind.format);
-    // Packed samples may be a thousand times the file.
+    // Compressed samples may be a thousand times larger than the file.
     const glm::dvec3 dims(header.geometry.dims);
     if (dims.x * dims.y * dims.z <= 1e6) octotomy::voxel::read_volume(path, kind.format);
   } catch (const std::runtime_error& error) {

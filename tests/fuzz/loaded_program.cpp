@@ -34,8 +34,8 @@ void limit(int resource, rlim_t most) {
   setrlimit(resource, &both);
 }
 
-/// What a process under test is started with. Its words and paths are made before the fork: this process has
-/// threads, after whose fork little is safe.
+/// The arguments and paths of a process under test. They are made before the fork, because this process has
+/// threads and little is safe after its fork.
 struct Start {
   Start(const Subject& subject, std::vector<std::string> after_name, const fs::path& folder)
       : address_space(rlim_t{subject.address_space_mib} << 20),
@@ -78,7 +78,7 @@ bool can_read(int file, double seconds) {
   return false;
 }
 
-/// What was said, but for the times that it took and those at which it was done.
+/// The output without durations and times of day.
 std::string without_times(std::string out) {
   for (const auto& [name, end] : {std::pair{"\"timings_ms\"", '}'}, {"\"made_at\"", '\n'}})
     for (std::size_t at = 0; (at = out.find(name, at)) != std::string::npos;)
@@ -90,7 +90,7 @@ bool are_alike(const Outcome& a, const Outcome& b) {
   return a.status == b.status && a.errors == b.errors && without_times(a.out) == without_times(b.out);
 }
 
-/// Never of a sanitized program, whose shadow memory is no measure.
+/// Always false for a sanitized program, whose shadow memory cannot be compared.
 bool took_more([[maybe_unused]] const Outcome& outcome, [[maybe_unused]] std::size_t most_mib) {
 #ifdef OCTOTOMY_SANITIZED
   return false;
@@ -197,9 +197,9 @@ Outcome LoadedProgram::run(const std::vector<std::string>& arguments) {
   outcome.resident_mib = static_cast<std::size_t>(report.resident_kib) >> 10;
   outcome.out = bytes_of(out_in(folder_));
   outcome.errors = bytes_of(errors_in(folder_));
-  // What a child keeps may add up; so may a child return just when its time is over.
+  // A child's memory may add up over cases, or the child may return exactly when its time ends.
   const bool is_spent = outcome.timed_out || took_more(outcome, subject_.resident_mib);
-  // The number of a child that has ended may be another process's.
+  // The number of a child that has ended may belong to another process.
   if (is_spent && report.kind != CaseReport::Ended) kill(child_, SIGKILL);
   while (is_spent && report.kind != CaseReport::Ended) report = next_report();
   if (report.kind == CaseReport::Ended) begin_child();

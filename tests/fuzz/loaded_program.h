@@ -10,7 +10,8 @@
 
 #include "tests/fuzz/case_report.h"
 
-// The program under test, run as a process a case or loaded once for many, and what it may not do.
+// The program under test, which runs as a process per case or is loaded once for many, and the limits that it
+// must keep.
 namespace octotomy::tests {
 
 /// A program and the limits of one case of it.
@@ -19,13 +20,15 @@ struct Subject {
   double seconds = 20.0;
   std::size_t address_space_mib = 1536;
   std::size_t resident_mib = 384;
-  /// The same of a verb that computes: it follows the work, as the triangles of a noisy scan, not the file.
+  /// The memory limit of a verb that computes. It depends on the work, such as the triangles of a noisy scan,
+  /// and not on the file.
   std::size_t computing_mib = 1024;
-  /// Cases that a child of the loaded program runs: what a child loads and keeps is paid once for them.
+  /// The number of cases that a child of the loaded program runs. What a child loads and keeps is paid once
+  /// for them.
   unsigned batch = 500;
 };
 
-/// How a case ended.
+/// The outcome of a case.
 struct Outcome {
   int status = -1;  ///< exit status, or minus the signal
   bool timed_out = false;
@@ -33,20 +36,21 @@ struct Outcome {
   std::string out, errors;
 };
 
-/// Runs the arguments (without the program's name) as a process of their own; `folder` gets its output.
-/// Throws std::runtime_error where no process can be started.
+/// Runs the arguments (without the program's name) in a new process; `folder` receives its output. Throws
+/// std::runtime_error if no process can be started.
 Outcome run_alone(const Subject& subject, const std::vector<std::string>& arguments,
                   const std::filesystem::path& folder);
 
-/// Why an outcome is a fault; empty where it is none. None is: status 0 or 1 with a JSON object on standard
-/// output; status 2 with one line on standard error and nothing on standard output; within the limits. Where
-/// `may_lack` is set, status 3 (time, memory or disk) is a refusal like 2.
+/// The reason why an outcome is a fault; empty if it is none. These are no faults: status 0 or 1 with a JSON
+/// object on standard output; status 2 with one line on standard error and nothing on standard output; within
+/// the limits. If `may_lack` is true, status 3 (time, memory or disk) is a refusal like 2.
 std::string fault_of(const Outcome& outcome, const Subject& subject, bool may_lack = false);
 
 /// A program that is loaded once: its cases run one after the other in children forked before main().
 class LoadedProgram {
  public:
-  /// `folder` must outlive it and gets its output. Throws std::runtime_error where the program cannot serve.
+  /// `folder` must outlive this object and receives the program's output. Throws std::runtime_error if the
+  /// program cannot serve.
   LoadedProgram(Subject subject, std::filesystem::path folder);
   ~LoadedProgram();
   LoadedProgram(const LoadedProgram&) = delete;
@@ -59,8 +63,8 @@ class LoadedProgram {
     Outcome outcome;
     std::string fault;  ///< empty where there is none
   };
-  /// Runs one case and judges it. A case that seems a fault runs again as a process of its own, and so does a
-  /// case to be checked: that outcome counts. The two must be alike, unless the child wanted time or memory.
+  /// Runs one case and judges it. A case that seems a fault runs again in a new process, and so does a case
+  /// to be checked; that outcome counts. The two must be equal, unless the child lacked time or memory.
   /// `before_each` is called before either run.
   Judged judge(
       const std::vector<std::string>& arguments, bool check, bool may_lack = false,

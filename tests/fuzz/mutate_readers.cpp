@@ -51,12 +51,12 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// A number that shows no pattern of the seed's.
+/// A number without the pattern of consecutive seeds.
 std::uint64_t scattered(std::uint64_t seed) {
   return (seed * 0x9e3779b97f4a7c15u) >> 32;
 }
 
-/// The command with the names that MUTANT and OUT stand for, and JSON wanted. OUT is in the folder `out`.
+/// The command with MUTANT and OUT replaced by names, and with JSON output. OUT is in the folder `out`.
 std::vector<std::string> with_names(std::vector<std::string> command, const fs::path& mutant,
                                     const fs::path& folder) {
   for (std::string& word : command)
@@ -72,7 +72,7 @@ std::vector<std::string> with_names(std::vector<std::string> command, const fs::
 struct Worker {
   Worker(const Subject& subject, const fs::path& in) : folder(in), program(subject, in) {}
 
-  /// Lays a file of a kind where the program will find it.
+  /// Writes a file of a kind to the path where the program reads it.
   void lay(const FileKind& kind, const std::string& bytes) const {
     const fs::path place = folder / kind.name;
     if (kind.is_changed) fs::remove_all(place);
@@ -108,8 +108,8 @@ class KindRun {
  public:
   KindRun(const Options& options, const FileKind& kind) : options_(options), kind_(kind) {}
 
-  /// The sound file is read, alone and in a batch, and the verbs take it, where they are new: a harness that
-  /// only ever sees refusals tests nothing.
+  /// Requires that the sound file is read, alone and in a batch, and that new verbs accept it: a harness that
+  /// only sees refusals tests nothing.
   void need_sound(Worker& worker, bool has_new_verbs) const {
     const std::string sound = kind_.finish ? kind_.finish(kind_.sound) : kind_.sound;
     const auto need_taken = [&](const std::vector<std::string>& command, bool computes) {
@@ -154,7 +154,8 @@ class KindRun {
   void judge(Worker& worker, std::uint64_t seed) {
     const auto mutation = static_cast<Mutation>(seed % mutation_count);
     std::string mutant = mutated(kind_.sound, mutation, seed / mutation_count);
-    // Of a kind that is packed or sealed, every other round of kinds; unpacked it would not be of the kind.
+    // For a kind that is packed or sealed, only in every other round of kinds; unpacked, it would not be of
+    // that kind.
     if (kind_.finish && ((seed / mutation_count) % 2 == 0)) mutant = kind_.finish(mutant);
     const bool is_checked = scattered(seed + 1) % options_.check_every == 0;
     const auto pass = [&](const std::vector<std::string>& command, bool computes) {

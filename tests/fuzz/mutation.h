@@ -6,7 +6,7 @@
 
 namespace octotomy::tests {
 
-/// What a mutant does to a file that is sound.
+/// The change that a mutant makes to a sound file.
 enum class Mutation {
   FlipBits,       ///< 1 to 16 bits, half of the time among the first 1024 bytes
   Truncate,       ///< at any byte
@@ -19,14 +19,14 @@ const char* name_of(Mutation mutation);
 /// The same mutant for the same bytes, kind and seed. Precondition: the file is not empty.
 std::string mutated(const std::string& sound, Mutation mutation, std::uint64_t seed);
 
-/// An .octree file with checksums that are right for what it holds now, as far as its sections can be told
-/// apart; without it damage never gets past them.
+/// An .octree file with checksums recomputed for its present content, as far as its sections can be
+/// separated. Without it, damage would never get past them.
 std::string resealed_octree(std::string bytes);
 
-/// A PNG picture with the checksums of what its chunks hold now, as far as they can be told apart.
+/// A PNG picture with checksums recomputed for its present chunks, as far as they can be separated.
 std::string resealed_png(std::string bytes);
 
-/// As a gzip stream.
+/// The bytes as a gzip stream.
 std::string packed(const std::string& bytes);
 
 }  // namespace octotomy::tests

@@ -34,8 +34,8 @@ std::vector<std::string> words_of(const std::string& text) {
   return {std::istream_iterator<std::string>(stream), {}};
 }
 
-/// What rooms.txt says: by place, a folder or room, the places beside it that it stands on.
-/// "voxel/tree": "voxel/space"
+/// The content of rooms.txt: for each folder or room, the places beside it on which it stands. "voxel/tree":
+/// "voxel/space"
 using Arrows = std::map<std::string, Names>;
 
 Arrows arrows_of(const std::string& text) {
@@ -113,9 +113,9 @@ const Sources& house() {
   return sources;
 }
 
-/// Whether one may reach another; either is a path of a source, or of a place with a stroke behind. Where the
-/// two ways part, the one place must stand on the other; all that is below that one is open then. A folder
-/// and what is below it do not reach one another.
+/// Whether one may reach another; either is the path of a source, or of a place with a slash at the end. At
+/// the folder where the two paths part, the one place must stand on the other; everything below that one may
+/// then be reached. A folder and the places below it do not reach one another.
 bool may_reach(const std::string& from, const std::string& to) {
   const std::string from_room = from.substr(0, from.rfind('/') + 1);
   const std::string to_room = to.substr(0, to.rfind('/') + 1);
@@ -217,8 +217,8 @@ Offences homeless(const Sources& sources) {
   return offences;
 }
 
-/// Tests, named by their paths under tests/, that stand in no room, or in another than the source of their
-/// stem.
+/// Tests, named by their paths under tests/, that stand in no room, or in another one than the source of
+/// their stem.
 Offences misplaced_tests(const Names& tests, const Sources& sources) {
   std::map<std::string, Names> rooms_of_stem;  // "voxel/octree": "voxel/tree"
   for (const auto& [path, includes] : sources)
@@ -243,8 +243,8 @@ Names tests_of_rooms() {
   return tests;
 }
 
-/// Places, each with a stroke behind, whose targets a list of sources names: octotomy_voxel_tree is that of
-/// voxel/tree. A target of no place is itself in the list.
+/// Places, each with a slash at the end, whose targets a list of sources names: octotomy_voxel_tree is that
+/// of voxel/tree. A target without a place is itself in the list.
 Names targets_in(const std::string& cmake) {
   std::map<std::string, std::string> places;
   for (const auto& [place, beside] : arrows())

@@ -9,7 +9,8 @@
 
 namespace octotomy::tests {
 
-/// A CT scan along the axes whose samples are value(voxel, p_mm), in HU; `first_mm` is the first one's place.
+/// A CT scan along the axes. Its samples are value(voxel, p_mm), in HU; `first_mm` is the position of the
+/// first sample.
 template <typename Value>
 voxel::Scene ct_scene(const glm::ivec3& dims, const glm::dvec3& spacing_mm, const glm::dvec3& first_mm,
                       const Value& value) {

@@ -5,7 +5,7 @@
 
 namespace octotomy::tests {
 
-/// How often a text holds a part of it.
+/// The number of occurrences of a part in a text.
 inline int times(const std::string& text, const std::string& part) {
   int count = 0;
   for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++count;

@@ -5,7 +5,7 @@
 
 namespace octotomy::tests {
 
-/// All samples of a grey octree, where they lie.
+/// The expression part that owns all samples of a grey octree at their positions.
 inline voxel::GreyOwners all_samples(const voxel::GreyOctree& grey) {
   const voxel::Window all{grey, -32768.0, 32767.0};
   return {grey.universe(), {voxel::SampleSource{voxel::Expression(all)}}};

@@ -8,7 +8,8 @@
 
 namespace octotomy::tests {
 
-/// The samples that a function of millimetres gives on a lattice: floats as they are, int16 rounded.
+/// A scene whose samples are the values of a function of millimetres on a lattice: floats unchanged, int16
+/// rounded.
 template <typename Sample, typename Field>
 voxel::Scene field_scene(const voxel::Lattice& lattice, const Field& field) {
   voxel::Scene scene;

@@ -91,8 +91,8 @@ struct SharePoint {
   double share = 0.0;
 };
 
-/// Points that stand for a triangle: integrals of polynomials up to the fourth degree are exact (Dunavant,
-/// "High degree efficient symmetrical Gaussian quadrature rules for the triangle", 1985).
+/// Six weighted points of a triangle, for which integrals of polynomials up to the fourth degree are exact
+/// (Dunavant, "High degree efficient symmetrical Gaussian quadrature rules for the triangle", 1985).
 std::array<SharePoint, 6> share_points_of(const Triangle& triangle) {
   struct Orbit {
     double share, corner, side;  // weights of one corner and of the two others
@@ -446,7 +446,7 @@ class Modeller {
     model_.rims_mm2 += std::min(all_mm2, coverage * std::sqrt(squares));
   }
 
-  /// By face, the number of its set of coplanar faces. A face in a lattice plane is a set of its own.
+  /// For each face, the number of its set of coplanar faces. A face in a lattice plane is a set of its own.
   std::vector<std::uint32_t> flat_sets() const {
     brep::DisjointSets sets(triangles_.faces.size());
     struct Pair {

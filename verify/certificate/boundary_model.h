@@ -39,7 +39,7 @@ struct BoundaryModel {
   /// Volume by which counting centres displaces planes with such normals: exact, with its sign.
   VolumeShift planes;
   VolumeSpread planes_without_sign;
-  /// The same for boundary that is curved or rough but nearly along the lattice, as a plane is after blur and
+  /// The shift of boundary that is curved or rough but nearly along the lattice, as a plane is after blur and
   /// noise.
   VolumeShift nearly_planes;
   /// Area gained or lost past the rims of both kinds of planes: the rims' length times the displacement.

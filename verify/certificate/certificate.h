@@ -42,7 +42,8 @@ struct ToleranceTerm {
 struct Comparison {
   std::string quantity;  ///< "volume", "centroid", "euler", ...
   std::string unit;      ///< "mm3", "mm2", "mm", "mm5"; empty for a count
-  /// Both answers. None where the quantity itself is a difference, such as a distance between the two.
+  /// The two kernels' answers. None if the quantity itself is a difference, such as a distance between the
+  /// two.
   std::optional<double> voxel = {}, mesh = {};
   double difference = 0.0;               ///< compared with the tolerance, not negative
   std::optional<double> tolerance = {};  ///< none: theory has no bound, and there is no verdict

@@ -98,11 +98,11 @@ Certificate certify_alone(const voxel::Octree& octree, const AloneInputs& inputs
                          volume_mm3};
     certificate.reasons.push_back(text_of(*certificate.worst));
   }
-  // Where either side is allowed, any answer passes.
+  // At voxels where the witness allows both sides, any answer passes.
   certificate.limit = DetectionLimit{voxel_mm3 + mm3(count.on_surface + count.unknown), std::nullopt};
   const std::string alone = "Not independent: the voxel kernel alone made this object";
   lower(certificate, Verdict::Warn,
-        count.unknown > 0 ? alone + ", and its witness does not know the side of " +
+        count.unknown > 0 ? alone + ", and its witness cannot decide the side of " +
                                 voxel::rounded(mm3(count.unknown)) + " mm3 of voxels."
                           : alone + "; its witness judged the centre of every voxel.");
   judge_evidence(certificate);

@@ -10,7 +10,7 @@ namespace octotomy::verify {
 /// A flat part of a solid's boundary, in voxels.
 struct Facet {
   glm::dvec3 area{0.0};  ///< along the outward normal
-  /// Its rims, each side with the facet on its left as seen from outside, in any order.
+  /// The facet's rims, each side with the facet on its left as seen from outside, in any order.
   std::vector<std::array<glm::dvec3, 2>> sides;
 };
 

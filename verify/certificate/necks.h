@@ -27,10 +27,10 @@ static_assert(bridge_voxels == 3);
 /// is connected to the voxels of both. Safe to call from several threads.
 class Necks {
  public:
-  /// Both answers, the mesh's as the voxels whose centre lies inside it, and a witness of the whole object
+  /// The two answers, the mesh's as the voxels whose centre lies inside it, and a witness of the whole object
   /// from which the parts were chosen.
   Necks(voxel::Octree octree, voxel::Octree digitised, Witness whole);
-  /// The same; the mesh is digitised at the first use. `decided_mm` are the places of necks that the plan
+  /// As above, but the mesh is digitised at the first use. `decided_mm` are the places of necks that the plan
   /// keeps or cuts, LPS millimetres; a neck near one of them is not reported. `sample_mm` is the spacing of
   /// the scan's samples.
   Necks(voxel::Octree octree, brep::Solid solid, Witness whole, std::vector<glm::dvec3> decided_mm,

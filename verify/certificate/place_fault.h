@@ -12,13 +12,13 @@
 // How a kernel errs at a voxel, and which voxels are read. Shared by the comparison of places and by its limit.
 namespace octotomy::verify {
 
-/// The error of a kernel at a voxel. Apart: the kernels differ and the witness does not decide.
-/// Lost: no error, but resampling lost or filled a part that the mesh rightly has or lacks.
+/// The error of a kernel at a voxel. Apart: the kernels differ and the witness does not decide. Lost:
+/// resampling lost or filled a part that the mesh rightly has or lacks, which is not an error.
 enum class PlaceFault : std::uint8_t { None, VoxelsLack, VoxelsHave, MeshLacks, MeshHas, Apart, Lost };
 
 PlaceFault fault_of(const Reading& reading, bool in_voxels, bool in_mesh);
 
-/// Where a part is connected by less than a voxel, as thin bone is, chance decides whether a kernel keeps it.
+/// If a part is connected by less than a voxel, such as thin bone, chance decides whether a kernel keeps it.
 /// So a group of Apart voxels is no fault if it has fewer voxels than a block of three a side and shares no
 /// face with voxels of the kernel that lacks it.
 inline constexpr std::size_t chance_voxels = 27;
@@ -28,7 +28,8 @@ inline bool is_within(const glm::ivec3& voxel, const voxel::Octree& octree) {
          glm::all(glm::lessThan(voxel, glm::ivec3(octree.universe().side())));
 }
 
-/// The voxels at which the witness is read where no surface is: one in each block of two voxels a side.
+/// Away from surfaces the witness is read at one voxel of this number: one in each block of two voxels a
+/// side.
 inline constexpr int sampled_one_in = 8;
 constexpr bool is_sampled(int x, int y, int z) {
   return ((x + 2 * y + 4 * z) & (sampled_one_in - 1)) == 0;

@@ -30,8 +30,8 @@ std::vector<glm::ivec3> steps_outward() {
   return steps;
 }
 
-/// Size of the largest error around a voxel that could pass. Counts voxels of the same state outward, up to
-/// the first one that would fail if the octree changed it. Smaller errors of that shape pass.
+/// The size of the largest error around a voxel that could pass. Counts voxels of the same state outward, up
+/// to the first one at which an error of the octree would be detected. Smaller errors of that shape pass.
 std::size_t unseen_voxels(const voxel::Octree& octree, const voxel::Octree& digitised, const glm::ivec3& from,
                           const std::vector<glm::ivec3>& steps, const Witness& witness) {
   const bool inside = octree.contains(from);
@@ -47,7 +47,8 @@ std::size_t unseen_voxels(const voxel::Octree& octree, const voxel::Octree& digi
   return count;
 }
 
-/// Whether step 1 compares a voxel outside the mesh: it is in the octree or beside the octree's boundary.
+/// Whether step 1 of judge_places() compares a voxel outside the mesh: it is in the octree or beside the
+/// octree's boundary.
 bool is_compared(const voxel::Octree& octree, const glm::ivec3& voxel) {
   const auto has = [&](const glm::ivec3& at) { return is_within(at, octree) && octree.contains(at); };
   for (int axis = 0; axis < 3; ++axis)
@@ -105,7 +106,7 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
       if (!seen_in_both) seen_in_both = is_lost_in_both(sampled_in_block(voxel));
       if (seen_alone && seen_in_both) return true;
     }
-  // A small piece holds few sampled voxels, so all of them are tried.
+  // A small piece contains few sampled voxels, so all of them are tried.
   const glm::dvec3 box = glm::ceil(high) - glm::floor(low) + 1.0;
   constexpr double most_voxels = 16384.0;
   if (!seen_alone || box.x * box.y * box.z > most_voxels) return false;
@@ -116,8 +117,8 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
   return false;
 }
 
-/// Volume of the largest whole piece of the mesh whose loss is not detected. Any other lost or added part
-/// leaves vertices where the witness has none, which step 2 detects.
+/// The volume of the largest whole piece of the mesh whose loss is not detected. Any other lost or added part
+/// leaves vertices where the witness has none, which step 2 of judge_places() detects.
 double piece_limit_mm3(const brep::Solid& solid, const brep::Triangles& mesh, const voxel::Octree& octree,
                        const Witness& witness) {
   const std::vector<brep::Component>& pieces = solid.components();
@@ -141,7 +142,7 @@ double place_limit_mm3(const voxel::Octree& octree, const voxel::Octree& digitis
   for (std::size_t i = 0; i < tried_places; ++i) {
     const voxel::VoxelFace& face = boundary[random() % boundary.size()];
     from.push_back(face.voxel);
-    // Every other error adds voxels.
+    // Of the injected errors, every second one adds voxels.
     if (i % 2 == 1) from.back()[face.axis] += face.side;
   }
   std::vector<std::size_t> counts(from.size(), 0);
@@ -152,8 +153,8 @@ double place_limit_mm3(const voxel::Octree& octree, const voxel::Octree& digitis
   return static_cast<double>(std::bit_ceil(most)) * octree.universe().lattice().voxel_mm3();
 }
 
-/// The smallest tried shift that moves at least one sampled triangle off the surface, in each of six
-/// directions. None: the largest tried shift does not.
+/// The smallest tried shift that moves at least one sampled triangle off the surface in each of six
+/// directions. None if even the largest tried shift does not.
 std::optional<double> shift_limit_mm(const brep::Triangles& mesh, double voxel_mm, const Witness& witness) {
   std::mt19937_64 random(2);
   std::vector<glm::dvec3> points_mm;

@@ -40,7 +40,7 @@ struct Places {
 Places judge_places(const voxel::Octree& octree, const voxel::Octree& digitised, const brep::Solid& solid,
                     const Witness& witness, const voxel::Progress& progress = {});
 
-/// The same without the limit, which is left at zero.
+/// As judge_places(), but without the limit, which is left at zero.
 Places contradicted_places(const voxel::Octree& octree, const voxel::Octree& digitised,
                            const brep::Solid& solid, const Witness& witness);
 

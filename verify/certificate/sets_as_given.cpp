@@ -119,7 +119,7 @@ std::pair<brep::Mesh, double> on_lattice(brep::Mesh mesh, double near) {
   return {std::move(mesh), farthest};
 }
 
-/// From units to LPS millimetres.
+/// Converts from units to LPS millimetres.
 brep::Solid in_patient(const brep::Solid& solid, const glm::dmat4& lps_from_voxel) {
   brep::Triangles triangles = solid.triangles();
   for (glm::dvec3& p : triangles.points_mm) p = lps_from_voxel * glm::dvec4(p / units - 0.5, 1.0);

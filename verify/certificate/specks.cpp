@@ -73,7 +73,7 @@ std::vector<std::vector<std::uint32_t>> faces_of_small(const Shells& found, doub
   return faces;
 }
 
-/// Where a row of voxel centres crosses a shell.
+/// A crossing of a row of voxel centres with a shell.
 struct Crossing {
   std::int64_t z = 0, y = 0;  ///< of the row
   double x = 0.0;

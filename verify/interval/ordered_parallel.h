@@ -39,7 +39,7 @@ void ordered_parallel_by_batch(std::size_t count, const Make& make, const Take& 
   }
 }
 
-/// The same with a make() for single items: item i is make(i).
+/// As ordered_parallel_by_batch(), but make(i) computes the single item i.
 template <typename Item, typename Make, typename Take>
 void ordered_parallel(std::size_t count, const Make& make, const Take& take) {
   ordered_parallel_by_batch<Item>(

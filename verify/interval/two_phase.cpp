@@ -257,7 +257,7 @@ class Reading {
       lower += value < background_ - far() ? 1 : 0;
       higher += value > background_ + 0.1 * contrast_ ? 1 : 0;
     });
-    // Of normal values one in fifteen is more than 1.5 deviations below the mean.
+    // One in fifteen normally distributed values is more than 1.5 deviations below the mean.
     return 5 * below <= all && 20 * lower <= all && 7 * higher <= 6 * all;
   }
 

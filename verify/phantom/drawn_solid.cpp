@@ -413,7 +413,7 @@ glm::ivec3 cells_of(const dvec3& spacing_mm) {
 /// The filled share of a cell whose centre is `value` from the surface.
 double share_of(const DrawnSolid& solid, double value, const dvec3& centre, const dvec3& cell_mm) {
   if (std::abs(value) >= 0.5 * glm::length(cell_mm)) return value < 0.0 ? 1.0 : 0.0;
-  // Each of eight points stands for an octant, whose filled share follows from the distance to the surface as
+  // Each of eight points represents an octant, whose filled share follows from the distance to the surface as
   // if the surface were a plane. For planes along the lattice the sum is exact.
   const double width = 0.5 * std::cbrt(cell_mm.x * cell_mm.y * cell_mm.z);
   double inside = 0.0;

@@ -32,7 +32,7 @@ enum Tissue { AirTissue, HeadrestTissue, ToothTissue, BoneTissue, SoftTissue, ti
 using TissueCount = std::array<int, tissue_count>;
 
 using Places = HeadBricks::Places;
-// In the order in which they decide.
+// The fields that decide a sample's tissue, in the order of their precedence.
 constexpr std::array scanned{HeadBricks::Skin, HeadBricks::Headrest, HeadBricks::Air, HeadBricks::ToothCore,
                              HeadBricks::Bone};
 

@@ -119,7 +119,8 @@ struct Named {
     if (once) tree = std::move(*once);
     return once.has_value();
   }
-  /// The same solid, with each leaf replaced by its origin, down to solids without an origin.
+  /// An expression of the same solid, in which each leaf is replaced by its origin, down to solids without an
+  /// origin.
   Named by_origins(const MeshExpressions::Origin& origin) const {
     Named made;
     made.tree = made.adopted(tree, names, origin);

@@ -32,7 +32,7 @@ ExpressionTree expression_tree_of(std::string_view text, std::vector<std::string
 /// Every pair of operands is corefined once; its union, intersection and difference are kept.
 class MeshExpressions {
  public:
-  /// `world` is the solid that stands for all space: the universe's box.
+  /// `world` is the solid that represents all space: the universe's box.
   explicit MeshExpressions(brep::Solid world) : world_(std::move(world)) {}
 
   using Lookup = std::function<brep::Solid(std::string_view name)>;

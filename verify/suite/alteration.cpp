@@ -176,7 +176,7 @@ Subject block_subject(const ScanToAlter& from, int voxels, Chance& chance) {
   const voxel::Box bounds = voxel::bounds(subject.scan.lattice);
   const glm::dvec3 extent_mm = bounds.high_mm - bounds.low_mm,
                    middle_mm = 0.5 * (bounds.low_mm + bounds.high_mm);
-  // Space around the block for the motion.
+  // The universe is larger than the block, to leave room for the motion.
   subject.universe =
       voxel::universe_around({bounds.low_mm - 0.2 * extent_mm, bounds.high_mm + 0.2 * extent_mm}, voxel_mm);
   for (int axis = 0; axis < 3; ++axis) {
@@ -198,8 +198,8 @@ std::vector<Alteration> altered_block(const ScanToAlter& from, int voxels, int c
     const Alterations alterations(subject);
     if (!alterations.is_empty()) return alterations.drawn(count, chance);
   }
-  throw voxel::InvalidInput(from.name + ": no part of it has an object from " + std::to_string(from.low) +
-                            " on: alter another scan");
+  throw voxel::InvalidInput(from.name + ": no block of the scan contains an object from " +
+                            std::to_string(from.low) + " on: alter another scan");
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "voxel/space/progress.h"
 #include "voxel/space/scene.h"
 
-// Alters answers of both kernels at random. Their certificates must not pass what is over their limit.
+// Alters answers of both kernels at random. No certificate may pass an alteration above its detection limit.
 namespace octotomy::verify {
 
 /// An alteration of an answer, random in kind, place and size, and the verdict on the altered answer.
@@ -26,7 +26,7 @@ struct Alteration {
 };
 inline constexpr const char* unaltered = "nothing altered";
 
-/// A scan from which objects are drawn: the window from `low` on.
+/// A scan from which objects are cut: the window from `low` on.
 struct ScanToAlter {
   std::string name;
   std::shared_ptr<const voxel::Scene> scan;
@@ -45,8 +45,9 @@ struct AlterationOptions {
 /// Alters the clean answers for the ellipsoid, the ring and the head, or those for objects of scans. The
 /// alterations are boxes lost and added by one kernel or both, clipped ends, a lost part, repeated pieces of
 /// the mesh, shifts of the mesh, empty answers, and none. A block of a scan without an object is replaced by
-/// another one. Same alterations for a seed. Throws std::invalid_argument if no block of a scan has an
-/// object; voxel::Stopped. Cost: about a second of processor time each at 64 voxels a side.
+/// another one. A seed always makes the same alterations. Throws std::invalid_argument if no block of a scan
+/// has an object; voxel::Stopped. Cost: about a second of processor time for each alteration at 64 voxels a
+/// side.
 std::vector<Alteration> try_alterations(const AlterationOptions& options = {});
 
 }  // namespace octotomy::verify

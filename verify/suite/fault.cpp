@@ -52,14 +52,15 @@ brep::Triangles with_shell_twice(brep::Triangles triangles) {
   }
   return triangles;
 }
-/// Mirrored in x about the universe's middle, with outward normals, as by a reader with a wrong axis.
+/// A surface mirrored in x about the universe's middle, with outward normals, as a reader with a wrong axis
+/// would return it.
 brep::Triangles mirrored(brep::Triangles triangles, const voxel::Universe& universe) {
   const double middle_mm = universe.lattice().lps_mm(glm::dvec3(0.5 * (universe.side() - 1))).x;
   for (glm::dvec3& p : triangles.points_mm) p.x = 2.0 * middle_mm - p.x;
   return turned_inside_out(std::move(triangles));
 }
 
-/// The octree's voxels on another lattice, resampled in its own universe.
+/// The octree's voxels on another lattice, resampled into its own universe.
 voxel::Octree on_lattice(const voxel::Octree& octree, const glm::dmat4& index_from_true_index) {
   voxel::Universe other = octree.universe();
   other.lps_from_voxel = other.lps_from_voxel * index_from_true_index;
@@ -170,13 +171,13 @@ class Trials {
   std::vector<FaultTrial> trials_;
 };
 
-/// Trials in tier Exact. Its answers have integer coordinates, so a shift is by one refined voxel.
+/// Trials in tier Exact. The answers have integer coordinates, so a shift is by one refined voxel.
 std::vector<FaultTrial> exact_trials(int voxels) {
   voxel::Universe universe;
   while ((1 << universe.depth) > voxels) --universe.depth;
   Random random(static_cast<std::uint64_t>(voxels));
-  // No noise, because its surface is as large as its volume. Each set must have voxels of its own and voxels
-  // in common with the other.
+  // Noise is left out, because its surface is as large as its volume. Each set must have voxels of its own
+  // and voxels in common with the other.
   const auto drawn = [&] {
     RandomSet set = random_set(random, universe, std::min(voxels, largest_random_side));
     while (set.recipe.starts_with("noise") || set.recipe.starts_with("head"))

@@ -43,9 +43,9 @@ inline constexpr int resolved_size = 64;
 /// Evaluates one question in both kernels for each subject and size: a window on a scan, minus a box, turned
 /// and moved; and for sets of voxels a - b in tier Exact, up to 64 voxels a side. Then applies each fault to
 /// one of the answers and certifies the pair again. The head phantom is used from resolved_size on; below
-/// that size all its bone is thinner than a voxel. Same trials, in the same order, on any thread count.
-/// Throws std::invalid_argument if a size is not a power of two from 8 on; voxel::Stopped. Cost: about a
-/// minute of processor time.
+/// that size all its bone is thinner than a voxel. The trials and their order are the same on any thread
+/// count. Throws std::invalid_argument if a size is not a power of two from 8 on; voxel::Stopped. Cost: about
+/// a minute of processor time.
 std::vector<FaultTrial> try_faults(const FaultOptions& options = {});
 
 /// Trials of one fault at one size.
@@ -56,7 +56,8 @@ struct DetectionPower {
   int caught = 0;   ///< FAIL; of clean twins these are false alarms
   int doubted = 0;  ///< WARN
 };
-/// Sorted by fault in the order of faults(), the clean trials first, then by size.
+/// The trials of each fault at each size, sorted by fault in the order of faults(), clean trials first, then
+/// by size.
 std::vector<DetectionPower> detection_power(const std::vector<FaultTrial>& trials);
 
 /// Whether every clean trial passes, and from resolved_size on every clean object is resolved and every fault

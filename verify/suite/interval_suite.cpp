@@ -68,7 +68,7 @@ std::function<double(const glm::dvec3&)> sampler_of(const voxel::Scene& scan) {
   };
 }
 
-/// The same solid in slices that lean by 5 to 25 degrees in a random direction, with the same middle.
+/// The solid in slices that lean by 5 to 25 degrees in a random direction; its middle stays.
 SolidPhantom with_tilted_slices(SolidPhantom solid, Chance& chance) {
   voxel::Universe& universe = solid.universe;
   const double lean = std::tan(glm::radians(chance.between(5.0, 25.0))), towards = chance.between(0.0, 6.3);

@@ -39,8 +39,9 @@ struct IntervalSuiteOptions {
 
 /// Tests solids of measured_groups() in random poses at spacings 1:1:1 to 5:1:1. They are sampled as shares,
 /// as a blurred scan with noise, and as such a scan with a tilted gantry that is straightened. Returns one
-/// row for each of these; before them one row per quantity over all. Throws std::invalid_argument without a
-/// solid; voxel::Stopped. Parallel; same answer on any thread count. Cost: about 0.2 s a solid.
+/// row for each combination; before these, one row per quantity over all combinations. Throws
+/// std::invalid_argument if there are no solids; voxel::Stopped. Parallel; same answer on any thread count.
+/// Cost: about 0.2 s a solid.
 std::vector<IntervalCoverage> interval_suite(const IntervalSuiteOptions& options = {});
 
 /// Tests random solids of drawn_groups() in random scans. Returns one row for each class. Before the rows of
@@ -51,8 +52,8 @@ std::vector<IntervalCoverage> drawn_suite(const IntervalSuiteOptions& options = 
 
 /// Requirements: the least share of cases held overall and in each class, and the least p99_share.
 inline constexpr double least_held = 0.985, least_held_of_a_class = 0.95, least_p99_share = 1.0 / 3.0;
-/// Whether a row is plausible for intervals that hold with probability `least`: such intervals have as many
-/// misses in more than one of 100 runs.
+/// Whether a row is plausible for intervals that hold with probability `least`: such intervals would have at
+/// least this number of misses in more than one of 100 runs.
 bool is_likely(const IntervalCoverage& row, double least);
 
 }  // namespace octotomy::verify

@@ -49,7 +49,7 @@ std::uint64_t visits_back_to_front(const Octree& octree) {
   return visits;
 }
 
-/// Partial nodes of level 7, and Full and Empty ones of level 8.
+/// The numbers of Partial nodes of level 7, and of Full and Empty nodes of level 8.
 std::array<std::uint64_t, 3> finest_of(const Octree& octree) {
   const std::vector<LevelCount> levels = level_counts(octree);
   return {levels[6].partial, levels[7].full, levels[7].empty};
@@ -65,7 +65,8 @@ RepresentationStudy manipulation_study() {
   RepresentationStudy study;
   const Octree sphere = digitise(solid_phantom("sphere"), voxel::Digitisation::Centre);
   const voxel::Universe& universe = sphere.universe();
-  // A wedge of the sphere, as the thesis cuts it; its faces do not lie on the borders of blocks.
+  // A wedge of the sphere, like the part that the thesis cuts out; its faces do not lie on the borders of
+  // blocks.
   const Octree mask = combine(universe, voxel::Box{{-17.0, -70.0, -23.0}, {70.0, 11.0, 70.0}});
   const glm::dmat4 moved = glm::translate(glm::dmat4(1.0), glm::dvec3(20.0, 30.0, 40.0));
   const Expression a(sphere), b(mask);
@@ -82,8 +83,8 @@ RepresentationStudy manipulation_study() {
                            sameness(made(voxel::moved(a & b, moved)) == moved_inside)});
   study.entries.push_back({"table 7.6", "difference: created and moved, and Translate_Boolean", "same",
                            sameness(made(voxel::moved(a - b, moved)) == moved_outside)});
-  // A motion by even steps moves blocks of two voxels onto such blocks, so the counts stay; the thesis prints
-  // 7,660, 30,010 and 31,270 before and after.
+  // A motion by even steps moves blocks of two voxels onto such blocks, so the counts do not change. The
+  // thesis prints 7,660, 30,010 and 31,270 before and after.
   study.entries.push_back({"table 7.7",
                            "intersection moved by (20, 30, 40): P of level 7, F and E of level 8", "same",
                            sameness(finest_of(inside) == finest_of(moved_inside))});

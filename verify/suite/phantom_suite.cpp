@@ -67,8 +67,9 @@ double longest(const glm::dvec3& edges_mm) {
   return std::max({edges_mm.x, edges_mm.y, edges_mm.z});
 }
 
-/// A solid in a random position and orientation, with a size that is random within half a voxel. With a
-/// spacing of five it is twice as large, so that it is also six voxels across along that axis.
+/// A solid in a random position and orientation, with a size that is random within half a voxel. If the
+/// largest spacing is five, the solid is twice as large, so that it is at least six voxels across along that
+/// axis too.
 SolidPhantom posed(const Kind& kind, const glm::dvec3& spacing_mm, Chance& chance) {
   const bool coarse = spacing_mm.z > 2.0;
   SolidPhantomOptions options;
@@ -157,9 +158,9 @@ Certificate bounded_of(const SolidPhantom& solid, const Answers& answers, const 
 }
 
 /// The share of its thickness that a plate loses at the half level of its blurred samples; 1 if no sample
-/// reaches the half level. The thickness t is in deviations of the blur. Across the plate samples are
-/// Phi(x + t / 2) - Phi(x - t / 2) with Phi the normal distribution, largest in the middle. Noise may raise
-/// the level.
+/// reaches the half level. The thickness t is measured in standard deviations of the blur. Across the plate,
+/// samples are Phi(x + t / 2) - Phi(x - t / 2) with Phi the normal distribution, largest in the middle. Noise
+/// may raise the level.
 double lost_by_blur(double deviations) {
   const auto above_half = [&](double x) {
     const auto phi = [](double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); };
@@ -257,7 +258,7 @@ class Suite {
     if (options.poses < 1 || options.poses > 1000)
       throw voxel::InvalidInput("a suite takes 1 to 1000 poses, not " + std::to_string(options.poses));
     if (std::none_of(kinds().begin(), kinds().end(), [&](const Kind& kind) { return asked(kind); }))
-      throw voxel::InvalidInput("the suite has no solid called '" + *options.solid + "': try sphere");
+      throw voxel::InvalidInput("the suite has no solid with the name '" + *options.solid + "': try sphere");
   }
 
   PhantomSuite run() {

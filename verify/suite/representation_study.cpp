@@ -30,7 +30,7 @@ using voxel::Octree;
 
 constexpr int depth = 8;
 constexpr voxel::Window16 bone{20, 63};  // the upper 44 of 64 levels
-/// The thesis divides all visits per pixel by the pixels of the finest picture.
+/// The thesis divides all visits per pixel by the pixels of the finest picture, so the study does too.
 constexpr double pixels = 256.0 * 256.0;
 
 std::string with_decimals(double value, int decimals) {
@@ -54,7 +54,7 @@ std::uint64_t sum(const std::vector<voxel::LevelCount>& levels) {
   return nodes;
 }
 
-/// The head as the thesis codes its skull: 4096 densities in 64 levels, one a voxel.
+/// The head phantom in the thesis's coding of its skull: 4096 densities in 64 levels, one density a voxel.
 voxel::GreyOctree grey_head() {
   voxel::Scene scene = head_phantom();
   for (std::int16_t& sample : std::get<voxel::Int16Samples>(scene.samples))
@@ -76,7 +76,7 @@ voxel::Visits drawn(const voxel::DrawnObject& object, voxel::Algorithm algorithm
   return *render({object}, options).visits;
 }
 
-/// The faces that face an observer in front: the patient's front is y-.
+/// The faces towards an observer in front: the patient's front is y-.
 constexpr voxel::FaceSet front = voxel::face_bit(Direction::MinusY);
 
 // --------------------------------------------------------------------------------- what holds for any object
@@ -99,7 +99,7 @@ std::vector<ThesisEntry> face_codes() {
   return entries;
 }
 
-/// The node of figure 3.6: beside it Full voxels cover z- and z+ and, behind a Partial node, y+.
+/// The node of figure 3.6: Full voxels beside it cover z- and z+ and, behind a Partial node, y+.
 std::vector<ThesisEntry> figure_3_6() {
   voxel::Universe universe;
   universe.depth = 3;
@@ -109,7 +109,7 @@ std::vector<ThesisEntry> figure_3_6() {
   const Octree object = combine(universe, box({2, 2, 2}, {3, 3, 3}) | box({2, 4, 2}, {3, 4, 3}) |
                                               box({2, 2, 4}, {3, 3, 4}) | box({2, 2, 0}, {3, 3, 1}));
   const voxel::MaskedOctree masked = masked_octree(object);
-  // The node 07 of level 2: the root's first child, its last child.
+  // The number of node 07 of level 2: the last child of the root's first child.
   std::size_t node = 2;
   for (int k = 0; k < 7; ++k) node += masked.nodes[node].size;
   const voxel::FaceSet code = masked.nodes[node].covered;
@@ -118,7 +118,7 @@ std::vector<ThesisEntry> figure_3_6() {
            voxel::face_text(static_cast<voxel::FaceSet>(~code & voxel::view_code(5)))}};
 }
 
-/// Accesses to the neighbour along x of every voxel, the last of a row excepted.
+/// The accesses that find the neighbour along x of every voxel, except the last one of a row.
 std::vector<ThesisEntry> theorem_3_1() {
   double from_pivot = 0.0, down_and_up = 0.0;
   const int side = 1 << depth;
@@ -136,7 +136,7 @@ std::vector<ThesisEntry> theorem_3_1() {
       {"theorem 3.1", "accesses by walking down and up, level 8", "below 4", below(down_and_up, 4.0)}};
 }
 
-/// Names by falling cost.
+/// The names, sorted by falling cost.
 std::string order(std::vector<std::pair<double, std::string>> costs) {
   std::stable_sort(costs.begin(), costs.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
@@ -185,7 +185,7 @@ void table_a_1(const voxel::Visits& visits, RepresentationStudy& study) {
   }
 }
 
-/// Unmasked, masked, front to back, node tracing with direct visits, with all.
+/// The columns are: unmasked, masked, front to back, node tracing with direct visits, and with all visits.
 void table_a_2(const Octree& skull, RepresentationStudy& study) {
   struct Row {
     const char *visits, *unvisited, *per_pixel;
@@ -198,8 +198,8 @@ void table_a_2(const Octree& skull, RepresentationStudy& study) {
        {"1.00 0.81 0.26 0.22 0.36", "0.00 0.19 0.74 0.81 0.78", "2.44733 1.87321 0.62960 0.53852 0.88955"},
        {"1.00 0.75 0.21 0.19 0.29", "0.00 0.25 0.79 0.84 0.82", "8.17665 6.11504 1.81234 1.52448 2.39753"}}};
   for (int level = 3; level <= depth; ++level) {
-    // The printed total of level 3 is that of the whole tree cut there (table 3.1), so a node with any Full
-    // voxel becomes Full.
+    // The printed total of level 3 is that of the whole tree cut at this level (table 3.1), so a node that
+    // contains a Full voxel becomes Full.
     const Octree object = reduced(skull, depth - level, {voxel::Reduction::Of::Children, 0.0});
     const voxel::DrawnObject head{"skull", object};
     const voxel::MaskedDrawing masked = draw_back_to_front(masked_octree(object), front);
@@ -310,8 +310,8 @@ void table_7_5(const Octree& skull, RepresentationStudy& study) {
 
 // ---------------------------------------------------------------------------------------------- chapter 5
 
-/// The slopes that a filter of depths can represent: their number, the steepest one, and the largest angle
-/// between neighbouring ones.
+/// The slopes that a filter of depths can represent: their number, the steepest slope, and the largest angle
+/// between neighbouring slopes.
 void figure_5_8(RepresentationStudy& study) {
   struct Curve {
     const char* name;
@@ -339,7 +339,7 @@ void figure_5_8(RepresentationStudy& study) {
                            "a > d", order({{widest[0].first, "a"}, {widest[3].first, "d"}})});
 }
 
-/// Depth images of the sphere of table 3.1, whose front is known.
+/// Depth images of the sphere of table 3.1. The true depth of its front is known.
 void figures_5_9_and_5_10(RepresentationStudy& study) {
   const SolidPhantom sphere = solid_phantom("sphere");
   const voxel::PartialOctree shares = digitise_partial(sphere);
@@ -359,7 +359,7 @@ void figures_5_9_and_5_10(RepresentationStudy& study) {
     for (int y = 0; y < 256; ++y)
       for (int x = 0; x < 256; ++x) {
         const auto p = picture.point_mm({x, y});
-        // Steeper parts are the silhouette's, where a voxel's depth means little.
+        // Steeper parts belong to the silhouette, where the depth of a voxel means little.
         if (!p || std::hypot(p->x, p->z) > 32.0) continue;
         total += std::abs(p->y + std::sqrt(64.0 * 64.0 - p->x * p->x - p->z * p->z));
         ++count;

@@ -8,8 +8,8 @@
 
 namespace octotomy::verify {
 
-/// A row of a table that depends on a patient's scan that was not published, and the same of the head
-/// phantom. The two are to be read side by side; they need not agree.
+/// A row of a printed table that depends on an unpublished scan of a patient, and the same row for the head
+/// phantom. The two are shown side by side and need not agree.
 struct ThesisComparison {
   std::string where;    ///< "table A.2"
   std::string item;     ///< "level 8, visits per node"
@@ -25,9 +25,9 @@ struct RepresentationStudy {
 };
 
 /// The thesis's study of representations (chapters 3 to 5, 7, appendix A) on the head phantom: 256 voxels a
-/// side, 64 grey levels of which the upper 44 are bone. Costs are counted in visits to nodes, where the
-/// thesis also prints seconds of two computers of 1989. Deterministic. Cost: about ten seconds of processor
-/// time, half of it for the phantom.
+/// side, 64 grey levels of which the upper 44 are bone. Costs are counted in visits to nodes; the thesis also
+/// prints seconds of two computers of 1989. Deterministic. Cost: about ten seconds of processor time, half of
+/// it for the phantom.
 RepresentationStudy representation_study();
 
 }  // namespace octotomy::verify

@@ -12,8 +12,8 @@
 #include "voxel/space/scene.h"
 #include "voxel/tree/octree.h"
 
-// A question for both kernels, (window of a scan - box) under a rigid motion, their answers to it, and their
-// certificate. Faults and alterations spoil such answers.
+// A question for both kernels, (window of a scan - box) under a rigid motion, with their answers and the
+// certificate. Faults and alterations change such answers.
 namespace octotomy::verify {
 
 /// The parameters with which one kernel answers the question.
@@ -42,7 +42,7 @@ double edge_mm(const Subject& subject);
 voxel::Octree voxel_answer(const Subject& subject, const Making& making);
 brep::Triangles mesh_answer(const Subject& subject, const Making& making);
 Witness witness_of(const Subject& subject, const Making& making);
-/// The certificate of two answers. `fault` is the name of the fault in them, or empty.
+/// The certificate of two answers. `fault` names the fault that was injected, or is empty.
 Certificate certified(const Subject& subject, const std::string& fault, const voxel::Octree& octree,
                       const brep::Triangles& triangles, const Witness& witness);
 
@@ -50,11 +50,11 @@ Certificate certified(const Subject& subject, const std::string& fault, const vo
 voxel::Octree changed(const voxel::Octree& octree, const voxel::Box& box, brep::Operation operation);
 brep::Triangles changed(const brep::Triangles& triangles, const voxel::Box& box, brep::Operation operation);
 brep::Triangles shifted(brep::Triangles triangles, const glm::dvec3& by_mm);
-/// The triangles together with those of another surface.
+/// The triangles and a second surface, joined into one list.
 brep::Triangles with_shell_again(brep::Triangles triangles, const brep::Triangles& again);
 
 /// Subjects without symmetry: off centre, oblique and cut. A symmetry would hide a mirrored axis or swapped
-/// operands. The name is that of the ellipsoid or the ring.
+/// operands. `name` is that of the ellipsoid or the ring.
 Subject shape_subject(const std::string& name, int voxels);
 /// Bone of the head phantom, in a universe of `voxels` voxels a side.
 Subject head_subject(int voxels);

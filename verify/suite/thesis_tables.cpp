@@ -109,7 +109,8 @@ std::vector<ThesisEntry> figure_4_6() {
   return entries;
 }
 
-/// The case of each of the 16 states of four neighbours. The cases are the slopes 1, 1/2, 0, -1/2 and -1.
+/// The shading case of each of the 16 states of four neighbours. The cases are the slopes 1, 1/2, 0, -1/2 and
+/// -1.
 std::vector<ThesisEntry> table_5_1() {
   struct Row {
     const char* state;  // DE, D, UE, U; x: either
@@ -137,7 +138,7 @@ std::vector<ThesisEntry> table_5_1() {
     int multiplicity = 0;
     for (unsigned state = 0; state < 16; ++state) {
       bool meant = true;
-      // The voxel, and its neighbours on the surface to the south and north.
+      // The object consists of the voxel and its neighbours on the surface to the south and north.
       Expression object = Expression(at({3, 3, 3})) | at({3, 2, 3}) | at({3, 4, 3});
       for (std::size_t i = 0; i < 4; ++i) {
         const bool full = (state >> i) & 1;

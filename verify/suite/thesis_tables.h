@@ -6,7 +6,7 @@
 
 namespace octotomy::verify {
 
-/// One printed value of the thesis and ours.
+/// A value that the thesis prints, and the recomputed one.
 struct ThesisEntry {
   std::string where;    ///< "table 3.1, sphere"
   std::string item;     ///< "level 4, Partial"

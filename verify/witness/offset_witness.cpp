@@ -139,7 +139,8 @@ class PointGrid {
   std::vector<glm::dvec3> points_;
 };
 
-/// Where the operand's surface may lie: on each edge one place inside, one outside, and those between.
+/// Possible positions of the operand's surface: on each edge one place inside, one outside, and those
+/// between.
 struct SurfacePlaces {
   std::vector<glm::dvec3> in_mm, out_mm, between_mm;
 
@@ -220,7 +221,8 @@ void for_parts(const std::array<glm::dvec3, 3>& corners_mm, double edge_mm, cons
       }
 }
 
-/// Where the operand's witness has the surface near a point of the operand's mesh, along its outward normal.
+/// The positions at which the operand's witness has the surface, near a point of the operand's mesh, along
+/// its outward normal.
 SurfacePlaces places_near(const glm::dvec3& p_mm, const glm::dvec3& normal, double step_mm,
                           const Witness& witness) {
   const auto at = [&](int step) { return p_mm + step * step_mm * normal; };
@@ -301,7 +303,7 @@ class OffsetWitness {
                                    ? voxel_sides(own.voxel, p_mm, voxel_error_mm(p_mm) + slack_mm)
                                    : AllowedSides{},
                        mesh = mesh_sides(own.mesh, p_mm, mesh_error_mm_ + slack_mm);
-    // Where the surface may lie, a vertex of the mesh may, too.
+    // A vertex of the mesh may lie wherever the surface may.
     return {voxel, mesh, mesh.near ? 2 : 0};
   }
 

@@ -135,7 +135,7 @@ ReshapedSurface surface_smoothed(const brep::Triangles& still, int rounds, doubl
 }
 
 ReshapedSurface surface_decimated(const brep::Triangles& still, double max_error_mm) {
-  return {TriangleGrid(still), max_error_mm, "the largest error that was asked for"};
+  return {TriangleGrid(still), max_error_mm, "the largest error requested"};
 }
 
 }  // namespace octotomy::verify

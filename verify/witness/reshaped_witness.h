@@ -18,7 +18,7 @@ inline double rounded_mm(const glm::dvec3& p_mm) {
   return 64.0 * std::numeric_limits<double>::epsilon() * (1.0 + glm::length(p_mm));
 }
 
-/// Where the surface of a right answer lies.
+/// The expected surface of a right answer.
 struct ReshapedSurface {
   TriangleGrid surface;
   /// The largest distance of a right answer's surface from this one, and of this one from the answer's.

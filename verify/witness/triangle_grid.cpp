@@ -27,8 +27,8 @@ glm::dvec2 on_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3
   return {1.0 - share, share};
 }
 
-/// The same of a triangle. The foot of the perpendicular counts if it lies inside; otherwise the nearest
-/// point of the three sides.
+/// Weights of the point of a triangle that is nearest to p. The foot of the perpendicular counts if it lies
+/// inside; otherwise the nearest point of the three sides.
 glm::dvec3 weights_at(const glm::dvec3& p, const Corners& t) {
   const glm::dvec3 normal = glm::cross(t.b - t.a, t.c - t.a);
   const double square = glm::dot(normal, normal);
@@ -239,7 +239,7 @@ bool TriangleGrid::has_inside(const glm::dvec3& p_mm) const {
   rows_.any_in(row, [&](std::uint32_t face) {
     const Corners t = corners_of(triangles_, face);
     if ((crosses(p_mm, t.a, t.b) != crosses(p_mm, t.b, t.c)) == crosses(p_mm, t.c, t.a)) return false;
-    // Where the ray's line meets the triangle's plane. A triangle that projects to a line meets no ray.
+    // Intersects the ray's line with the triangle's plane. A triangle that projects to a line meets no ray.
     const glm::dvec3 normal = glm::cross(t.b - t.a, t.c - t.a);
     if (normal.x == 0.0) return false;
     const glm::dvec3 rel = t.a - p_mm;

@@ -29,7 +29,7 @@ class NodeMotion {
   /// The origin of p_mm, the point that the field moves there: x = p - u(x), repeated until x rests. None
   /// if that does not converge, for example where elements stretch or shear by their own length.
   std::optional<glm::dvec3> origin_mm(const glm::dvec3& p_mm) const { return origin_mm(p_mm, p_mm); }
-  /// The same from a guess.
+  /// The origin of a point, searched from a guess.
   std::optional<glm::dvec3> origin_mm(const glm::dvec3& p_mm, const glm::dvec3& guess_mm) const;
 
  private:

@@ -69,7 +69,8 @@ struct ChosenParts {
   std::vector<glm::dvec3> decided_mm = {};
   glm::dvec3 sample_mm{0.0};
 };
-/// The same. Where the choices differ beyond a thin neck, all objects computed from them may differ as well.
+/// As above, for a given choice. If the choices differ beyond a thin neck, all objects computed from them may
+/// differ as well.
 Witness witness_of_parts(Witness whole, ChosenParts chosen);
 /// The object with some of its cavities filled. For a point outside the object both answers are allowed,
 /// because it may lie in a filled cavity.

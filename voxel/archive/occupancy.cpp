@@ -14,21 +14,22 @@
 namespace octotomy::voxel {
 namespace {
 
-/// A voxel of the lattice along one axis, and the length of it that a voxel of the octree covers.
+/// The index of a voxel of the lattice along one axis, and the length of it that a voxel of the octree
+/// covers.
 struct Covered {
   int at = 0;
   double length = 0.0;
 };
 
-/// An axis of the octree along one of the lattice.
+/// An axis of the octree that is parallel to an axis of the lattice.
 struct Along {
   int axis = 0;                                    ///< of the lattice
   std::size_t stride = 1;                          ///< between the lattice's samples along it
   std::vector<std::vector<Covered>> covered = {};  ///< by the octree's voxels along the axis
 };
 
-/// The parts of the `count` voxels along an axis that an octree's voxel covers, which has its centre at
-/// `centre` and the length `edge`.
+/// The parts of the `count` lattice voxels along an axis that are covered by an octree voxel with this centre
+/// and edge length.
 std::vector<Covered> covered_by(double centre, double edge, int count) {
   std::vector<Covered> covered;
   const double low = centre - 0.5 * edge, high = centre + 0.5 * edge;
@@ -46,7 +47,8 @@ std::optional<std::array<Along, 3>> axes_along(const Universe& universe, const L
   const std::array<std::size_t, 3> strides{
       1, static_cast<std::size_t>(lattice.dims.x),
       static_cast<std::size_t>(lattice.dims.x) * static_cast<std::size_t>(lattice.dims.y)};
-  // Rounding in headers turns an axis by less than this; over the whole universe that is a small part of a voxel.
+  // Rounding in headers turns an axis by less than this. Over the whole universe such a turn is a small part
+  // of a voxel.
   constexpr double most_turn = 1e-6;
   std::array<Along, 3> axes;
   std::array<bool, 3> is_taken{};

@@ -8,7 +8,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// A slice's pixels, unset outside it.
+/// A slice's pixels; pixels beyond the slice read as unset.
 class Pixels {
  public:
   explicit Pixels(const SliceBits& slice) : slice_(slice) {}
@@ -23,16 +23,16 @@ class Pixels {
   const SliceBits& slice_;
 };
 
-/// The pixels at a corner, ahead of a walk in this direction.
+/// The right one of the two pixels at a corner, ahead of a walk in this direction.
 glm::ivec2 right_ahead(const glm::ivec2& corner, const glm::ivec2& way) {
-  // Along +x that is the corner's own pixel; the other directions follow by quarter turns.
+  // Along +x that is the pixel with the corner's own numbers; the other directions follow by quarter turns.
   return corner + glm::ivec2((way.x - way.y - 1) / 2, (way.x + way.y - 1) / 2);
 }
 glm::ivec2 left_ahead(const glm::ivec2& corner, const glm::ivec2& way) {
   return corner + glm::ivec2((way.x + way.y - 1) / 2, (way.y - way.x - 1) / 2);
 }
 
-/// The outline of the edge above a pixel; marks all such edges that it holds.
+/// The outline that contains the edge above a pixel; marks all such edges of the outline as visited.
 PixelOutline outline_from(const Pixels& pixels, const glm::ivec2& pixel, std::vector<bool>& is_done) {
   PixelOutline outline;
   glm::ivec2 corner = pixel, way(1, 0);

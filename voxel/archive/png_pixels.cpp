@@ -23,7 +23,7 @@ std::uint32_t big_endian(std::string_view bytes) {
   return value;
 }
 
-/// The nearest of left, above and above left to their plane (filter type 4).
+/// The one of left, above and above left that is nearest to the plane through the three (filter type 4).
 int paeth(int left, int above, int corner) {
   const int from_left = std::abs(above - corner), from_above = std::abs(left - corner),
             from_corner = std::abs(left + above - 2 * corner);
@@ -31,7 +31,7 @@ int paeth(int left, int above, int corner) {
   return from_above <= from_corner ? above : corner;
 }
 
-/// Undoes the filter of each row, whose first byte names it.
+/// Reverses the filter of each row; the row's first byte is the filter's number.
 void unfilter(std::vector<std::uint8_t>& rows, std::size_t row_bytes, std::size_t pixel_bytes) {
   for (std::size_t at = 0; at < rows.size(); at += row_bytes + 1) {
     const int filter = rows[at];

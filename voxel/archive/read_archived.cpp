@@ -83,7 +83,7 @@ std::optional<ArchivedObject> read_archived(const std::filesystem::path& path) {
     }
     made.media_type = file.readable_text(0x00420012);
     made.title = file.readable_text(0x00420010);
-    // It stands behind the document, so it is missing in files that are cut short there.
+    // The media type is stored after the document, so it is missing in files that are cut short.
     if (made.media_type.empty())
       throw Error(ErrorCode::Input, "does not state its document's media type: is it cut short?");
     made.document = document_of(file);

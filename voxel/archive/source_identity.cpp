@@ -67,7 +67,7 @@ constexpr std::array<std::string_view, 62> defined_words{
     "MANDIBLE", "ORBIT",  "EAR",     "SINUS",  "TEETH",     "HEADNECK", "CHEST", "SPINE",    "CSPINE",
     "LSPINE",   "TSPINE", "ABDOMEN", "PELVIS", "EXTREMITY", "FIBULA",   "LEG",   "WHOLEBODY"};
 
-/// PS3.3, C.7.3.1.1.1, of images and documents.
+/// The modalities that PS3.3, C.7.3.1.1.1, defines for images and documents.
 constexpr std::array<std::string_view, 28> modalities{
     "CT", "MR",  "CR",  "DX",  "PT",  "NM", "US",  "XA", "RF", "IO", "PX", "ES", "XC",       "OT",
     "SC", "SEG", "M3D", "DOC", "OCT", "OP", "OPT", "SM", "GM", "MG", "TG", "RG", "RTSTRUCT", "RTDOSE"};
@@ -102,14 +102,14 @@ std::string described(DicomTag tag, const char* name, const char* change) {
 
 std::string renewed(const std::string& uid, IdentityChoice choice) {
   if (uid.empty()) return uid;
-  // A frame's identifier is its file's, '#' and its number.
+  // A frame is identified by its file's identifier, '#' and the frame's number.
   const std::size_t hash = uid.find('#');
   DicomDigest digest;
   digest.add(uid.substr(0, hash));
   return digest.uid(std::string(word_of(choice))) + (hash == std::string::npos ? "" : uid.substr(hash));
 }
 
-/// Applies a rule to an attribute. Returns whether the attribute stays, and adds a line on what was changed.
+/// Applies a rule to an attribute. Returns whether the attribute stays. Adds a line about the change, if any.
 bool apply(const RuledAttribute& ruled, IdentityChoice choice, DicomSource::Text& text,
            std::vector<std::string>& changes) {
   const std::vector<std::string> values = values_of(text.value);
@@ -177,7 +177,7 @@ DecidedIdentity decide_identity(std::optional<DicomSource> source, IdentityChoic
     } else if (at->first != character_set_tag && !at->second.value.empty()) {
       decided.changes.push_back(described(at->first, "Attribute", "removed"));
     }
-    // No text of the source is left, so its character set is no longer needed.
+    // No text of the source is left, so its character set is not needed.
     at = stays ? std::next(at) : made.attributes.erase(at);
   }
   if (choice == IdentityChoice::New) name_new_patient(made);

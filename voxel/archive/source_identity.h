@@ -27,10 +27,10 @@ struct DecidedIdentity {
 };
 
 /// Decides the identity of written DICOM objects; no other code does. Remove empties, removes or replaces
-/// attributes as PS3.15, table E.1-1, states for its profile, and keeps of the others only numbers and the
-/// words that the standard defines, because free text may name a person. Remove and New replace the unique
-/// identifiers of study, series, images and frame of reference by ones that are computed from these:
-/// objects of one source stay together, and anyone who has the source can recompute them. Keep changes
+/// attributes as PS3.15, table E.1-1, states for its profile. Of other attributes, Remove keeps only numbers
+/// and the words that the standard defines, because free text may name a person. Remove and New replace the
+/// unique identifiers of study, series, images and frame of reference by identifiers computed from the old
+/// ones: objects of one source stay together, and anyone who has the source can recompute them. Keep changes
 /// nothing.
 DecidedIdentity decide_identity(std::optional<DicomSource> source, IdentityChoice choice);
 

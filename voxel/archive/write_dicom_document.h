@@ -15,17 +15,17 @@ enum class DocumentFormat { Stl, Obj, Pdf };
 struct DicomDocumentOptions {
   std::string label = "Document";               ///< title of the document: 1 to 64 characters
   std::string series_description = "Octotomy";  ///< 1 to 64 characters
-  /// The series that the document was made from: its patient and study and, of a surface, its frame of reference
-  /// are copied, its images listed. None: a phantom in a study of its own.
+  /// The series from which the document was made. Its patient and study are copied, for a surface also its
+  /// frame of reference; its images are listed. None: a phantom, in a study of its own.
   std::optional<DicomSource> source = std::nullopt;
 };
 
 /// Writes a file as an encapsulated DICOM document, byte for byte (PS3.3: A.85 for surfaces, A.45.1 for PDF).
-/// `bytes` is the file. A surface's coordinates are LPS millimetres of the source's frame of reference, which is
-/// what a reader takes them for; its measurement unit is stated as millimetres. A PDF is stated to show the
-/// patient's identity, because reports do. Identifiers are computed from the content. Written to a temporary file
-/// and renamed into place. Throws std::invalid_argument if `bytes` are none or a text is too long; Error,
-/// Geometry, if there are more than DICOM's 4 GB; Error, Input or Resource, with path and reason.
+/// `bytes` is the file. A surface's coordinates must be LPS millimetres of the source's frame of reference,
+/// because readers assume that; its measurement unit is stated as millimetres. A PDF is stated to show the
+/// patient's identity, because reports do. Identifiers are computed from the content. Written to a temporary
+/// file and renamed into place. Throws std::invalid_argument if `bytes` is empty or a text is too long;
+/// Error, Geometry, if there are more than DICOM's 4 GB; Error, Input or Resource, with path and reason.
 void write_dicom_document(const std::string& bytes, DocumentFormat format, const std::filesystem::path& path,
                           const DicomDocumentOptions& options = {});
 

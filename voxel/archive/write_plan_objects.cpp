@@ -15,7 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 using Items = std::vector<DicomAttributes>;
 
-/// What all objects of a plan have in common; the frame of reference is left out, as pages and views have none.
+/// The attributes that all objects of a plan share. The frame of reference is left out, because documents and
+/// pictures have none.
 DicomAttributes object_of(const PlanObjects& plan, const std::optional<DicomSource>& source,
                           const DicomDigest& digest, const char* series, const char* description) {
   DicomOptions study{.series_description = description, .source = source};

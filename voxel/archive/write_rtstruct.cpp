@@ -25,10 +25,10 @@ using Items = std::vector<DicomAttributes>;
 using Objects = std::span<const DicomSegment>;
 
 constexpr const char* structure_set_storage = "1.2.840.10008.5.1.4.1.1.481.3";
-/// The class of a study in references to it (PS3.6, retired, and still what readers expect).
+/// The class of a study in references to it (PS3.6). It is retired, but readers still expect it.
 constexpr const char* study_class = "1.2.840.10008.3.1.2.3.1";
 
-/// Files state positions to a hundredth of a millimetre or better.
+/// Files state positions to a hundredth of a millimetre or better, so planes closer than this are one.
 constexpr double same_plane_mm() {
   return 0.01;
 }
@@ -37,7 +37,8 @@ DicomAttributes implicit() {
   return DicomAttributes(DicomAttributes::Coding::ImplicitVr);
 }
 
-/// A plane on which contours are drawn: its place along the voxels' third axis, and the voxels that it shows.
+/// A plane on which contours are drawn: its position along the voxels' third axis, and the planes of voxels
+/// that it shows.
 struct ContourPlane {
   double z_voxel = 0.0;
   int z = 0;
@@ -45,7 +46,7 @@ struct ContourPlane {
   std::vector<DicomSource::Image> images = {};
 };
 
-/// Perpendicular distance of neighbouring planes of voxels.
+/// The distance between neighbouring planes of voxels, measured across them.
 double plane_distance_mm(const Universe& universe) {
   const glm::dmat3 axes(universe.lps_from_voxel);
   return std::abs(glm::dot(axes[2], glm::normalize(glm::cross(axes[0], axes[1]))));
@@ -61,8 +62,8 @@ std::vector<ContourPlane> planes_of_voxels(const Universe& universe,
   return planes;
 }
 
-/// The planes of the source's images, in order along the voxels' third axis. Where each plane of voxels that
-/// holds an object has its image, these are the planes of the voxels.
+/// The planes of the source's images, ordered along the voxels' third axis. If every plane of voxels with an
+/// object has its own image, these are the planes of the voxels.
 std::vector<ContourPlane> planes_of_images(const Universe& universe, const DicomSource& source) {
   const glm::dmat3 axes(universe.lps_from_voxel);
   const glm::dvec3 normal = glm::normalize(glm::cross(axes[0], axes[1]));
@@ -86,7 +87,8 @@ std::vector<ContourPlane> planes_of_images(const Universe& universe, const Dicom
     planes.push_back({z_voxel, static_cast<int>(nearest), 0.0, {image}});
   }
   if (step_mm < 0.0) std::reverse(planes.begin(), planes.end());
-  // A slab lies about its plane, so it is as thick as the wider gap beside it: slabs of neighbours meet.
+  // A slab extends equally to both sides of its plane. It is as thick as the wider of the two gaps, so that
+  // neighbouring slabs meet.
   for (std::size_t i = 0; i < planes.size(); ++i) {
     double slab_mm = planes.size() > 1 ? 0.0 : plane_distance_mm(universe);
     if (i > 0) slab_mm = (planes[i].z_voxel - planes[i - 1].z_voxel) * std::abs(step_mm);
@@ -97,8 +99,8 @@ std::vector<ContourPlane> planes_of_images(const Universe& universe, const Dicom
   return planes;
 }
 
-/// Coordinates to a ten thousandth of a millimetre. Centres of voxels lie half an edge off the contours, so
-/// finer edges need all the digits of a decimal string.
+/// Coordinates to a ten thousandth of a millimetre. Contours run half an edge beside the voxels' centres, so
+/// for finer edges all digits of a decimal string are used.
 std::string coordinates(const glm::dvec3& p_mm, bool is_fine) {
   if (is_fine) return dicom_decimals(p_mm);
   std::string text;
@@ -176,7 +178,7 @@ class StructureSetWriter {
     file.put(0x00081090, "LO", "octotomy");
     file.put(0x00181020, "LO", OCTOTOMY_VERSION);
     file.put(0x00200013, "IS", "1");
-    // A short string has 16 characters; the name has room for the whole label.
+    // DICOM's short string has 16 characters; the attribute for the name has room for the whole label.
     constexpr std::size_t most_of_short = 16;
     file.put(0x30060002, "SH",
              is_ascii(options_.label) ? options_.label.substr(0, most_of_short) : "OCTOTOMY");
@@ -226,7 +228,7 @@ class StructureSetWriter {
     std::vector<PixelOutline> outlines;
   };
 
-  /// The object's outlines on the planes, and what they leave out.
+  /// Draws the object's outlines on the planes, and records what they leave out.
   std::vector<Outlined> outlined(std::size_t i, ContouredObject& drawn) {
     const Octree& object = objects_[i].object;
     const double step_mm = plane_distance_mm(universe_);
@@ -289,7 +291,7 @@ class StructureSetWriter {
     }
     drawn.planes = planes.size();
     drawn_.push_back(drawn);
-    // Colours that differ on black and for most colour-blind viewers (Okabe and Ito 2008).
+    // Colours that are distinguishable on black, also by most colour-blind viewers (Okabe and Ito 2008).
     constexpr std::array<const char*, 7> colours{"230\\159\\0",  "86\\180\\233",  "0\\158\\115",
                                                  "240\\228\\66", "204\\121\\167", "213\\94\\0",
                                                  "0\\114\\178"};

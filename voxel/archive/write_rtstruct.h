@@ -23,32 +23,33 @@ struct RtstructOptions {
   std::string label = "Objects";                ///< of the structure set: 1 to 64 characters
   std::string series_description = "Octotomy";  ///< 1 to 64 characters
   ContourPlanes planes = ContourPlanes::Images;
-  /// The series that the objects were made from, as for write_dicom_seg(); each contour refers to the images
+  /// The series from which the objects were made, as for write_dicom_seg(); each contour refers to the images
   /// of its plane.
   std::optional<DicomSource> source = std::nullopt;
   Progress progress = {};
 };
 
-/// What was drawn of an object.
+/// What was drawn for an object, and what was left out.
 struct ContouredObject {
   std::string name;
   std::size_t planes = 0, contours = 0, holes = 0, points = 0;
   /// Planes of voxels on which no contour is drawn, because no image lies there.
   std::size_t planes_left_out = 0;
-  /// Largest distance of a drawn plane from the voxels' centres that it shows.
+  /// The largest distance between a drawn plane and the centres of the voxels that it shows.
   double farthest_mm = 0.0;
 };
 
-/// Writes objects of one universe as a DICOM structure set (PS3.3, A.19), a region of interest each: on every
-/// plane the boundaries of its voxels, along the voxels' edges. A region with a hole has the type
-/// CLOSEDPLANAR_XOR, which combines its contours of a plane by exclusive or; others CLOSED_PLANAR. A voxel's
-/// centre is inside a region exactly if the voxel is in the object, and the contours' area is the voxels'.
-/// Images between the voxels' planes show the nearest one. Identifiers are computed from the content, patient
-/// and study are those of the source: as write_dicom_seg(). Coded with implicit VR, as contours may be longer
-/// than explicit VR allows. Written to a temporary file and renamed into place. Throws std::invalid_argument
-/// for no objects, an empty one, different universes, texts that are too long, or planes of voxels that are
-/// not parallel to the images; Error, Geometry, if an object lies on none of the images; Error, Input or
-/// Resource, with path and reason; Stopped. Cost: the planes' pixels. Memory: the file.
+/// Writes objects of one universe as a DICOM structure set (PS3.3, A.19), one region of interest each: on
+/// every plane the boundaries of its voxels, along the voxels' edges. A region with a hole has the type
+/// CLOSEDPLANAR_XOR, which combines its contours of a plane by exclusive or; others have CLOSED_PLANAR. A
+/// voxel's centre is inside a region exactly if the voxel is in the object, and the contours enclose the same
+/// area as the voxels. Images between the voxels' planes show the nearest plane. Identifiers are computed
+/// from the content; patient and study are those of the source, as in write_dicom_seg(). Coded with implicit
+/// VR, because contours may be longer than explicit VR allows. Written to a temporary file and renamed into
+/// place. Throws std::invalid_argument if there is no object, an object is empty, universes differ, a text is
+/// too long, or planes of voxels are not parallel to the images; Error, Geometry, if an object lies on none
+/// of the images; Error, Input or Resource, with path and reason; Stopped. Cost: the planes' pixels. Memory:
+/// the file.
 std::vector<ContouredObject> write_rtstruct(std::span<const DicomSegment> objects,
                                             const std::filesystem::path& path,
                                             const RtstructOptions& options = {});

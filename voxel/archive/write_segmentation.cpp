@@ -25,7 +25,7 @@ std::string vector_of(const glm::dvec3& v) {
   return "(" + exact(v.x) + "," + exact(v.y) + "," + exact(v.z) + ")";
 }
 
-/// Which objects share a voxel, and the box of each.
+/// Which objects share a voxel, and the bounding box of each object.
 struct Overlaps {
   std::vector<std::vector<bool>> shared;
   std::vector<glm::ivec3> low, high;
@@ -55,7 +55,7 @@ Overlaps overlaps_of(const std::vector<WrittenSegment>& segments) {
   return found;
 }
 
-/// The layer of each object: the first in which it overlaps none.
+/// The layer of each object: the first in which it overlaps no object.
 std::vector<int> layers_of(const Overlaps& overlaps) {
   std::vector<int> layers;
   for (std::size_t i = 0; i < overlaps.shared.size(); ++i) {
@@ -107,7 +107,7 @@ std::string header_of(const std::vector<WrittenSegment>& segments, const Overlap
   return text;
 }
 
-/// A gzip stream into a text, whose header states no time.
+/// Compresses a text with gzip. The header states no time, so that equal objects make equal bytes.
 class Gzip {
  public:
   Gzip() {

@@ -18,9 +18,9 @@ enum class SetOperation { Intersection, Union, Difference };
 BinaryArray combined(const BinaryArray& a, const BinaryArray& b, SetOperation operation);
 /// Row by row; null rows and slices are not opened where the operation allows it.
 MarginalIndex combined(const MarginalIndex& a, const MarginalIndex& b, SetOperation operation);
-/// By merging the two lists. Cost: their lengths.
+/// Merges the two lists. Cost: their lengths.
 RunLength combined(const RunLength& a, const RunLength& b, SetOperation operation);
-/// By merging the lists of each row. Cost: their lengths, and one look at each row.
+/// Merges the lists of each row. Cost: their lengths, and one look at each row.
 SegmentIndex combined(const SegmentIndex& a, const SegmentIndex& b, SetOperation operation);
 
 }  // namespace octotomy::voxel

@@ -18,7 +18,7 @@ CuberilleFaces translated(const CuberilleFaces& faces, const glm::ivec3& by);
 MarginalIndex translated(const MarginalIndex& index, const glm::ivec3& by);
 /// Moves the slices' and rows' pointers, and adds the step along x to the segments' ends.
 SegmentIndex translated(const SegmentIndex& index, const glm::ivec3& by);
-/// Codes the runs anew row by row, since a run knows no row.
+/// Codes the runs again row by row, because a run contains no row.
 RunLength translated(const RunLength& code, const glm::ivec3& by);
 
 }  // namespace octotomy::voxel

@@ -37,7 +37,7 @@ struct MaskedOctree {
 
 /// Cost: a walk of the nodes, and for each face of a node the Partial nodes behind it.
 MaskedOctree masked_octree(const Octree& octree);
-/// The same object without masks. Precondition: made by masked_octree().
+/// The octree that a masked octree was made from. Precondition: made by masked_octree().
 Octree octree_of(const MaskedOctree& masked);
 
 /// The nodes as one word: a status, E, F or P, its covered faces as two hexadecimal digits, and the eight children of

@@ -77,7 +77,7 @@ Projection projection(const CuberilleFaces& faces, Direction from) {
 Projection projection(const BinaryArray& array, Direction from) {
   Columns columns(array.universe, from);
   const int side = columns.side();
-  // By descending depth along the view's axis; the order along the other axes does not matter.
+  // Sorted by descending depth along the view's axis; the order along the other axes does not matter.
   const auto at = [&](int axis, int i) {
     return axis == columns.axis() && !columns.from_high() ? side - 1 - i : i;
   };

@@ -9,8 +9,9 @@ namespace octotomy::voxel {
 
 bool is_ascii(std::string_view text);
 
-/// A text in a DICOM character set as UTF-8. `character_set` is the value of (0008,0005); if it has several
-/// values, the last is used (PS3.3, C.12.1.1.2). None if the set is unknown or the text is not valid in it.
+/// Converts a text from a DICOM character set to UTF-8. `character_set` is the value of (0008,0005); if it
+/// has several values, the last is used (PS3.3, C.12.1.1.2). None if the set is unknown or the text is not
+/// valid in it.
 std::optional<std::string> utf8_of(std::string_view character_set, std::string_view text);
 
 }  // namespace octotomy::voxel

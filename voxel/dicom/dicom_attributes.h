@@ -15,12 +15,12 @@
 
 namespace octotomy::voxel {
 
-/// A decimal string with as many digits as fit into 16 characters.
+/// A number as a decimal string, with as many digits as fit into 16 characters.
 std::string dicom_decimal(double number);
 std::string dicom_decimals(const glm::dvec3& p);
 
-/// Throws std::invalid_argument that names the option `name` if its text is longer than the 64 characters of
-/// DICOM's LO or holds a backslash, which separates values.
+/// Throws std::invalid_argument, which names the option `name`, if its text is longer than the 64 characters
+/// of DICOM's LO or contains a backslash, which separates values.
 void check_dicom_text(const std::string& text, const char* name);
 
 /// A 128-bit digest of content: two FNV-1a sums with different start values. Equal content produces equal
@@ -41,7 +41,7 @@ class DicomDigest {
 };
 
 /// Attributes in ascending order, written little-endian, sequences and items with their lengths (DICOM PS3.5,
-/// 7.1 and 7.5): with explicit VR, or with implicit VR, which alone has room for texts of more than 64 KB.
+/// 7.1 and 7.5). With explicit VR, or with implicit VR, which is needed for texts of more than 64 KB.
 class DicomAttributes {
  public:
   enum class Coding { ExplicitVr, ImplicitVr };

@@ -34,7 +34,7 @@ class CodecProcess {
     const timeval limit{60, 0};
     setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
     try {
-      // Its output is /dev/null: one of GDCM's codecs prints while it decodes.
+      // The process's output goes to /dev/null, because one of GDCM's codecs prints while it decodes.
       process_ = spawn({.words = {path, folder_.path().string()}, .in = sockets[1]});
     } catch (const std::system_error& error) {
       close(sockets[0]);

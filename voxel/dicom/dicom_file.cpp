@@ -30,8 +30,8 @@ bool has_prefix(std::string_view bytes) {
   return bytes.size() >= 132 && bytes.substr(128, 4) == "DICM";
 }
 
-/// Whether the first attribute states its value representation. Read as an implicit length, two capital
-/// letters would mean a first value of at least 16 kilobytes, longer than any first attribute is.
+/// Whether the first attribute states its value representation. If the two capital letters were read as an
+/// implicit length, the first value would take at least 16 kilobytes, more than any first attribute.
 bool spells_vr(std::string_view bytes) {
   const auto is_capital = [&](std::size_t i) { return bytes[i] >= 'A' && bytes[i] <= 'Z'; };
   return bytes.size() >= 8 && is_capital(4) && is_capital(5);

@@ -58,7 +58,7 @@ std::optional<NoSlice> not_reconstructed(const DicomFile& file, std::size_t fram
     if (kind == projection)
       return NoSlice{
           "a nuclear medicine image of the kind " + kind +
-              ", whose frames are projections and no slices: export the reconstruction (RECON TOMO)",
+              ", whose frames are projections instead of slices: export the reconstruction (RECON TOMO)",
           NoSlice::Kind::Unusable};
   if (numbers_of_frames(file, slice_vector_tag, frames)) return std::nullopt;
   return NoSlice{
@@ -133,7 +133,7 @@ std::optional<NoSlice> place_frames(const DicomFile& file, std::vector<DicomSlic
     const double step_mm =
         named.tag == 0x00180088 ? first.spacing_tag_mm.value_or(0.0) : first.thickness_mm.value_or(0.0);
     if (!how.empty() || step_mm == 0.0 || !(std::abs(step_mm) < 1e6)) continue;
-    // A time series of one slice has a slice thickness, but no distance between slices.
+    // In a time series of one slice, SliceThickness is no distance between slices.
     if (!time.empty() && named.tag == 0x00180050)
       return NoSlice{
           "a multi-frame image whose frames follow each other in time (FrameIncrementPointer names " + time +
@@ -143,7 +143,7 @@ std::optional<NoSlice> place_frames(const DicomFile& file, std::vector<DicomSlic
     for (std::size_t i = 0; i < frames; ++i) offsets_mm.push_back(step_mm * place(i));
     how = (slice_numbers ? "SliceVector and " : "") + print("%s, %.6g mm", named.name, step_mm);
     if (!time.empty())
-      how += ", although FrameIncrementPointer names " + time + ", as of a film, which is no volume";
+      how += ", although FrameIncrementPointer names " + time + ", as in a film, which is not a volume";
   }
   if (how.empty())
     return NoSlice{

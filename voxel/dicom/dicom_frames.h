@@ -8,12 +8,12 @@
 
 #include "voxel/dicom/dicom_slice.h"
 
-// Frames of files that give them no attributes of their own: films and images of nuclear medicine.
+// Frames of files that have no attributes for each frame: films and images of nuclear medicine.
 namespace octotomy::voxel {
 
 bool is_nuclear(const std::string& class_uid);
 
-/// The reason if a nuclear medicine image holds no reconstructed slices.
+/// The reason if a nuclear medicine image has no reconstructed slices; none if it has.
 std::optional<NoSlice> not_reconstructed(const DicomFile& file, std::size_t frames);
 
 /// For each frame of a nuclear medicine image, the item of its detector, which holds its position; empty if
@@ -25,7 +25,7 @@ std::vector<DicomFile> detectors_of_frames(const DicomFile& file, std::size_t fr
 void take_frame_vectors(const DicomFile& file, std::vector<DicomSlice>& slices);
 
 /// Computes positions for frames that have none: along the normal, starting at the first frame. Returns the
-/// reason if the header states no distances.
+/// reason if the header states no distances between frames.
 std::optional<NoSlice> place_frames(const DicomFile& file, std::vector<DicomSlice>& slices);
 
 }  // namespace octotomy::voxel

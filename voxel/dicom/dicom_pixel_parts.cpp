@@ -92,7 +92,7 @@ DicomPixels pixels_of(const DicomFile& file) {
   pixels.transfer_syntax = file.transfer_syntax();
   pixels.allocated = file.unsigned_short(0x00280100).value_or(16);
   const auto stored = file.unsigned_short(0x00280101), high = file.unsigned_short(0x00280102);
-  // If one of the two is absent, the other determines it, because values end at the lowest bit.
+  // If one of the two is absent, it follows from the other, because values end at the lowest bit.
   pixels.stored = stored ? *stored : high ? *high + 1u : pixels.allocated;
   pixels.high = high ? *high : pixels.stored - 1;
   const auto representation = file.unsigned_short(0x00280103);
@@ -139,8 +139,8 @@ std::optional<NoSlice> take_pixels(const DicomFile& file, std::vector<DicomSlice
                          std::to_string(needed * frames) +
                          (is_raw_syntax(slices.front().pixels.transfer_syntax)
                               ? std::string()
-                              : "; or compressed, as transfer syntax " +
-                                    slices.front().pixels.transfer_syntax + " says, but not in fragments"),
+                              : "; or they are compressed, as transfer syntax " +
+                                    slices.front().pixels.transfer_syntax + " states, but not in fragments"),
                      NoSlice::Kind::Damaged};
     note_excess(held, needed, slices);
     const bool is_odd = slices.front().size_px.x * slices.front().size_px.y % 2 != 0;

@@ -7,23 +7,24 @@
 
 #include "voxel/dicom/dicom_slice.h"
 
-// Where in its file an image's pixels lie, and how they are stored.
+// The positions of an image's pixels in its file, and their storage format.
 namespace octotomy::voxel {
 
-/// The storage of an image's pixels as the header states it, without the places of the pixels.
+/// The storage format of an image's pixels as the header states it, without the positions of the pixels.
 DicomPixels pixels_of(const DicomFile& file);
-/// Whether pixels can be stored so: the bits of a value lie within those that are allocated.
+/// Whether the storage format is consistent: the bits of a value lie within the allocated ones.
 bool is_sound(const DicomPixels& pixels);
 
-/// The lossy compression of an image's pixels, from its transfer syntax and LossyImageCompression; empty: lossless.
+/// The lossy compression of an image's pixels, by its transfer syntax and LossyImageCompression; empty:
+/// lossless.
 std::string lossy_of(const DicomFile& file);
 
 /// The largest number of frames that the pixels can hold: one per fragment, or as many as their bytes suffice
 /// for.
 std::size_t most_frames(const DicomFile& file, const DicomSlice& slice);
 
-/// Fills the places of the pixels of `slices`, the frames of a file. Returns the reason if they cannot be grey
-/// frames.
+/// Sets the positions of the pixels of `slices`, the frames of a file. Returns the reason if the pixels
+/// cannot be grey frames.
 std::optional<NoSlice> take_pixels(const DicomFile& file, std::vector<DicomSlice>& slices);
 
 }  // namespace octotomy::voxel

@@ -46,7 +46,7 @@ class PlacedReader {
   int file_;
 };
 
-/// The parts of a slice's pixels as stored.
+/// Reads the parts of a slice's pixels as they are stored.
 std::vector<std::string> stored_parts(const DicomSlice& slice) {
   std::vector<std::string> parts;
   if (slice.pixels.is_deflated) {
@@ -79,13 +79,13 @@ std::string joined(std::vector<std::string> parts) {
   return std::move(parts.front());
 }
 
-/// Exchanges the bytes of each word of two.
+/// Swaps the two bytes of each word.
 void swap_bytes(std::string& words) {
   for (std::size_t i = 0; i + 1 < words.size(); i += 2) std::swap(words[i], words[i + 1]);
 }
 
-/// Pixels of 12 bits, two in three bytes, as words of 16 bits. The first pixel has the lower bits (DICOM
-/// PS3.5, 8.1.1); big-endian files store 16-bit words, whose bytes are exchanged.
+/// Unpacks pixels of 12 bits, two in three bytes, to words of 16 bits. The first pixel has the lower bits
+/// (DICOM PS3.5, 8.1.1); big-endian files store 16-bit words, whose bytes are swapped first.
 std::string unpacked(std::string packed, std::size_t count, bool big_endian) {
   if (packed.size() % 2 != 0) packed += '\0';
   if (big_endian) swap_bytes(packed);
@@ -160,7 +160,7 @@ DecodedSlice rescale_shorts(const DicomSlice& slice, int intercept, std::span<st
     for (std::int16_t& sample : samples) {
       const auto word = static_cast<Word>(sample);
       const int stored = static_cast<Word>(static_cast<Word>(word << shift) >> drop);
-      // Bits outside of the stored ones: none, or copies of the sign above them.
+      // Bits outside of the stored ones are plain if they are all zero or copies of the sign above them.
       const bool is_plain = (static_cast<std::uint16_t>(sample) & outside) == 0;
       foreign += !is_plain && static_cast<Word>(stored << (drop - shift)) != word;
       const int value = stored + intercept;

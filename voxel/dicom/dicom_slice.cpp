@@ -53,7 +53,7 @@ class Attributes {
            })
         .value_or("");
   }
-  /// A trait's value as text, also if it is stored as a binary number.
+  /// A trait's value as a text, also for a trait that is stored as a binary number.
   std::string trait(DicomTag tag) const {
     const auto wide = [&] {
       return first<double>([&](const DicomFile& from) { return from.float_double(tag); });
@@ -66,8 +66,8 @@ class Attributes {
     if (tag == 0x00209128)  // VR UL
       return word() ? std::to_string(*word()) : std::string();
     const std::string found = text(tag);
-    // VR FL, which some writers store as a decimal string. The bytes of a float, such as 0, are not digits of
-    // a text.
+    // VR FL is a binary float, which some writers store as a decimal string. The bytes of a float such as 0
+    // are not digits.
     if ((tag == 0x00209241 || tag == 0x00209245) && word() &&
         (found.empty() || found.find_first_not_of("0123456789.+- ") != std::string::npos))
       return print("%g", static_cast<double>(std::bit_cast<float>(*word())));
@@ -97,7 +97,7 @@ class Attributes {
   std::vector<DicomFile> groups_;
 };
 
-/// Whether every value that the pixels can hold stays finite in single precision when it is rescaled.
+/// Whether every value that the pixels can hold is finite in single precision after the rescale.
 bool is_rescale_finite(const DicomSlice& slice) {
   const double largest_stored = std::ldexp(1.0, static_cast<int>(slice.pixels.stored));
   return std::abs(slice.slope.value_or(1.0)) * largest_stored + std::abs(slice.intercept.value_or(0.0)) <=
@@ -252,7 +252,7 @@ std::optional<NoSlice> take_lut(const DicomFile& file, DicomSlice& slice) {
   return std::nullopt;
 }
 
-/// The mappings of the frame, else the shared ones, else those of the file.
+/// The real-world mappings of the frame; if it has none, those shared by all frames, else those of the file.
 std::vector<RealWorldMapping> real_world_of(const DicomFile& file, const DicomFile* own,
                                             const DicomFile* shared, bool is_signed) {
   std::vector<RealWorldMapping> found;
@@ -281,7 +281,7 @@ int stated_short(const DicomFile& file, DicomTag tag) {
   return file.unsigned_short(tag).value_or(0);
 }
 
-/// The header's statements by which its image is not a plain measurement of a person.
+/// The header's statements that contradict a plain measurement of a person.
 std::string doubts_of(const DicomFile& file) {
   std::string doubts;
   const auto add = [&](const std::string& doubt) { doubts += (doubts.empty() ? "" : "; ") + doubt; };
@@ -295,7 +295,7 @@ std::string doubts_of(const DicomFile& file) {
   for (const char* kind : {"MIP", "MAX_IP", "MIN_IP", "MINIP", "PROJECTION IMAGE"})
     if (kinds.find("\\" + std::string(kind) + "\\") != std::string::npos)
       add(std::string("ImageType or FrameType ") + kind +
-          ": a projection through several slices, in which bone is thicker than it is");
+          ": a projection through several slices, which shows bone thicker than it is");
   if (const std::string name = file.text(0x00100010), set = file.text(character_set_tag);
       !utf8_of(set, name) && std::any_of(name.begin(), name.end(), [](char c) { return (c & 0x80) != 0; }))
     add("SpecificCharacterSet '" + set + "' does not fit the patient's name, whose letters are shown as ?");
@@ -331,7 +331,7 @@ std::variant<DicomSlice, NoSlice> common_of(const DicomFile& file, const std::fi
   if (file.unsigned_short(0x00280002).value_or(1) != 1) return NoSlice{"a colour image", unusable};
   const std::string photometric = file.readable_text(0x00280004);
   if (!photometric.empty() && !photometric.starts_with("MONOCHROME"))
-    return NoSlice{"pixels in " + photometric + ", which are no measurements", unusable};
+    return NoSlice{"pixels in " + photometric + ", which are not measurements", unusable};
   if (file.text(0x00080008).find("MOSAIC") != std::string::npos)
     return NoSlice{"a mosaic, which shows many slices in one picture; export them as single slices",
                    unusable};
@@ -352,7 +352,7 @@ std::variant<DicomSlice, NoSlice> common_of(const DicomFile& file, const std::fi
   slice.doubts = doubts_of(file);
   if (file.contradicts_syntax())
     slice.assumed_coding =
-        "value representations as the attributes show them, which contradict the transfer syntax";
+        "value representations as they appear in the attributes, which contradict the transfer syntax";
   if (!file.unsigned_short(0x00280101))
     slice.assumed_coding += print("%s%u bits, as BitsStored is absent",
                                   slice.assumed_coding.empty() ? "" : "; ", slice.pixels.stored);
@@ -455,7 +455,7 @@ std::variant<std::vector<DicomSlice>, NoSlice> slices_of(const DicomFile& file,
   return slices;
 }
 
-/// The slices of a file, or the reason why it has none, with the file's series.
+/// The slices of a file; if it has none, the reason and the file's series.
 std::variant<std::vector<DicomSlice>, NoSlice> slices_or_reason(const DicomFile& file,
                                                                 const std::filesystem::path& path) {
   auto found = slices_of(file, path);

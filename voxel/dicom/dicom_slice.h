@@ -17,8 +17,8 @@
 
 namespace octotomy::voxel {
 
-/// The place of an image's pixels in its file, and their format: each pixel takes `allocated` bits, and the
-/// `stored` bits up to bit `high` are its value. With 12 allocated bits, two pixels share three bytes.
+/// The position of an image's pixels in its file, and their format: each pixel takes `allocated` bits, and
+/// the `stored` bits up to bit `high` are its value. With 12 allocated bits, two pixels share three bytes.
 struct DicomPixels {
   std::string transfer_syntax;
   std::vector<DicomExtent> parts;  ///< one part for raw pixels; the fragments of compressed ones
@@ -116,7 +116,7 @@ struct DicomSlice {
   DicomTraitValues traits;
 };
 
-/// The reason why a file holds no slice.
+/// A file without a slice, and the reason.
 struct NoSlice {
   /// Stray: not an image, so no part of a scan is lost. Unusable: an image that cannot be part of a volume.
   /// Damaged: an image whose file is truncated or corrupt.

@@ -20,9 +20,9 @@ constexpr double same_place_mm() {
   return 0.01;
 }
 
-/// Two spacings or directions count as equal if they shift no pixel by more than half its width: their mean
-/// then shifts none by more than a quarter. Rounding of decimals, and writers that recompute the values for
-/// each slice, cause smaller differences.
+/// Two spacings or directions count as equal if their difference shifts no pixel by more than half its width;
+/// their mean then shifts none by more than a quarter. Smaller differences come from rounding of decimals,
+/// and from writers that recompute the values for each slice.
 constexpr double same_pixel_px() {
   return 0.5;
 }
@@ -78,7 +78,7 @@ std::size_t time_trait() {
 }
 
 /// Splits images if nearly every position has several: into the first image of each position, the second, and
-/// so on, in order of time or, if times do not differ, of number. Does not split if neither differs.
+/// so on. The order is by time, or by number if the times are equal. Does not split if neither differs.
 std::vector<std::vector<DicomSlice>> parted_by_order(std::vector<DicomSlice> slices) {
   const glm::dvec3 normal = glm::cross(slices.front().along_row, slices.front().along_column);
   const std::size_t time = time_trait();
@@ -154,7 +154,7 @@ const char* plane_of(const DicomSlice& slice) {
                                                       : "sagittal";
 }
 
-/// Describes how the parts differ. Does not show identities, because a report may leave the hospital. Linear
+/// Describes how the parts differ. Leaves out identities, because a report may leave the hospital. Linear
 /// cost: what all parts share is computed once.
 class Words {
  public:

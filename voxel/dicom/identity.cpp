@@ -9,14 +9,14 @@
 namespace octotomy::voxel {
 namespace {
 
-/// A person's name, normalised for comparison: lower case, without empty components at the end.
+/// A person's name in a form for comparison: lower case, without empty components at the end.
 std::string plain_name(const std::string& name) {
   std::string plain = lower_case(trimmed(name));
   plain.resize(plain.find_last_not_of("^= ") + 1);
   return plain;
 }
 
-/// "'1.2.3'", or "'1.2.3' or '1.2.4'", of at most four.
+/// Up to four values in quotes: "'1.2.3'", or "'1.2.3' or '1.2.4'".
 std::string quoted(const std::vector<std::string>& values) {
   constexpr std::size_t most = 4;
   std::string text;
@@ -64,7 +64,7 @@ IdentityComparison compared(const Identity& a, const Identity& b) {
     made.differing.push_back("patient '" + of_a + "' and '" + of_b + "'");
   else if (by_id && are_both_stated_and_differ(lower_case(a.id_issuer), lower_case(b.id_issuer)))
     made.differing.push_back("patient '" + of_a + "' of the issuers '" + a.id_issuer + "' and '" +
-                             b.id_issuer + "', whose numbers are their own");
+                             b.id_issuer + "', which number their patients independently");
   if (are_both_stated_and_differ(a.birth_date, b.birth_date))
     made.differing.push_back("patient's birth date '" + a.birth_date + "' and '" + b.birth_date + "'");
   if (are_both_stated_and_differ(a.sex, b.sex))

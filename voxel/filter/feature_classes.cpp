@@ -178,7 +178,7 @@ FeatureClasses feature_classes(const Scene& scene, int classes, const Progress& 
   made.gradient_scale = std::sqrt(whole.variance.y / whole.weight);
   if (!(made.density_scale > 0.0) || !(made.gradient_scale > 0.0))
     throw Error(ErrorCode::Geometry,
-                "all samples have one density or one gradient: there are no classes to part them into");
+                "all samples have one density or one gradient, so they cannot be divided into classes");
   const glm::dvec2 scale(made.density_scale, made.gradient_scale);
   for (Bin& bin : all) bin.place /= scale;
   const auto wanted = static_cast<std::size_t>(classes);

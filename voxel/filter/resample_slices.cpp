@@ -73,7 +73,7 @@ std::vector<float> slice_distances(const Scene& scene, int k, const ShapeOptions
   const std::size_t size = slice_size(scene.lattice);
   constexpr float far_away = std::numeric_limits<float>::infinity();
   DistanceMap to_inside{range, std::vector<float>(size, far_away)};
-  // A frame of one pixel stands for everything beyond the slice, which is outside.
+  // A frame of one pixel represents everything beyond the slice, which is outside.
   const VoxelRange framed{{-1, -1, 0}, {dims.x, dims.y, 0}};
   DistanceMap to_outside{
       framed, std::vector<float>(

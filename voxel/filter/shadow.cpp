@@ -31,8 +31,8 @@ namespace {
 
 constexpr int points_an_edge = 5;  ///< of a voxel, and columns of one
 constexpr int points_a_voxel = points_an_edge * points_an_edge * points_an_edge;
-/// As shares of a cell's longest edge: the largest distance by which a surface of triangles cuts off an
-/// edge of the solid, and the largest move of the triangles' middles outward (SurfaceCrossings).
+/// Shares of a cell's longest edge: the largest distance by which a surface of triangles cuts off an edge of
+/// the solid, and the largest outward motion of the triangles' middles (SurfaceCrossings).
 constexpr double cut_off = 0.59, moved_out = 0.75;
 /// In voxel edges. An outline is a jump of depth by more than `look_behind`. There the object is searched
 /// for from `look_before` in front of the depth to `look_behind` behind it, in steps of `look_step`. At an

@@ -420,7 +420,7 @@ class SeriesAssembler {
     return members;
   }
 
-  /// Of several stacks at one place, keeps the largest.
+  /// If several stacks lie at one place, keeps the largest.
   void keep_one_stack(std::vector<DicomSlice>& members) {
     std::vector<DicomSubseries> stacks = parted_at_one_place(std::move(members));
     members = std::move(stacks.front().slices);
@@ -558,8 +558,8 @@ class SeriesAssembler {
                     3.14159265358979323846));
     if (length_error >= two_decimals_error())
       find("orientation_length", Verdict::Warn,
-           print("the vectors of ImageOrientationPatient are %.4g and %.4g long, not 1: their directions are "
-                 "taken and PixelSpacing as it is",
+           print("the vectors of ImageOrientationPatient are %.4g and %.4g long, not 1: only their "
+                 "directions are used, and PixelSpacing is unchanged",
                  row, column));
     else if (error >= 1e-3)
       find("orientation_rounded", Verdict::Warn,

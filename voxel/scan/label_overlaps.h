@@ -21,7 +21,7 @@ class LabelOverlaps {
   /// `largest_label` is the largest number that any label or sample has.
   explicit LabelOverlaps(int largest_label) : next_(largest_label + 1) {}
 
-  /// The number of a sample to which a label is added; 0 stands for no label.
+  /// The number of a sample after a label was added to it; 0 means no label.
   int joined(int number, int label) {
     if (number == 0 || number == label) return label;
     const auto [known, is_new] = joined_.try_emplace({number, label}, 0);

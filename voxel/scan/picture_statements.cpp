@@ -102,7 +102,8 @@ void read_ome(const StoredImage& image, StatedPicture& stated) {
   if (image.orientation >= 5) std::swap(stated.size_mm[0], stated.size_mm[1]);
 }
 
-/// Print resolutions are default values of programs and say nothing about a pixel's size.
+/// Whether a resolution is one for print. Programs write these as defaults, so they are no information about
+/// a pixel's size.
 bool is_of_print(double pixels_per_mm) {
   constexpr std::array<double, 6> per_inch{72.0, 96.0, 100.0, 150.0, 300.0, 600.0};
   return std::any_of(per_inch.begin(), per_inch.end(),
@@ -217,7 +218,7 @@ void PictureStatements::report(Scene& scene, bool is_stated) const {
       warn("picture_spacing", "the pictures state " + print(what[static_cast<std::size_t>(axis)], *size) +
                                   print(", but --spacing states %.6g mm, which is used", spacing_mm[axis]));
   if (differs_)
-    warn("picture_spacing", "the pictures state different sizes of their pixels: one is taken for all");
+    warn("picture_spacing", "the pictures state different sizes of their pixels: one size is used for all");
   if (!first_.further_axis.empty())
     warn("picture_axes",
          "the pictures state " + first_.further_axis + ", which are read as slices: export one volume");

@@ -357,7 +357,8 @@ class StackAudit {
     std::string told;
     for (const DicomSlice& slice : stack_.slices) {
       const double spacing_ratio = slice.spacing_mm.y / slice.spacing_mm.x;
-      // Both are stated with few digits. An error of a hundredth distorts a head by two millimetres.
+      // PixelAspectRatio and PixelSpacing are stated with few digits. An error of a hundredth distorts a head
+      // by two millimetres.
       if (!slice.aspect_ratio || std::abs(*slice.aspect_ratio / spacing_ratio - 1.0) < 0.01) continue;
       if (names.empty())
         told = print("PixelAspectRatio makes pixels %.4g times as high as wide, PixelSpacing %.4g times",

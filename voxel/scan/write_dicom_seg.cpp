@@ -74,7 +74,7 @@ void add_planes(Segments segments, std::size_t segment, const Progress& progress
     throw InvalidInput("the object is empty: choose an object with at least one voxel");
 }
 
-/// The same of the planes of a segment's fractions.
+/// Adds the planes of a segment's fractions.
 void add_planes(const Lattice& lattice, const DicomFractions& segment, std::size_t number, Extent& extent,
                 DicomDigest& digest) {
   const std::size_t before = extent.planes.size();

@@ -48,11 +48,11 @@ struct DicomSegment {
 void write_dicom_seg(const Octree& object, const std::filesystem::path& path,
                      const DicomSegOptions& options = {});
 
-/// The same for several named objects of one universe: segment i + 1 is segments[i], each with frames of its
-/// own, cropped to the rectangle around all; of a label map, one frame for each plane that holds a voxel of any
-/// object. On universe_on() of a scan's lattice each frame lies on a slice of the scan. Also throws
-/// std::invalid_argument for no segments, more than 65535 segments, or different universes; Error, Geometry, with
-/// both names, if objects of a label map share voxels.
+/// Writes a segmentation of several named objects of one universe: segment i + 1 is segments[i], each with
+/// frames of its own, cropped to the rectangle around all; of a label map, one frame for each plane that
+/// holds a voxel of any object. On universe_on() of a scan's lattice each frame lies on a slice of the scan.
+/// Also throws std::invalid_argument for no segments, more than 65535 segments, or different universes;
+/// Error, Geometry, with both names, if objects of a label map share voxels.
 void write_dicom_seg(std::span<const DicomSegment> segments, const std::filesystem::path& path,
                      const DicomSegOptions& options = {});
 

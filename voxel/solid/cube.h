@@ -33,7 +33,7 @@ struct Meets {
   bool sure_out = false;
 
   static Meets exactly(bool in, bool out) { return {in, out, in, out}; }
-  /// From a block status that is exact if Full or Empty and conservative if Partial.
+  /// Converts a block status that is exact if Full or Empty and conservative if Partial.
   static Meets of(Status status) {
     return status == Status::Partial ? Meets{} : exactly(status == Status::Full, status == Status::Empty);
   }

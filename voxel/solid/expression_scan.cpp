@@ -18,7 +18,8 @@
 namespace octotomy::voxel {
 namespace {
 
-/// The same expression with windows on the lattices of their scans, where no sample was interpolated.
+/// Replaces the expression's windows by windows on the lattices of their scans, where no sample was
+/// interpolated.
 Expression on_scan_lattices(const Expression& expression) {
   using Kind = Expression::Kind;
   return evaluate_terms<Expression>(

@@ -510,7 +510,7 @@ Sheets MaskOperand::sheets(const Cube& cube) const {
                   // An edge's end inside the outline is a corner of the region, where the neighbouring edge
                   // adds a surface.
                   sheets.count += 1 + strictly_within(a, outline) + strictly_within(b, outline);
-                  // Of several edges, the last in the polygons' order supplies the tangent.
+                  // If several edges qualify, the last in the polygons' order supplies the tangent.
                   if (taken && *taken > number) return;
                   taken = number;
                   const glm::dvec2 way = glm::normalize(glm::dvec2(b.y - a.y, a.x - b.x));

@@ -21,7 +21,7 @@ class TargetExpression {
 
   /// Bounds, at the cost of one query to each operand.
   Meets meets(const Cube& cube) const;
-  /// The same, with undecided cubes split into octants until they are decided or 2^-6 of the cube wide. Cubes
+  /// As meets(), with undecided cubes split into octants until they are decided or 2^-6 of the cube wide. Cubes
   /// still undecided then count as having parts inside and outside, so a thin part of the solid within that
   /// distance of a voxel may make it a boundary voxel.
   Meets resolve(const Cube& cube) const;

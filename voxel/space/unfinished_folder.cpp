@@ -161,8 +161,8 @@ void remove_abandoned(const fs::path& beside, const std::string& prefix) {
 NamesChange::NamesChange() : held_(names_mutex()) {}
 
 void remove_unfinished() noexcept {
-  // Neither mutex is unlocked, so from here on nothing is renamed into place and no other thread creates or
-  // removes a folder.
+  // Neither mutex is unlocked afterwards, so nothing more is renamed into place and no other thread creates
+  // or removes a folder.
   const bool settled = names_mutex().try_lock_for(std::chrono::milliseconds(100));
   static_cast<void>(settled);
   if (!folders().mutex.try_lock_for(std::chrono::seconds(10))) return;  // the next run removes what is left

@@ -17,9 +17,8 @@ inline std::string way_out_of(int number) {
   return number == ENOSPC || number == EDQUOT ? "; make room on the disk" : "";
 }
 
-/// Throws Error with the file, the reason from the error number of the failed call, and advice. The code is
-/// Input or Resource. The number 0 stands for a stream that failed for an unknown reason, most likely a full
-/// disk.
+/// Throws Error with the file, the reason for the failed call's error number, and advice. The code is Input
+/// or Resource. The number 0 means that a stream failed for an unknown reason, most likely a full disk.
 [[noreturn]] inline void refuse_unwritten(const std::filesystem::path& path, int number) {
   throw Error(number == 0 ? ErrorCode::Resource : code_of_errno(number),
               path.string() + ": cannot be written" +

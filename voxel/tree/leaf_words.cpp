@@ -6,7 +6,7 @@
 namespace octotomy::voxel {
 namespace {
 
-// By axis and shift: the bits of a shifted word that come from the first of two neighbouring leaves.
+// Indexed by axis and shift: the bits of a shifted word that come from the first of two neighbouring leaves.
 constexpr std::array<std::array<std::uint64_t, 4>, 3> staying{{
     {all_children, 0x7777777777777777, 0x3333333333333333, 0x1111111111111111},
     {all_children, 0x0fff0fff0fff0fff, 0x00ff00ff00ff00ff, 0x000f000f000f000f},

@@ -47,7 +47,7 @@ inline std::uint16_t window_bits16(const std::int16_t* samples, Window16 window)
 #endif
 }
 
-/// The same for the 64 samples of a leaf in bit order.
+/// The window's bits for the 64 samples of a leaf in bit order.
 inline std::uint64_t window_bits64(const std::int16_t* samples, Window16 window) {
   std::uint64_t word = 0;
   for (int quarter = 0; quarter < 4; ++quarter)

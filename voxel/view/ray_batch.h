@@ -30,7 +30,7 @@ struct RayBatch {
             entered_through[ray]};
   }
 
-  /// Bit i of a set of rays stands for ray i.
+  /// A set of rays: bit i is set if ray i is in the set.
   using Rays = std::uint64_t;
   /// The rays of a batch of `count`. Precondition: at least one.
   static Rays all(int count) { return ~Rays{0} >> (most - count); }

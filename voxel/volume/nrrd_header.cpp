@@ -373,7 +373,7 @@ class NrrdReader {
     const std::optional<std::string> low = text_.field("oldmin"), high = text_.field("oldmax");
     if (low || high)
       header_.audit.push_back({"old_range", Verdict::Warn,
-                               "the file's numbers stand for values from " + low.value_or("?") + " to " +
+                               "the file's numbers represent values from " + low.value_or("?") + " to " +
                                    high.value_or("?") +
                                    " before they were quantised (old min, old max): the numbers "
                                    "were taken as they are"});
@@ -404,8 +404,9 @@ class NrrdReader {
     samples.stored.big_endian = endian && lower_case(*endian) == "big";
     const bool matters = samples.encoding != SampleFiles::Encoding::Text && bytes_of(samples.stored.type) > 1;
     if (!endian && matters)
-      header_.audit.push_back({"byte_order", Verdict::Warn,
-                               "the file does not state the order of its bytes (endian): little is assumed"});
+      header_.audit.push_back(
+          {"byte_order", Verdict::Warn,
+           "the file does not state the order of its bytes (endian): little-endian is assumed"});
   }
 
   void take_skips() {

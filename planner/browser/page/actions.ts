@@ -14,11 +14,12 @@ export function use_wire(one: Wire): void {
 export const ask = <Answer>(word: string, fields: object = {}): Promise<Answer> =>
     wire.ask<Answer>(word, fields);
 
-// For what is not asked again.
+// Used as `lost` to give up: the request is not sent again.
 const let_go = async(): Promise<null> => null;
 
-/// Asks as soon as the line is there, and shows a refusal to the person; null then. Where the line breaks
-/// before the answer, what `lost` answers: unless told otherwise, that of the same, asked once more.
+/// Sends a request once the connection is open. Shows a refusal to the person and returns null. If the
+/// connection breaks before the answer, returns the result of `lost`; by default that sends the same request
+/// once more.
 export async function try_to<Answer>(
     word: string, fields: object = {},
     lost: () => Promise<Answer|null> = () =>
@@ -40,12 +41,12 @@ export async function try_to<Answer>(
 }
 
 let waiting_for_greeting: (() => void)[] = [];
-/// Done when the line is there again and the plan is as the server has it.
+/// Resolves when the connection is open again and the page has the server's state of the plan.
 const next_greeting = (): Promise<void> => new Promise((resolve) => waiting_for_greeting.push(resolve));
-/// Done once the server has said its first word to this page.
+/// Resolves once the server has sent its first message to this page.
 export const first_greeting = (): Promise<void> => state.hello ? Promise.resolve() : next_greeting();
 
-/// Takes a plan's state; the first of a plan also takes how this browser last looked at it, or fits the
+/// Shows a plan's state. For a newly opened plan, also restores how this browser last showed it, or fits the
 /// panes.
 export function take_plan(plan: PlanState|null): void {
   if (!plan) {
@@ -72,7 +73,7 @@ export function take_plan(plan: PlanState|null): void {
   void evaluate();
 }
 
-// Whether a scan's file is another one than before; a further scan replaces none.
+// Whether a scan's file was replaced by another one. A further scan replaces none.
 function has_other_scan(plan: PlanState): boolean {
   const before = state.plan?.plan.scans ?? {};
   return Object.entries(before).some(([name, scan]) => plan.plan.scans?.[name]?.path !== scan.path);
@@ -82,7 +83,7 @@ function has_other_scan(plan: PlanState): boolean {
 const with_usual = (panes: PaneSetting[]|undefined): PaneSetting[] =>
     usual_panes().map((usual, index) => ({...usual, ...panes?.[index]}));
 
-// What was measured before, of the steps that are still as they were.
+// Earlier measurements of the steps that have not changed since.
 function known_measurements(plan: PlanState): Measurement[] {
   const before = new Map(steps().map((step) => [step.id, JSON.stringify(step)]));
   const unchanged = new Set(
@@ -90,7 +91,7 @@ function known_measurements(plan: PlanState): Measurement[] {
   return (state.plan?.measurements ?? []).filter((found) => unchanged.has(found.id));
 }
 
-/// Panes that show the whole of a scan, and the cross-hair in its middle.
+/// Pane settings that show the whole of a scan, with the cross-hair in its middle.
 export function fitted(plan: PlanState, name?: string): Pick<State, "panes"|"cross_mm"|"grey"> {
   const scan = plan.scans.find((one) => one.name === name) ?? plan.scans[0];
   const bounds = scan?.bounds_mm ?? [[-100, -120, -130], [100, 120, 120]];
@@ -110,7 +111,7 @@ export async function greet(): Promise<void> {
   const hello = await try_to<Hello>("hello", {}, let_go);
   if (!hello) return;
   set({hello, link: "open"});
-  // The program was started anew without the plan that this window shows: its file and history are on the
+  // The program was restarted without the plan that this window shows. The plan's file and history are on the
   // disk.
   const plan =
       hello.plan_state ?? (state.plan && await try_to<PlanState>("open", {path: state.plan.path}, let_go));
@@ -125,12 +126,12 @@ export async function open_plan(what: {path?: string; phantom?: string; series?:
   const key = busy("Opening");
   const plan = await try_to<PlanState>("open", what);
   done(key);
-  // The event `plan` may have come before.
+  // The event `plan` may have arrived before this greeting.
   if (plan && state.plan === null) take_plan(plan);
 }
 
-// A change of the plan. Where the line breaks, it is asked once more, unless it is done: only the answer was
-// lost then.
+// Sends a change of the plan. If the connection breaks, sends it once more, unless `is_done` shows that the
+// change was made and only its answer was lost.
 async function change(word: string, fields: object, is_done: () => boolean): Promise<PlanState|null> {
   return try_to<PlanState>(word, fields, async () => {
     await next_greeting();
@@ -138,7 +139,7 @@ async function change(word: string, fields: object, is_done: () => boolean): Pro
   });
 }
 
-/// One change of the plan, said in words for its history.
+/// Makes one change of the plan; `what` describes it in the history.
 export async function edit(changed: object, what: string, select?: string|null): Promise<boolean> {
   const before = state.plan?.edit;
   const plan = await change("edit", {...changed, what}, () => {
@@ -159,7 +160,7 @@ export const replace_step = (id: string, step: Step, what: string): Promise<bool
 export const add_steps = (more: Step[], what: string): Promise<boolean> =>
     edit({steps: [...steps(), ...more]}, what, more[more.length - 1]?.id ?? null);
 
-/// Asks for a change of the plan and shows the plan as it is then; null if it was refused.
+/// Requests a change of the plan and shows the resulting plan. Returns null if the change was refused.
 export async function change_plan(word: string, fields: object = {}): Promise<PlanState|null> {
   const {branch, edit: before} = state.plan ?? {};
   const plan = await change(word, fields, () => state.plan?.edit !== before || state.plan?.branch !== branch);
@@ -172,7 +173,7 @@ export async function change_history(
   if (await change_plan(word, fields)) void evaluate();
 }
 
-/// Evaluates what is drawn and measured. Answers come as the event `objects`.
+/// Evaluates the objects and measurements that are shown. Their results arrive as the event `objects`.
 export async function evaluate(certify = false): Promise<void> {
   if (!steps().length) return;
   const objects = objects_of_plan().flatMap((object) => (object.id ? [object.id] : []));
@@ -186,7 +187,7 @@ export interface MeasureAnswer extends Measured {
 export const measure = (kind: string, fields: object): Promise<MeasureAnswer|null> =>
     try_to("measure", {kind, ...fields});
 
-/// Places a landmark, or moves it, on the nearest surface or as it is. Answers where it lies then.
+/// Places or moves a landmark at a point; with `snap`, on the nearest bone. Returns its position.
 export async function put_landmark(name: string, point: Vec3, snap: boolean): Promise<Vec3|null> {
   const answer = await try_to<{point: Vec3; snapped: boolean}>("landmark", {name, point, snap});
   if (answer && snap && !answer.snapped)
@@ -209,7 +210,7 @@ export function window_step(low: number, high?: number): Step {
 }
 
 let next_busy = -1;
-/// Work that the page waits for, shown as a job without a share.
+/// Shows work that the page waits for as a job without a percentage.
 export function busy(what: string): number {
   const id = next_busy--;
   set({jobs: [...state.jobs, {id, what, share: 0}]});
@@ -219,8 +220,8 @@ export function done(id: number): void {
   set({jobs: state.jobs.filter((job) => job.id !== id)});
 }
 
-/// Where a file of the server is fetched. This window's token stands in the path, so that links in a report
-/// reach the files beside it.
+/// The address of a file on the server. The path contains this window's token, so that relative links in a
+/// report reach the files beside it.
 export const file_url = (name: string): string =>
     `/file/${[token(), ...name.split("/")].map(encodeURIComponent).join("/")}`;
 export const token = (): string => new URLSearchParams(location.search).get("token") ?? "";

@@ -23,7 +23,7 @@ export interface Command {
   run(): void;
 }
 
-/// Dialogs that commands open; main fills them in, so that commands need not know them.
+/// Dialogs that commands open. main.ts sets them, so that this file need not import them.
 export const dialogs = {
   palette: (): void => undefined,
   help: (): void => undefined,
@@ -82,8 +82,8 @@ export function compare_selected(): void {
 }
 
 const contact_range_mm = 2;
-/// Colours two objects by their distance to each other, from the front, the left, and each alone from where
-/// the other one lies.
+/// Colours two objects by their distance to each other. Shows them from the front and the left, and each
+/// alone from the side of the other one.
 export function map_contacts(): void {
   if (state.compare) return clear_compare();
   const step = selected_step();
@@ -304,7 +304,7 @@ export async function name_version(): Promise<void> {
   if (name) await change_history("name_version", {name});
 }
 
-/// The command of a key press, if one has it. Keys of letters are free while something is typed.
+/// The command of a key press, if there is one. While a text is typed, letter keys run no commands.
 export function command_of(event: KeyboardEvent): Command|undefined {
   const target = event.target as HTMLElement;
   const is_typing = target.matches("input, textarea, select");

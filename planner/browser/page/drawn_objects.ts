@@ -9,27 +9,29 @@ const bone = ["#ede3cc", "#d9c7a0", "#cfd3d6"];
 const moved = ["#e08a3c", "#3fa7a0", "#a678de", "#d0649b", "#7fae3e"];
 export const mask_colour = "#5b9dff";
 export const overlap_colour = "#e5484d";
-// Of a difference: what only the dragged piece holds, what only the other object holds, and what both do.
+// Colours of a difference: the part only in the dragged piece, the part only in the other object, and the
+// part in both.
 export const only_moved_colour = "#e08a3c";
 export const only_other_colour = "#5b9dff";
 export const common_colour = "#cfd3d6";
-/// A warp displaces its object, too, though not rigidly.
+/// A warp also displaces its object, though not rigidly.
 const is_displaced = (step: Step): boolean => moves_object(step) || step.do === "warp";
 const is_union = (step: Step): boolean =>
     step.do === "combine" && typeof step.expression === "string" && !/[&^~-]/.test(step.expression);
 
-/// What a moved piece and something else have in common: interference, drawn in red.
+/// Whether a step is the common part of a moved piece and another object: interference, drawn in red.
 export function is_overlap(step: Step, all: Step[]): boolean {
   if (step.do !== "combine" || typeof step.expression !== "string" || !/^[\w\s&()]+$/.test(step.expression))
     return false;
   return operands(step).some((name) => all.some((other) => other.id === name && is_displaced(other)));
 }
 
-/// What lies inside a mask: a piece, which has its colour before it moves.
+/// Whether a step is the part of an object inside a mask. Such a piece has its own colour even before it
+/// moves.
 export const is_piece = (step: Step): boolean => step.do === "combine" &&
     typeof step.expression === "string" && /^[^|^~-]*&[^|^~-]*$/.test(step.expression);
 
-/// A piece that a later union leaves out: bone that is taken away, or a contact that is only measured.
+/// Whether a later union subtracts this piece, or the piece is only measured as a contact.
 function is_left_out(step: Step, all: Step[]): boolean {
   return is_piece(step) && !is_overlap(step, all) &&
       all.slice(all.indexOf(step)).some((later) => is_union(later) && !operands(later).includes(step.id));
@@ -50,7 +52,7 @@ export interface Shown {
   visible: boolean;
 }
 
-/// How an object is drawn: as the person set it, else by what its step does.
+/// How an object is drawn: as the person has set it, else by the kind of its step.
 export function look_of(id: string): Shown {
   const all = steps();
   const index = all.findIndex((step) => step.id === id);
@@ -86,13 +88,14 @@ export function look_of(id: string): Shown {
 /// The ids of the plan's objects, in the order of its steps.
 export const object_ids = (): string[] => steps().filter(makes_shape).map((step) => step.id);
 
-/// What the panes ask the server to draw: the plan's objects, or the bone of a scan that lies elsewhere.
+/// The objects that the panes request: those of the plan, or the bone of a scan that lies in a frame of its
+/// own.
 export function drawn_objects(): DrawnObject[] {
   if (!is_elsewhere()) return objects_of_plan();
   return [{window: {scan: shown_scan(), low: bone_low(shown_scan()), alone: true}, colour: bone[0]!, opacity: 1}];
 }
 
-/// The plan's objects that are turned on, and a window that is being set.
+/// The plan's visible objects, and a window that is being set.
 export function objects_of_plan(): DrawnObject[] {
   const drawn: DrawnObject[] = [];
   const failed =

@@ -110,7 +110,7 @@ function make_page(): void {
 function follow_keys(): void {
   addEventListener("keydown", (event) => {
     const is_palette = (event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "k";
-    // Else the browser would take the key for its own line of search.
+    // Otherwise the browser would use the key for its own address bar.
     if (is_palette) event.preventDefault();
     if (document.querySelector("dialog[open]")) return;
     if (is_palette) return open_palette();

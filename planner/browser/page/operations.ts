@@ -9,7 +9,7 @@ export function operations(): Schema[] {
   return items && "anyOf" in items ? items.anyOf : [];
 }
 
-/// The schema of a step's operation; of an export the one for its path.
+/// The schema of a step's operation. That of an export depends on its path.
 export function schema_of(step: Step): Schema|undefined {
   const all = operations();
   if (step.do !== "export") return all.find((one) => one.properties?.do?.const === step.do);
@@ -24,14 +24,14 @@ export function schema_of(step: Step): Schema|undefined {
 export const makes_shape = (step: Step): boolean =>
     ["object", "tool"].includes(schema_of(step)?.["x-makes"] ?? "");
 
-/// Whether a step makes a body that is certified, measured and exported: no tool, as a mask is.
+/// Whether a step makes a body that is certified, measured and exported. A tool such as a mask is none.
 export const makes_body = (step: Step|undefined): boolean =>
     step !== undefined && schema_of(step)?.["x-makes"] === "object";
 
 /// Whether a step measures.
 export const makes_measurement = (step: Step): boolean => schema_of(step)?.["x-makes"] === "measurement";
 
-/// Whether a step's object is another one's, moved rigidly.
+/// Whether a step moves another object rigidly.
 export const moves_object = (step: Step): boolean => schema_of(step)?.["x-moves"] !== undefined;
 
 /// The fields of a step that name one object or several.

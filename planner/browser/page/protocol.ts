@@ -40,7 +40,7 @@ export interface ScanState {
   bone_low?: number|null;  // where bone begins in this scan's own samples
   patient?: Patient|null;  // null: the scan states none
 }
-/// Whom a scan is of; null where the scan does not state it.
+/// The identity of a scan's patient; null for what the scan does not state.
 export interface Patient {
   name: string|null;
   number: string|null;
@@ -49,7 +49,7 @@ export interface Patient {
   sex: string|null;
   study_date: string|null;
 }
-/// A plane about which an object was mirrored; the fit's values are null where it was given.
+/// The plane about which an object was mirrored. The fit's values are null if the plane was given.
 export interface MirrorPlane {
   plane: {point_mm: Vec3; normal: Vec3};
   rms_mm: number|null;
@@ -112,7 +112,7 @@ export interface PlanState {
   measurements?: Measurement[];
   jobs?: Job[];
 }
-/// A place that a rule found and nobody has confirmed.
+/// A landmark that a rule proposes and nobody has confirmed.
 export interface LandmarkGuess {
   name: string;
   says: string;
@@ -164,7 +164,7 @@ export interface Hello {
   most_upload_bytes?: number;
 }
 
-/// A point of a piece and where it is wanted.
+/// A point of a piece and its target.
 export type MarkPair = {
   at: Vec3; to: Vec3
 };
@@ -211,7 +211,7 @@ export interface PaneRequest {
   background?: string;
   dragging: boolean;
 }
-/// What a dragged piece and another object do not share, and what they do.
+/// A dragged piece compared with another object: the volumes in only one of them, and in both.
 export interface Difference {
   to: string;
   only_moved_mm3: number;
@@ -229,7 +229,7 @@ export interface FrameHeader {
   command?: string;
   legend?: {low_mm: number; high_mm: number; colours: string[]; definition: string};
   overlap_mm3?: number|null;
-  preview?: {mm3: number; voxels: number; findings?: string[]};  // of the object that is tried
+  preview?: {mm3: number; voxels: number; findings?: string[]};  // volume of the previewed object
   difference?: Difference;
   parts: {kind: "jpeg"|"png"|"depth"|"object"|"value"; bytes: number}[];
 }

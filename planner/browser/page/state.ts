@@ -9,11 +9,11 @@ export interface PaneSetting {
   mode: "view"|"slice"|"panoramic";
   view: View;
   plane: PlaneName;
-  tilt: Turned;   // of the oblique plane: where it is looked along
+  tilt: Turned;   // direction in which the oblique plane is viewed
   only?: string;  // the one object that the pane shows
   shading: string;
   centre_mm: Vec3;
-  pixel_mm: number;  // of a CSS pixel
+  pixel_mm: number;  // size of a CSS pixel
 }
 export interface ObjectLook {
   colour?: string;
@@ -21,21 +21,21 @@ export interface ObjectLook {
   opacity?: number;
   behind?: string;  // a step whose objects stand in this one's place, as long as the plan has that step
 }
-/// What is drawn in an object's place: the object `of` moved, or what the last of steps makes that are not in the
-/// plan.
+/// An object drawn in place of another: the object `of` after a motion, or the last object that steps outside
+/// the plan make.
 export type Preview = PaneRequest["preview"]&{};
-/// What the server made of a preview of steps, or why it made nothing.
+/// What the server computed for a preview of steps, or the reason why there is nothing.
 export interface Tried {
   mm3: number;
   voxels: number;
-  findings?: string[];  // what is left out of the volume, for example
-  is_coarse?: boolean;  // the picture followed a hand
+  findings?: string[];  // for example what the volume leaves out
+  is_coarse?: boolean;  // the picture was made during a drag
   refusal: string;
 }
-/// What cleans an object, to look at and to do; none of it is done by itself.
+/// Proposals to clean an object, to preview and to apply; none is applied by itself.
 export interface Cleaning {
   object: string;
-  of: string;  // what the proposals were computed of, as a text
+  of: string;  // the data from which the proposals were computed, as a text
   is_looking: boolean;
   proposals: Proposal[];
   dismissed: string[];  // names of proposals
@@ -47,7 +47,7 @@ export interface Proposal {
   doubts: string[];
   made: Step;  // the step that a click adds
 }
-/// A window that is being set and is no step yet; where it changes a step, that one is not drawn.
+/// A window that is being set and is not a step yet. If it changes a step, that step is not drawn.
 export interface DraftWindow {
   scan: string;
   low: number;
@@ -100,8 +100,8 @@ export interface State {
   jobs: Job[];
   notices: (Notice&{key: number})[];
   tour: number|null;
-  evaluations: number;  // how often the server has told evaluated objects: pictures may have changed
-  pointer: string;      // what lies under the pointer, in words
+  evaluations: number;  // number of times that the server has sent evaluated objects: pictures may have changed
+  pointer: string;      // description of what lies under the pointer
 }
 
 const pane = (mode: PaneSetting["mode"], view: View, plane: PlaneName): PaneSetting => ({
@@ -114,7 +114,7 @@ const pane = (mode: PaneSetting["mode"], view: View, plane: PlaneName): PaneSett
   pixel_mm: 0.6,
 });
 
-/// The layout that its users know: anterior, left, superior, and one to turn freely.
+/// The usual layout: anterior, left, superior, and one view to rotate freely.
 export const usual_panes = (): PaneSetting[] =>
     [pane("view", "anterior", "coronal"),
      pane("view", "left", "sagittal"),
@@ -122,7 +122,7 @@ export const usual_panes = (): PaneSetting[] =>
      pane("view", {azimuth: 35, elevation: 15}, "axial"),
 ];
 
-/// What belongs to the plan that is shown, where none is.
+/// The keys that belong to a plan, with their values when no plan is shown.
 const without_plan = () => ({
   scan: null,
   maximised: null,
@@ -171,7 +171,7 @@ const watchers: {keys: Set<Key>; call: () => void}[] = [];
 const changed = new Set<Key>();
 let is_queued = false;
 
-/// Changes the state; those who watch one of the keys are called once, before the next picture.
+/// Changes the state. Functions that watch one of the keys are called once, before the next picture.
 export function set(patch: Partial<State>): void {
   for (const key of Object.keys(patch) as Key[]) changed.add(key);
   Object.assign(state, patch);
@@ -193,25 +193,25 @@ export function watch(keys: Key[], call: () => void): void {
   watchers.push({keys: new Set(keys), call});
 }
 
-/// Shows the patient, or hides whom the scan is of on every screen and in new reports. This browser keeps it.
+/// Shows or hides the patient on every screen and in new reports. The choice is stored in this browser.
 export function hide_patient(hides_patient: boolean): void {
   localStorage.setItem("octotomy_hides_patient", hides_patient ? "yes" : "no");
   set({hides_patient});
 }
 
 const plan_leavers: (() => void)[] = [];
-/// Calls back when the window leaves a plan, so that no part of the page carries a value of one patient into
-/// the next plan.
+/// Registers a function to be called when the window leaves a plan, so that no part of the page carries a
+/// value of one patient into the next plan.
 export function on_leaving_plan(call: () => void): void {
   plan_leavers.push(call);
 }
-/// Empties everything in this window that belongs to the plan shown so far, the tool in hand included.
+/// Clears everything in this window that belongs to the shown plan, including the current tool.
 export function leave_plan(): void {
   for (const call of plan_leavers) call();
   set(without_plan());
 }
-/// The same of what belongs to a scan whose file another one has replaced in the same plan: tools and their
-/// drafts. How objects are shown stays.
+/// Clears what belongs to a scan whose file was replaced in the same plan: tools and their drafts. How
+/// objects are shown stays.
 export function leave_scan(): void {
   for (const call of plan_leavers) call();
   set({
@@ -229,7 +229,8 @@ export function leave_scan(): void {
   });
 }
 
-// How a window looks at a plan is kept in the browser, by the plan's path; the plan itself is the server's.
+// Keys by which a window shows a plan. The browser stores them by the plan's path; the plan itself is on the
+// server.
 const kept: Key[] = [
   "page",
   "panes",
@@ -252,11 +253,12 @@ function keep(): void {
   localStorage.setItem(`octotomy:${state.plan.path}`, JSON.stringify({...view, scans_then: mark_of_scans(state.plan)}));
 }
 
-// Which scans a plan has and where they lie; empty before they are read.
+// The files of a plan's scans and their positions, as a text; empty before they are read.
 const mark_of_scans = (plan: PlanState): string =>
     plan.scans.map(({name, path, dims, bounds_mm}) => JSON.stringify([name, path, dims, bounds_mm])).join();
 
-/// How this browser last looked at the plan, if it did and the plan's path has not come to another scan since.
+/// How this browser last showed the plan; null if it never did, or if the plan at this path now has other
+/// scans.
 export function kept_view(plan: PlanState): Partial<State>|null {
   const text = localStorage.getItem(`octotomy:${plan.path}`);
   if (!text) return null;
@@ -275,15 +277,16 @@ export const selected_step = (): Step|undefined => step_of(state.selected);
 export const first_scan = (): string => state.plan?.scans[0]?.name ?? "ct";
 export const shown_scan = (): string =>
     state.plan?.scans.find((scan) => scan.name === state.scan)?.name ?? first_scan();
-/// Where bone begins in a scan's own samples: 300 HU says nothing of a scan without Hounsfield units.
+/// The threshold of bone in a scan's own samples. A scan without Hounsfield units has no fixed one.
 export const bone_low = (scan: string): number =>
     state.plan?.scans.find((one) => one.name === scan)?.bone_low ?? 300;
-/// Whether panes show a scan that lies in a frame of its own, as a donor's: the plan's objects are not in it.
+/// Whether panes show a scan in a frame of its own, such as a donor's. The plan's objects are not in that
+/// frame.
 export const is_elsewhere = (): boolean =>
     shown_scan() !== first_scan() && shown_scan() in (state.plan?.plan.scans ?? {});
 
 let next_notice = 1;
-/// Tells the person something; an error stays until it is closed.
+/// Shows a message to the person; an error stays until it is closed.
 export function notify(message: string, level: Notice["level"] = "info", act?: Notice["act"]): void {
   const key = next_notice++;
   set({

@@ -3,8 +3,8 @@
 // a loss.
 import {FrameHeader, Json} from "./protocol";
 
-/// What the server refused, with its code: input, geometry, cancelled, resource, internal; or lost, where
-/// the line broke.
+/// A refusal by the server, with its code: input, geometry, cancelled, resource or internal; or "lost" if the
+/// connection broke.
 export class Refusal extends Error {
   constructor(message: string, readonly code: string) {
     super(message);
@@ -26,8 +26,8 @@ interface Waiting {
 const first_retry_ms = 400;
 const last_retry_ms = 5000;
 
-/// How often the page asks whether the line is there, and after what silence it is taken for cut: a network
-/// that drops what is sent tells nobody.
+/// The interval at which the page tests the connection, and the silence after which it counts as broken. A
+/// network that drops packets reports nothing.
 const ask_alive_ms = 2000;
 const longest_silence_ms = 8000;
 
@@ -73,11 +73,11 @@ export class Wire {
 
   private ask_alive(socket: WebSocket): void {
     const now = performance.now();
-    // A tab that slept asks first, and waits for the answer.
+    // A tab that was asleep sends a test first and waits for its answer.
     if (now - this.asked_at > 2 * ask_alive_ms) this.heard_at = now;
     this.asked_at = now;
     if (now - this.heard_at > longest_silence_ms) {
-      // The socket's own closing would wait for the other side.
+      // The socket's own close() would wait for the other side.
       socket.onopen = socket.onmessage = socket.onclose = null;
       socket.close();
       this.closed();
@@ -86,7 +86,8 @@ export class Wire {
     }
   }
 
-  /// Asks the server; the promise is refused with a Refusal. `on_id` is called with its id at once.
+  /// Sends a request. The promise is rejected with a Refusal. `on_id` is called with the request's id at
+  /// once.
   ask<Answer>(word: string, fields: object = {}, on_id?: (id: number) => void): Promise<Answer> {
     const id = this.next_id++;
     on_id?.(id);
@@ -100,7 +101,7 @@ export class Wire {
     });
   }
 
-  /// Says something that has no answer.
+  /// Sends a message that has no answer.
   say(word: string, fields: object): void {
     if (this.is_open) this.socket!.send(JSON.stringify({do: word, ...fields}));
   }
@@ -134,7 +135,7 @@ export class Wire {
       parts.push(new Uint8Array(data, at, part.bytes));
       at += part.bytes;
     }
-    // A picture answers its request; a text answer need not follow.
+    // A picture is itself the answer to its request; a text answer need not follow.
     this.waiting.get(header.id)?.resolve(header);
     this.waiting.delete(header.id);
     this.events.picture(header, parts);

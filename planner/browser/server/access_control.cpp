@@ -109,7 +109,7 @@ std::optional<std::string> AccessControl::refusal_of_host(const Caller& caller) 
 std::optional<std::string> AccessControl::refusal(const Caller& caller) const {
   if (auto why = refusal_of_host(caller)) return why;
   if (!caller.origin.empty() && caller.origin != "http://" + caller.host)
-    return "a page of another site asks: open the address that the server printed";
+    return "the request comes from a page of another site: open the address that the server printed";
   if (!are_equal(caller.token, token_))
     return "the address lacks the server's token: open the address that the server printed";
   return {};
@@ -117,7 +117,7 @@ std::optional<std::string> AccessControl::refusal(const Caller& caller) const {
 
 std::optional<std::string> AccessControl::refusal_of_action(const Caller& caller) const {
   if (auto why = refusal(caller)) return why;
-  if (caller.origin.empty()) return "the request does not say its Origin";
+  if (caller.origin.empty()) return "the request has no Origin header";
   return {};
 }
 

@@ -26,7 +26,7 @@ struct FileTarget {
 };
 std::optional<FileTarget> file_of(const Target& target);
 
-/// A request's statements on its sender; empty if absent.
+/// The headers of a request that identify its sender; empty if absent.
 struct Caller {
   std::string host, origin, token;
 };
@@ -52,7 +52,8 @@ class AccessControl {
   std::optional<std::string> refusal_of_host(const Caller& caller) const;
   /// The reason to refuse a page: Host or token is wrong, or its Origin differs from its Host.
   std::optional<std::string> refusal(const Caller& caller) const;
-  /// The same for requests that change something: these need an Origin.
+  /// The reason to refuse a request that changes something. As refusal(), but an absent Origin is refused
+  /// too.
   std::optional<std::string> refusal_of_action(const Caller& caller) const;
 
  private:

@@ -26,7 +26,7 @@ std::vector<glm::dvec2> thinned(const std::vector<glm::dvec2>& polygon, double t
   return brep::first_crossing(thin) ? polygon : thin.points_mm;
 }
 
-/// To a hundredth of a millimetre; points that become equal to the one before are left out.
+/// Rounded to a hundredth of a millimetre, without points that then equal the one before.
 Json polygons_json(const PlaneContours& polygons, double thin_mm) {
   Json all = Json::array();
   for (const auto& polygon : polygons) {
@@ -62,7 +62,7 @@ Json trace_contours(Session& session, const Json& said, const Watched&) {
   const auto& loaded = snapshot.evaluation->loaded;
   if (loaded.empty()) refuse_contours("no scan is open");
   const auto named = loaded.find(said.value("scan", loaded.begin()->first));
-  if (named == loaded.end()) refuse_contours("scan: there is none of that name");
+  if (named == loaded.end()) refuse_contours("scan: the plan has no scan of that name");
   const voxel::Scene& scene = named->second->scene();
   const auto seed_mm = point_of(said, "seed_mm");
   if (!seed_mm) refuse_contours("seed_mm: give a point");

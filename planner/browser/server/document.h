@@ -41,7 +41,7 @@ class Document {
   void record(const Json& json, const std::string& what);
   /// Throws std::runtime_error if another program has changed the plan's file.
   void need_saved() { history_->need_no_other_writer(); }
-  /// Throw as parsed() does if the state reads files in no open folder; then nothing is changed.
+  /// Throw as parsed() does if the other state reads files in no open folder; then nothing is changed.
   bool undo();
   bool redo();
   void go_to(const std::string& where);

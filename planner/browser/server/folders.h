@@ -21,7 +21,7 @@ class Folders {
   /// The path without links, made absolute against the first folder. Throws voxel::Error, Input, if it is in
   /// none of the folders or its links are cyclic.
   std::filesystem::path need_within(const std::filesystem::path& path) const;
-  /// The same for a path that a plan reads, which may also be one of allow_reading().
+  /// As need_within(), for a path that a plan reads: the paths of allow_reading() are allowed too.
   std::filesystem::path need_readable(const std::filesystem::path& path) const;
 
  private:
@@ -40,7 +40,7 @@ std::filesystem::path need_plain_name(const std::string& name);
 /// The path, or the first of NAME-2.EXT, NAME-3.EXT, ... that does not exist; ".plan.json" counts as one
 /// extension.
 std::filesystem::path unused(const std::filesystem::path& path);
-/// The same for an export: files written together with it, such as the .ele of a .node, do not replace
+/// As unused(), for an export: files written together with it, such as the .ele of a .node, do not replace
 /// anything either.
 std::filesystem::path unused_export(const std::filesystem::path& path);
 

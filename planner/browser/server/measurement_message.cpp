@@ -43,7 +43,7 @@ const SurfaceQuestion* surface_question(const Json& measured) {
   return asked;
 }
 
-/// The numbers of a measurement that are shown first.
+/// The numbers of a measurement that a page shows first.
 struct ToldNumbers {
   std::string id, object, to;
   std::optional<double> distance_mm, distance_half_width_mm, angle_deg, angle_half_width_deg, gap_mm,

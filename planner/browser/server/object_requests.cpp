@@ -185,8 +185,9 @@ Json overlap(Session& session, const Json& said, const Watched& watched) {
 
 namespace {
 
-/// A voxel of the part of an object that a person has pointed at: of the part's voxels near the nearest one, one
-/// that lies deeper than its surface, if there is one. None if no voxel is near.
+/// A voxel of the part that a person has pointed at, and the octree of that part. Starts from the voxel of
+/// the object nearest to the point. Of the part's voxels near it, returns one that lies below the surface, if
+/// there is one. None if no voxel is near.
 std::optional<std::pair<glm::ivec3, voxel::Octree>> part_near(const voxel::Octree& whole,
                                                               const glm::dvec3& p_mm) {
   constexpr int reach = 2;
@@ -360,7 +361,7 @@ Json export_file(Session& session, const Json& said, const Watched& watched) {
 
 namespace {
 
-/// The plan of a snapshot without steps that have no answer; a finding for each of them.
+/// The plan of a snapshot without the steps that could not be evaluated; adds a finding for each of them.
 Plan with_answers(const Snapshot& made, std::vector<voxel::Finding>& findings) {
   Plan plan = *made.plan;
   std::erase_if(plan.steps, [&](const Step& step) {

@@ -14,12 +14,12 @@ Json measure(Session& session, const Json& said, const Watched& watched);
 Json certify(Session& session, const Json& said, const Watched& watched);
 /// {"object", "with", "move"} -> {"mm3"}, in voxels.
 Json overlap(Session& session, const Json& said, const Watched& watched);
-/// {"object", "near_mm"} -> {"parts", "whole_mm3", "mm3", "at_mm"}: the number of its connected parts, and of the
-/// part at a point its volume and the centre of a voxel in it; without a point those of the largest part, and its
-/// centroid, null where the object is empty.
+/// {"object", "near_mm"} -> {"parts", "whole_mm3", "mm3", "at_mm"}: the number of the object's connected
+/// parts and its volume; then the volume of the part at the point, and the centre of a voxel in it. Without a
+/// point: volume and centroid of the largest part; the centroid is null if the object is empty.
 Json part(Session& session, const Json& said, const Watched& watched);
-/// {"steps"} -> {"objects": [{"id", "mm3"}], "scans": [{"id", "details", "findings"}]}: what steps would make
-/// after those of the plan, which stays as it is; in voxels.
+/// {"steps"} -> {"objects": [{"id", "mm3"}], "scans": [{"id", "details", "findings"}]}: the results of
+/// further steps after those of the plan, in voxels. Does not change the plan.
 Json try_steps(Session& session, const Json& said, const Watched& watched);
 /// {"path", "frame", "unit"} -> {"audit"}: a mesh file's statements on its frame and unit, and how its size
 /// and position fit the plan's first scan. The path is relative as in a plan.
@@ -38,11 +38,11 @@ Json export_file(Session& session, const Json& said, const Watched& watched);
 Json report(Session& session, const Json& said, const Watched& watched);
 /// {"path", "low", "unmoved"} -> the outcome's JSON: compares a later scan with the plan.
 Json outcome(Session& session, const Json& said, const Watched& watched);
-/// {"step"} -> {"shell", "python"}: commands that make the step and those on which it depends, and add it to
-/// a plan.
+/// {"step"} -> {"shell", "python"}: commands that evaluate the step with those on which it depends, and
+/// commands that add it to a plan.
 Json command_of_step(Session& session, const Json& said, const Watched& watched);
 
-/// Where the open plan's exports and reports are written: "NAME files" beside it.
+/// The folder of the open plan's exports and reports: "NAME files" beside the plan.
 std::filesystem::path files_folder(const Session& session);
 
 }  // namespace octotomy::planner::serve

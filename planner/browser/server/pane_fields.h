@@ -37,7 +37,7 @@ inline constexpr std::array<DifferencePart, 3> difference_parts{
     {{Session::Preview::only_moved, "only_moved_mm3", "#e08a3c"},
      {Session::Preview::only_other, "only_other_mm3", "#5b9dff"},
      {Session::Preview::common, "common_mm3", "#cfd3d6"}}};
-/// {"to", and the volume of each part}; null if the request's preview is no difference.
+/// {"to", and the volume of each part}; null if the request's preview contains no difference.
 Json difference_json(const Json& preview, const Session::Preview& made);
 
 /// {"right", "up", "look", "centre_mm", "pixel_mm"}.

@@ -43,7 +43,7 @@ class PaneQueue {
   void ask(PaneRequest asked);
   /// Removes a pane's waiting request.
   std::optional<PaneRequest> withdraw(const PaneName& name);
-  /// The same by the request's number.
+  /// Removes a waiting request by the request's number.
   std::optional<PaneRequest> withdraw(std::uint64_t window, std::int64_t id);
   /// Stops a request while it is drawn; returns whether it was.
   bool stop(std::uint64_t window, std::int64_t id);
@@ -56,7 +56,7 @@ class PaneQueue {
   int moving_panes() const;
   /// Removes a pane and stops its current picture. Returns its waiting request.
   std::optional<PaneRequest> close(const PaneName& name);
-  /// Removes all panes of a closed window and stops its current picture.
+  /// Removes all panes of a closed window, and stops a picture of it that is being drawn.
   void close_window(std::uint64_t window);
 
  private:

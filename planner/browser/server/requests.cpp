@@ -85,8 +85,8 @@ Json open(Session& session, const Json& said, const Watched& watched) {
   return nullptr;
 }
 
-/// The DICOM series of a folder, for a person to pick one; none of anything else. What is no readable scan is
-/// refused when it is opened.
+/// The DICOM series of a folder, for a person to choose one; empty if the path is not a folder of DICOM
+/// files. A scan that cannot be read is refused later, when it is opened.
 Json series(Session& session, const Json& said, const Watched&) {
   const fs::path path = session.folders.need_within(said.at("path").get<std::string>());
   Json list = Json::array();
@@ -213,8 +213,9 @@ bool is_of_names(const Json& step) {
   return step["do"] == "landmarks" || step["do"] == "head_position";
 }
 
-/// The steps of a plan and those of a procedure, whose scan is called "ct". A step of the procedure replaces
-/// the step with its id, or the one of its kind if it defines names; landmarks of other names are kept.
+/// Joins the steps of a plan and those of a procedure, whose scan is called "ct". A step of the procedure
+/// replaces the step with the same id, or, if it defines names, the step of the same kind; landmarks of other
+/// names are kept.
 Json joined(const Json& steps, const Json& of_procedure, const std::string& scan) {
   Json names = Json::array(), kept = Json::array(), others = Json::array();
   for (Json step : of_procedure) {
@@ -255,8 +256,8 @@ ProcedureInput input_of(const Json& said, const Json& plan, const Procedure& pro
   return input;
 }
 
-/// The plan without the steps that an earlier addition of the same procedure left in it, alone or chained
-/// after another procedure's.
+/// Removes the steps that an earlier run of the same procedure added to the plan, whether it ran alone or
+/// after another procedure.
 Json without_steps_of(const Procedure& procedure, const Json& plan) {
   Json kept = plan;
   kept["steps"] = Json::array();
@@ -265,8 +266,9 @@ Json without_steps_of(const Procedure& procedure, const Json& plan) {
   return kept;
 }
 
-/// What the procedure would act on after others, in the plan without its own steps; none if it is the plan's
-/// first, or alone there, so that it replaces its steps.
+/// The object on which the procedure would act after others, in the plan without its own steps. None if it
+/// would be the plan's first procedure, or if the plan contains its own steps unchained; these are then
+/// replaced.
 std::optional<std::string> acted_on(const Procedure& procedure, const Json& whole, const Plan& before) {
   const bool stands_alone = std::all_of(procedure.steps.begin(), procedure.steps.end(), [&](const Json& own) {
     return std::any_of(whole.at("steps").begin(), whole.at("steps").end(),
@@ -276,7 +278,7 @@ std::optional<std::string> acted_on(const Procedure& procedure, const Json& whol
 }
 
 Procedure known_procedure(const Json& said) {
-  // A name that is a path would read any file.
+  // Names are looked up in a list; a name that is a path could otherwise read any file.
   const auto name = said.at("name").get<std::string>();
   const std::vector<std::string> known = procedures();
   if (std::find(known.begin(), known.end(), name) == known.end())
@@ -284,7 +286,7 @@ Procedure known_procedure(const Json& said) {
   return read_procedure(name);
 }
 
-/// What a procedure would act on, for the page to state before it is planned.
+/// The object on which a procedure would act, for the page to show beforehand.
 Json acts_on(Session& session, const Json& said, const Watched&) {
   const Procedure procedure = known_procedure(said);
   const auto [whole, folder] = session.with_document([](Document& document) {
@@ -295,8 +297,8 @@ Json acts_on(Session& session, const Json& said, const Watched&) {
   return {{"outcome", outcome ? Json(*outcome) : Json(nullptr)}};
 }
 
-/// Adds a procedure's steps: in place of its own, after another procedure on what that has planned, or as the
-/// plan's first.
+/// Adds a procedure's steps: in place of its earlier ones, after another procedure's result, or as the plan's
+/// first.
 Json procedure(Session& session, const Json& said, const Watched& watched) {
   const Procedure procedure = known_procedure(said);
   const auto [text, whole, folder] = session.with_document([](Document& document) {
@@ -310,7 +312,7 @@ Json procedure(Session& session, const Json& said, const Watched& watched) {
   std::vector<std::string> added, carried;
   if (outcome) {
     input.further_scans.clear();  // the plan has them
-    // The page sends every value, those that nobody typed, too.
+    // The page sends every value, including the defaults.
     for (const ProcedureValue& value : procedure.values)
       if (const auto sent = input.values.find(value.name);
           sent != input.values.end() && sent->second == value.preset)

@@ -199,7 +199,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     }
     if (request.method() != http::verb::get || parser_->content_length().value_or(0) > 0) {
       if (!refused(context_.access.refusal(caller)))
-        refuse(http::status::method_not_allowed, "only GET is known here");
+        refuse(http::status::method_not_allowed, "only GET is answered at this address");
       return;
     }
     if (target.path == "/socket") {
@@ -376,7 +376,7 @@ void Server::run(Service& service, Session& session, const std::stop_token& stop
   if (address.is_loopback()) hosts.push_back("localhost:" + port);
   if (address.is_unspecified()) hosts.clear();
   Context context{service, session, AccessControl(options_.token, hosts)};
-  // Connections end with it, before the objects to which they refer.
+  // The connections are destroyed together with `opened`, before the objects that they reference.
   const std::unique_ptr<Port> opened = std::move(port_);
   net::io_context& io = opened->io;
   accept(opened->acceptor, context);
@@ -388,7 +388,7 @@ void Server::run(Service& service, Session& session, const std::stop_token& stop
     try {
       io.run();
     } catch (const std::exception&) {
-      // An error of one connection, which has already ended; memory may be exhausted.
+      // The connection with the error has already ended. Not logged, because memory may be exhausted.
     }
   }
 }

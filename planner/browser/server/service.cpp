@@ -140,12 +140,12 @@ void Service::take(std::uint64_t window, Request request) {
     if (number < 0 || number > 15) throw voxel::Error(voxel::ErrorCode::Input, "pane: must be 0 to 15");
     const bool is_moving = said.value("dragging", false);
     const bool is_along_rays = said.value("kind", "view") != "slice" && is_ray_shading(said);
-    // Refuses the older request before the newer one can be drawn, so that a pane's answers are in order. A
-    // pane that shows the other kind from now on wants nothing more of this one.
+    // Answers the pane's older request before the newer one can be drawn, so that a pane's answers are in
+    // order. If the pane changes to the other kind of picture, its requests for the earlier kind are dropped.
     Drawing& other = drawings_[is_along_rays ? 0 : 1];
     if (const auto older = other.panes.close(pane())) drop(*older, "the pane shows another kind of picture");
     PaneQueue& panes = drawings_[is_along_rays ? 1 : 0].panes;
-    if (const auto older = panes.withdraw(pane())) drop(*older, "a newer picture of the pane was asked for");
+    if (const auto older = panes.withdraw(pane())) drop(*older, "a newer picture of the pane was requested");
     return panes.ask({pane(), std::move(request), is_moving});
   }
   const RequestKind& request_kind = find_request_kind(request.what);

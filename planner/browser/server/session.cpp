@@ -44,7 +44,7 @@ Json box_json(const voxel::Box& box) {
   return {planner::to_json(box.low_mm), planner::to_json(box.high_mm)};
 }
 
-/// Black and white of slices, as level and width.
+/// The grey tones of slices: level and width between black and white.
 Json tones_of(const ScanRecord& scan) {
   if (scan.meaning == voxel::Meaning::Hounsfield) return {500.0, 2000.0};
   return {0.5 * (scan.range.low + scan.range.high), std::max(1.0, scan.range.high - scan.range.low)};
@@ -77,7 +77,7 @@ Json certificate_json(const verify::Certificate& certificate) {
   return json;
 }
 
-/// An object of the plan as the page shows it; without a value for what is not evaluated yet.
+/// An object of the plan as a page shows it; without a value if it is not evaluated yet.
 struct ObjectState {
   std::string id;
   bool evaluated = false;
@@ -113,10 +113,10 @@ void add(const Object& object, ObjectState& state) {
   }
 }
 
-/// A measure step of an object, for its recommended sizes.
+/// Prefix of the ids of temporary measure steps that compute an object's recommended sizes.
 constexpr const char* size_step_prefix = "size_of_";
 
-/// The measurements of a plan. For steps that fail, `errors` gets the reason by their ids.
+/// The measurements of a plan. Adds to `errors` the reason why a step failed, by the step's id.
 Json answered(const Plan& plan, const Evaluation& evaluation, std::map<std::string, std::string>& errors) {
   try {
     return measurements_json(plan, evaluation);
@@ -137,7 +137,7 @@ Json answered(const Plan& plan, const Evaluation& evaluation, std::map<std::stri
   return list;
 }
 
-/// The measurements of existing objects, each as a page shows it; `errors` as in answered().
+/// The measurements of existing objects in the form that a page shows; `errors` as in answered().
 Json measurements_of(Plan plan, const Evaluation& evaluation, std::map<std::string, std::string>& errors) {
   const auto is_there = [&](const std::string& id) {
     return std::any_of(evaluation.objects.begin(), evaluation.objects.end(),

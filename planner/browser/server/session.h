@@ -40,8 +40,7 @@ struct Snapshot {
 /// Whether a path is a plan, by its name; any other path counts as a scan.
 bool is_plan(const std::filesystem::path& path);
 
-/// The one plan that all windows work on, its objects and its files. All members may be called from any
-/// thread.
+/// The plan that all windows edit, with its objects and its files. All members may be called from any thread.
 class Session {
  public:
   explicit Session(std::filesystem::path working_folder);
@@ -71,7 +70,7 @@ class Session {
   /// that cannot be evaluated is left out, with those that depend on it. Throws Stopped, and exceptions of
   /// evaluate() that no step has caused.
   Snapshot evaluate(const std::vector<std::string>& steps, bool certify, const Watched& watched);
-  /// The same for another plan, which does not become the snapshot; `only_look_up` as in EvaluateOptions.
+  /// Evaluates another plan, which does not become the snapshot; `only_look_up` as in EvaluateOptions.
   Evaluation evaluate(const Plan& plan, const std::vector<std::string>& steps, bool certify,
                       const Watched& watched, bool only_look_up = false);
   Snapshot snapshot() const;
@@ -86,7 +85,8 @@ class Session {
     std::shared_ptr<const Evaluation> evaluation;
     static constexpr const char* moved = "dragged_piece";
     static constexpr const char* overlap = "dragged_overlap";
-    /// What only the object holds, only the other one, and both.
+    /// Names of the volumes that only the object contains, that only the other one contains, and that both
+    /// contain.
     static constexpr const char* only_moved = "dragged_only_moved";
     static constexpr const char* only_other = "dragged_only_other";
     static constexpr const char* common = "dragged_common";
@@ -120,7 +120,7 @@ class Session {
   std::unique_ptr<Document> document_;
   std::uint64_t opened_ = 0;  ///< number of documents opened so far; results of an earlier one are discarded
   Snapshot snapshot_;
-  /// Of a step: what decides its answer, and what was certified of it.
+  /// The key of a step's answer, and its certified results.
   struct Certified {
     std::string key;
     Json said;  ///< "certificate", "volume", "area"
@@ -134,8 +134,8 @@ class Session {
   std::optional<std::pair<std::shared_ptr<const voxel::Scene>, voxel::GreyOctree>> alone_;
 
   std::mutex preview_mutex_;
-  /// By the text of their plans, newest last. Cached because the panes of one window request the same
-  /// preview.
+  /// Previews by the text of their plans, newest last. They are cached because the panes of one window
+  /// request the same preview.
   std::deque<std::pair<std::string, Preview>> previews_;
 };
 

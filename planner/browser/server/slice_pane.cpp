@@ -80,7 +80,7 @@ void draw_threshold(const Json& threshold, SlicePicture& picture) {
   }
 }
 
-/// The position of the pixels; for a curve, of those at its middle.
+/// The frame of the pixels as JSON. For a curved sheet, the frame at the middle of its curve.
 Json sheet_frame(const voxel::Sheet& sheet) {
   const glm::ivec2 size_px = sheet.size_px();
   const std::size_t left = static_cast<std::size_t>((size_px.x - 1) / 2);
@@ -104,7 +104,7 @@ Message draw_slice(Session& session, const Request& request, const std::stop_tok
     throw std::runtime_error("no scan is open");
   const auto& loaded = snapshot.evaluation->loaded;
   const auto named = loaded.find(said.value("scan", loaded.begin()->first));
-  if (named == loaded.end()) throw std::runtime_error("scan: there is none of that name");
+  if (named == loaded.end()) throw std::runtime_error("scan: the plan has no scan of that name");
   const voxel::Scene& scene = named->second->scene();
   Slice slice = slice_asked(said, scene);
   Session::Preview preview;
@@ -138,7 +138,7 @@ Message draw_slice(Session& session, const Request& request, const std::stop_tok
       outlined.push_back({id, object.voxel.octree});
     }
   }
-  // A step that is tried makes an object of its own, which replaces none.
+  // A tried step makes an additional object and replaces none.
   if (const Object* made = preview.object(); made != nullptr && !made->voxel.octree.is_empty() &&
                                              std::find(drawn.begin(), drawn.end(), replaced) == drawn.end()) {
     drawn.push_back(replaced);

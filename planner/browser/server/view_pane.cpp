@@ -115,7 +115,7 @@ void set_frame(Json& header, bool is_moving, const glm::ivec2& size_px, const vo
   header["view_frame"] = view_frame_json(view, centre_mm, pixel_mm);
 }
 
-/// The point of a view's plane through the origin.
+/// A position in a view's plane, as the point of the plane through the origin.
 glm::dvec3 on_plane(const voxel::View& view, const glm::dvec2& p_mm) {
   return view.right * p_mm.x + view.up * p_mm.y;
 }
@@ -370,7 +370,7 @@ void ViewPane::learn_frame_time(const Clock::time_point& start, double scale) {
 
 Message ViewPane::along_rays(Drawing& drawing, double most_ms, const std::stop_token& stop) {
   if (!drawing.is_moving) return drawing.along_rays(1.0, stop);
-  // Of the first frame no time is known, and all pixels take too long.
+  // Before the first frame its time is unknown, so the smallest scale is used.
   const double scale = full_frame_ms_ == 0.0 ? least_scale : scale_within(most_ms);
   const Clock::time_point start = Clock::now();
   Message message = drawing.along_rays(scale, stop);

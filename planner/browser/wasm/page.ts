@@ -32,7 +32,8 @@ async function attempt(work: () => void|Promise<void>): Promise<void> {
   }
 }
 
-/// As the program's views: the observer's azimuth from the front towards the patient's left, then raised.
+/// The directions as in the program's views: the observer's azimuth from the front towards the patient's
+/// left, then the elevation.
 function directions(): [number[], number[]] {
   // Along the axes exactly, so that the kernel traces nodes.
   const exact = (value: number) => Math.abs(value - Math.round(value)) < 1e-12 ? Math.round(value) : value;

@@ -78,8 +78,8 @@ void add_intervals(const std::vector<verify::IntervalCoverage>& table,
   answer.more["intervals"] = std::move(json);
 }
 
-/// The same for random solids, by class; classes that were not used for calibration are separate. Every row
-/// must pass.
+/// Adds the rows for random solids, by class; classes that were not used for calibration are separate. Every
+/// row must pass.
 void add_drawn(const std::vector<verify::IntervalCoverage>& table,
                std::vector<std::pair<std::string, std::string>>& rows, SuiteAnswer& answer) {
   Json json = Json::array();

@@ -27,7 +27,7 @@ std::optional<std::array<double, Count>> parse_numbers(const std::string& text) 
   return numbers;
 }
 
-/// The same, but throws CLI::ValidationError, which names the option, the text and the example.
+/// As parse_numbers(), but throws CLI::ValidationError, which names the option, the text and the example.
 template <std::size_t Count>
 std::array<double, Count> numbers_of(const std::string& option, const std::string& text,
                                      const std::string& example) {

@@ -31,7 +31,7 @@ void add_plan_options(CLI::App& verb, PlanIn& text);
 /// Reads the plan and replaces its scans' paths by those of NAME=PATH, which are relative to the working
 /// folder. Throws as read_plan() does, and std::runtime_error if --scan names no scan of the plan.
 Plan plan_of(const Program& program, const PlanIn& text);
-/// The same for a plan that was already read.
+/// As above, for a plan that was already read.
 Plan plan_of(const Program& program, const PlanIn& text, Plan plan);
 
 /// Options with the program's progress and stop, and with certificates.
@@ -55,8 +55,8 @@ struct RunText : PlanIn {
 };
 /// Replays a plan into a result's folder and prints a summary; returns the exit status.
 int run(Program& program, const RunText& text);
-/// The same for a plan that was already read. `beside` is called once when the result is first written, for
-/// files that must appear together with it.
+/// As run() above, for a plan that was already read. `beside` is called once when the result is first
+/// written, for files that must appear together with it.
 int run(Program& program, const RunText& text, Plan plan, const std::function<void()>& beside = {});
 /// Adds --anonymous to a verb that writes a report.
 void add_anonymous(CLI::App& verb, bool& anonymous);

@@ -56,7 +56,7 @@ struct Program {
   bool shows_progress() const;
   /// A progress line on standard error if shows_progress(), else none.
   std::function<void(const std::string&, double)> progress() const;
-  /// The same for a single task, which the line calls `doing`.
+  /// Reports the progress of a single task, which the line calls `doing`.
   std::function<void(double)> progress(const std::string& doing) const;
 
  private:
@@ -72,7 +72,7 @@ std::string unknown_verb(const CLI::App& app, const std::string& word);
 /// Prints one line, formatted by line_of(), to standard error.
 void warn(const std::string& line);
 
-/// The same for one finding of many: only the first ones of a run are printed, so that important ones are not
+/// Warns of one finding of many: only the first ones of a run are printed, so that important ones are not
 /// lost among thousands.
 void warn_finding(const std::string& finding);
 

@@ -22,7 +22,7 @@ inline glm::dvec3 carried(const glm::dmat4& motion, const glm::dvec3& p_mm) {
 /// directions. Where earlier steps moved the object as well, also the displacements since the scan. Landmarks
 /// move with objects by the rules of moved_landmarks(). Cost: some small Booleans per landmark and object.
 std::vector<ObjectMovement> movements_of(const Objects& objects, const std::vector<NamedPoint>& landmarks);
-/// The same as JSON, with the details that the moving steps have reported.
+/// The movements as JSON, with the details that the moving steps have reported.
 nlohmann::ordered_json movements_json(const Objects& objects, const std::vector<NamedPoint>& landmarks);
 
 /// A landmark and its motion by the plan; the identity where it does not move.

@@ -41,7 +41,7 @@ std::variant<Filling, std::string> filling_of(const Object& object, const Fillin
 /// The lines on elements in a deck's header: angles, ratio of radius to edge, and volume; then a histogram of
 /// the smallest dihedral angles.
 std::vector<std::string> quality_notes(const convert::TetQuality& quality);
-/// The same as JSON.
+/// The quality of the elements as JSON.
 nlohmann::ordered_json quality_json(const convert::TetQuality& quality);
 
 }  // namespace octotomy::planner

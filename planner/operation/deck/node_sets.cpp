@@ -21,8 +21,8 @@ namespace {
 
 using convert::NodeSet;
 
-/// As a share of the mean side of the surface's triangles: small enough that a plane along a row of nodes
-/// selects that row only.
+/// A share of the mean side of the surface's triangles, so small that a plane along a row of nodes selects
+/// only that row.
 constexpr double on_surface_share() {
   return 0.25;
 }

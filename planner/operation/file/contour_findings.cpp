@@ -72,8 +72,9 @@ void take_once(voxel::SliceMask& mask, const std::string& where, std::vector<std
                        " mm, first " + first);
 }
 
-/// The even-odd rule leaves out what two contours enclose, which is a hole where one lies in the other. Of
-/// contours that cross, DICOM's exclusive or says the same (PS3.3, C.8.8.6.3), and other programs join them.
+/// The even-odd rule leaves out the area that two contours enclose, which is a hole if one contour lies in
+/// the other. For contours that cross, DICOM's exclusive or has the same effect (PS3.3, C.8.8.6.3), but other
+/// programs join them.
 void tell_crossings(const voxel::SliceMask& mask, const std::string& where,
                     std::vector<std::string>& findings) {
   std::size_t count = 0;
@@ -139,8 +140,9 @@ struct Volumes {
   double drawn_mm3 = 0.0, beyond_mm3 = 0.0;
 };
 
-/// The volume that contours enclose and the part of it beyond a lattice's samples: areas by the thickness
-/// that each plane speaks for. Exact but for crossing contours and for planes whose slab ends beyond.
+/// The volume that contours enclose, and the part of it beyond a lattice's samples: the sum of areas times
+/// the thickness that each plane represents. Exact except for crossing contours, and for planes whose slab
+/// ends beyond the samples.
 Volumes volumes_of(const voxel::SliceMask& mask, const voxel::Lattice& box) {
   Volumes volumes;
   const auto& slices = mask.slices;
@@ -250,7 +252,7 @@ std::optional<std::string> slices_without_contours(const voxel::SliceMask& mask,
     const auto &below = mask.slices[i - 1], &above = mask.slices[i];
     if (below.polygons_mm.empty() || above.polygons_mm.empty()) continue;
     const double apart_mm = above.position_mm - below.position_mm;
-    // Two slices or more: one left out now and then is a habit of drawing.
+    // Reports gaps of two missing slices or more, because people often leave out a single slice.
     if (apart_mm < 2.5 * slice_mm) continue;
     ++gaps;
     if (apart_mm <= widest_mm) continue;

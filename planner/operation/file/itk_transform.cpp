@@ -25,7 +25,7 @@ struct ListedTransform {
   std::vector<double> parameters, fixed;
 };
 
-/// Files of linear transforms hold some hundred bytes; a larger one is another file.
+/// Files of linear transforms take a few hundred bytes; a larger file contains something else.
 constexpr std::uintmax_t most_bytes = 1 << 20;
 
 std::vector<double> numbers_of(const std::string& text, const std::string& where) {
@@ -41,7 +41,7 @@ std::vector<double> numbers_of(const std::string& text, const std::string& where
   return numbers;
 }
 
-/// "AffineTransform" of "AffineTransform_double_3_3".
+/// The type in a word: "AffineTransform" of "AffineTransform_double_3_3".
 std::string type_of_word(const std::string& word, const std::string& where) {
   for (const std::string_view ending : {"_double_3_3", "_float_3_3"})
     if (word.ends_with(ending)) return word.substr(0, word.size() - ending.size());
@@ -80,7 +80,7 @@ std::vector<ListedTransform> listed_text(const std::string& text, const std::str
   return found;
 }
 
-/// The numbers of a group's transform. ITK before 5 knew only the names without the s of "Trans".
+/// The numbers of a group's transform. ITK before version 5 misspells the members' names as "Tranform...".
 std::vector<double> numbers_in(const Hdf5File& file, const std::string& group, const std::string& name) {
   for (const char* const before : {"/Transform", "/Tranform"})
     if (const std::string path = group + before + name; file.has(path)) return file.numbers(path);
@@ -142,7 +142,7 @@ glm::dmat4 about_centre(const glm::dmat3& turn, const glm::dvec3& shift, const L
                            " fixed parameters: it takes the three of its centre");
   const glm::dvec3 centre = each.fixed.empty() ? glm::dvec3(0.0) : three(each.fixed, 0);
   glm::dmat4 matrix(turn);
-  // In this order, so that a centre of zero rounds nothing.
+  // Summed in this order so that a centre of zero causes no rounding.
   matrix[3] = glm::dvec4(shift + (centre - turn * centre), 1.0);
   return matrix;
 }
@@ -160,7 +160,7 @@ glm::dmat3 euler(const ListedTransform& each) {
 glm::dmat3 versor(const ListedTransform& each) {
   const glm::dvec3 v = three(each.parameters, 0);
   const double square = glm::dot(v, v);
-  // A file's digits may put a half turn a little beyond one.
+  // Rounding to a file's digits may make the versor of a half turn slightly longer than one.
   if (square > 1.0 + 1e-6) refuse(each.where, "its versor is longer than 1");
   return glm::mat3_cast(glm::normalize(glm::dquat(std::sqrt(std::max(0.0, 1.0 - square)), v.x, v.y, v.z)));
 }

@@ -112,7 +112,8 @@ const std::vector<std::string>& words_of_labels() {
   return words;
 }
 
-/// The same for names. A column "label" can hold the names if another column holds the numbers.
+/// Words that name the column of names. A column "label" can contain the names if another column contains the
+/// numbers.
 const std::vector<std::string>& words_of_names() {
   static const std::vector<std::string> words{
       "name",        "labelname",  "segmentname", "segmentlabel", "structurename",

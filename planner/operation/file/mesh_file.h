@@ -19,8 +19,8 @@ namespace octotomy::planner {
 /// brep::solid_of(), naming the path.
 brep::Solid read_solid(const std::filesystem::path& path, Timings& timings);
 
-/// The same, but repairs triangles that are no solid by brep::repair(). A finding states the volume and the
-/// largest distance. "repair" in the timings. Throws as repair(), naming the path.
+/// As read_solid(), but repairs triangles that are no solid by brep::repair(). A finding states the volume
+/// and the largest distance. "repair" in the timings. Throws as repair(), naming the path.
 brep::Solid read_mended_solid(const std::filesystem::path& path, Timings& timings,
                               std::vector<std::string>& findings, const brep::Progress& progress = {});
 
@@ -35,7 +35,7 @@ brep::Solid read_turned_solid(const std::filesystem::path& path, Timings& timing
 brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings,
                         std::vector<std::string>* findings = nullptr);
 
-/// The same of two files at once, as triangles with their neighbours.
+/// Reads the surfaces of two files at once, as triangles with their neighbours.
 std::array<brep::Linked, 2> read_surfaces(const std::array<std::filesystem::path, 2>& paths, Timings& timings,
                                           std::vector<std::string>& findings);
 

@@ -25,7 +25,7 @@ void choose_mesh_reading(const std::vector<std::string>& frames, const std::vect
 /// Reads a mesh as chosen and keeps its audit for meshes_read(); any thread may call. Throws as
 /// brep::read_mesh().
 brep::Triangles read_mesh_in(const std::filesystem::path& path);
-/// The same with a frame and unit of its own.
+/// Reads a mesh in the given frame and unit.
 brep::Triangles read_mesh_in(const std::filesystem::path& path, const brep::MeshReadOptions& options);
 
 /// The meshes read since the last choice, sorted by path, each path once.

@@ -21,7 +21,7 @@ enum class OutputKind { File, Folder };
 /// (voxel::need_own_data_file()). Called before the work, so that no work is lost. Tests this with a hidden
 /// folder beside the path.
 void need_folder_of(const std::filesystem::path& out, OutputKind kind);
-/// The same of a file.
+/// Calls need_folder_of() for an output that is a file.
 void need_folder_of(const std::filesystem::path& out);
 
 /// Throws std::runtime_error, "OUT: WHAT written as .a or .b", where the path ends in none of the extensions.

@@ -10,8 +10,8 @@
 #include "voxel/space/view.h"
 #include "voxel/view/camera.h"
 
-// Where the pixels of a picture lie. PNG files in true scale that the program writes store it, so that a
-// region can be given by their pixels.
+// The position of a picture's pixels in its view. PNG files in true scale that the program writes store it,
+// so that a region can be stated in their pixels.
 namespace octotomy::planner {
 
 struct PictureFrame {
@@ -20,7 +20,7 @@ struct PictureFrame {
 
   /// Looking at the picture.
   voxel::View view() const;
-  /// From (column, row, 1) to (u, v, 1) in the view's millimetres.
+  /// Maps (column, row, 1) to (u, v, 1) in the view's millimetres.
   glm::dmat3 view_mm_from_pixel() const;
 };
 

@@ -53,8 +53,9 @@ float depth_at(const voxel::Scene& scene, const glm::dvec3& p_mm, double low, do
   const double sample = voxel::interpolate(scene, glm::clamp(at, glm::dvec3(0.0), last));
   if (std::isnan(sample)) return static_cast<float>(-most);
   const auto depth = static_cast<float>(std::clamp(std::min(sample - low, high - sample), -most, most));
-  // Samples stand for half a voxel beyond the outermost ones. Beyond that the depth is reversed, so that an object
-  // ends half way to the next point; a depth of 0, as of labels at their own value, would reach on.
+  // The outermost samples represent another half voxel beyond them. Beyond that the depth is reversed, so that an
+  // object ends half way to the next point. A depth of 0, which labels have at their own value, counts as inside:
+  // there it is made negative.
   const bool is_outside =
       glm::any(glm::lessThan(at, glm::dvec3(-0.5))) || glm::any(glm::greaterThan(at, last + 0.5));
   return is_outside ? std::min(-std::abs(depth), -1e-6f) : depth;

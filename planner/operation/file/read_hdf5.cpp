@@ -16,7 +16,8 @@ namespace {
 constexpr std::string_view hdf5_signature("\x89HDF\r\n\x1a\n", 8);
 constexpr std::uint64_t undefined = ~std::uint64_t{0};
 constexpr std::size_t most_messages = 256, most_blocks = 64, longest_text = 4096;
-/// Nodes of trees, symbol tables and chunks that one file may take: trees of damaged files may refer to one node often.
+/// The most nodes, symbol tables and chunks that are read from one file. The trees of damaged files may refer
+/// to one node repeatedly.
 constexpr std::size_t most_nodes = 1024;
 constexpr int most_levels = 8;  ///< of a tree; each level has at least two children if it has a reason to be
 
@@ -36,7 +37,7 @@ enum Filter : std::uint32_t { deflate_filter = 1, shuffle_filter = 2, checksum_f
   throw std::runtime_error(what);
 }
 
-/// Reads little-endian numbers one after the other, each compared with the end.
+/// Reads little-endian numbers one after the other, and checks each against the end of the bytes.
 class Cursor {
  public:
   Cursor(std::string_view bytes, const char* what) : bytes_(bytes), what_(what) {}
@@ -67,7 +68,7 @@ std::string until_zero(std::string_view text) {
 
 }  // namespace
 
-/// What the messages of a dataset's header say.
+/// The contents of the messages in a dataset's header.
 struct Hdf5File::Dataset {
   enum class Kind { Real, FixedText, FarText } kind = Kind::Real;
   std::size_t element_bytes = 0;
@@ -107,7 +108,7 @@ std::size_t elements_of(std::string_view bytes, const std::string& path) {
   return count;
 }
 
-/// [IV.A.2.l] The numbers of the filters, in the order of writing.
+/// [IV.A.2.l] The numbers of the filters, in the order in which the writer applied them.
 std::vector<std::uint64_t> filters_of(std::string_view bytes, const std::string& path) {
   Cursor in(bytes, "filter pipeline");
   const auto version = in.byte(), count = in.byte();
@@ -138,7 +139,8 @@ std::string inflated(std::string_view from, std::size_t most) {
   return made;
 }
 
-/// The first bytes of all elements stood together, then all second ones.
+/// Reverses the shuffle filter, which stores the first bytes of all elements together, then all second bytes,
+/// and so on.
 std::string unshuffled(const std::string& from, std::size_t element_bytes) {
   const std::size_t count = from.size() / element_bytes;
   std::string made = from;
@@ -418,7 +420,7 @@ Hdf5File::Dataset Hdf5File::dataset(const std::string& path) const {
 
 namespace {
 
-/// A chunk as it was before its filters, the last of which was applied last.
+/// A chunk before the writer's filters. They are reversed from the last one applied to the first.
 std::string unfiltered(std::string_view stored, std::uint64_t mask, const std::vector<std::uint64_t>& filters,
                        std::size_t element_bytes, std::size_t chunk_bytes) {
   std::string bytes(stored);

@@ -29,10 +29,10 @@ class Hdf5File {
   /// `bytes` is the whole file and must outlive the object.
   explicit Hdf5File(std::string_view bytes);
 
-  /// Names of a group's members, in no order that the file chooses: sorted. `path` is as "/TransformGroup".
+  /// The names of a group's members, sorted. `path` is like "/TransformGroup".
   std::vector<std::string> members(const std::string& path) const;
   bool has(const std::string& path) const;
-  /// A text; of several, the first. Without trailing blanks and zeros.
+  /// A text without trailing blanks and zeros. If the value holds several texts, the first.
   std::string text(const std::string& path) const;
   /// A row of real numbers, or a single one.
   std::vector<double> numbers(const std::string& path) const;

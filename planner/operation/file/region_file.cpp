@@ -391,7 +391,7 @@ void tell_gaps(const Slices& planes, double apart_mm, const Bridges& bridges, co
                   : ": has " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") +
                         " where planes of the set have none of its contours") +
       ": it is empty between its planes, first between " + plain(planes[first - 1].position_mm) + " and " +
-      plain(planes[first].position_mm) + " mm; if it goes on there, --bridge " +
+      plain(planes[first].position_mm) + " mm; if it continues there, --bridge " +
       plain(std::ceil(1000.0 * widest_mm) / 1000.0) + " (bridge_mm in a plan) interpolates");
 }
 
@@ -431,7 +431,7 @@ const voxel::Structure& chosen(const std::vector<voxel::Structure>& structures, 
   for (const voxel::Structure* each : named)
     numbers += (numbers.empty() ? "" : each == named.back() ? " and " : ", ") + std::to_string(each->number);
   refuse(source, "has " + std::to_string(named.size()) + " structures '" + name + "', of the ROI numbers " +
-                     numbers + ": say which by its number as 'structure'");
+                     numbers + ": choose one by its number as 'structure'");
 }
 
 /// The normal of a structure's contours, weighted by their areas; zero where none encloses anything.

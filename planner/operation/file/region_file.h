@@ -37,10 +37,10 @@ voxel::Region read_region(const voxel::View& view, const std::filesystem::path& 
 /// far apart, points up to 0.1 mm off a plane belong to it.
 voxel::SliceMask read_slices(const std::filesystem::path& path, const std::string& structure = {});
 
-/// The same. Adds to `findings` a line on contours that occur twice, and one on contours that cross
-/// themselves or another contour of their plane, so that the even-odd rule leaves a part out: their number,
-/// planes and places. For structure sets also one line each on planes without a contour between others, on
-/// contours that enclose nothing, and on points off their plane.
+/// As read_slices() above. Adds to `findings` a line on contours that occur twice, and one on contours that
+/// cross themselves or another contour of their plane, so that the even-odd rule leaves a part out: their
+/// number, planes and places. For structure sets also one line each on planes without a contour between
+/// others, on contours that enclose nothing, and on points off their plane.
 voxel::SliceMask read_slices(const std::filesystem::path& path, const std::string& structure,
                              std::vector<std::string>& findings);
 
@@ -55,7 +55,7 @@ struct DrawnSlices {
   std::optional<voxel::Identity> identity = std::nullopt;  ///< of a structure set
   std::vector<std::string> findings = {};
 };
-/// The same with everything read from the file.
+/// Reads slices with all that the file states about them.
 DrawnSlices read_slices(const std::filesystem::path& path, const SlicesOptions& options);
 
 }  // namespace octotomy::planner

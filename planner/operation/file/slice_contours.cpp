@@ -62,8 +62,8 @@ struct Refined {
   bool is_left = false;       ///< nothing was done, as it would cross itself
 };
 
-/// Thins and smooths a contour. Where the harmonics asked for make it cross itself, twice as many, and so on
-/// up to a quarter of its points; where none helps, the contour stays as it is.
+/// Thins and smooths a contour. If the requested harmonics make it cross itself, doubles their number
+/// repeatedly, up to a quarter of its points; if that does not help, the contour stays unsmoothed.
 Refined refined_contour(const Polygon& points_mm, const Refinement& refinement) {
   brep::Contour contour{points_mm};
   if (refinement.thin_mm > 0.0) contour = brep::thin(contour, refinement.thin_mm);
@@ -79,7 +79,7 @@ Refined refined_contour(const Polygon& points_mm, const Refinement& refinement) 
   return {points_mm, 0, true};
 }
 
-/// Says which contour is smoothed less than asked, or not at all.
+/// Reports which contour is smoothed less than requested, or not at all.
 Polygon refined_at(const Polygon& polygon, const Refinement& refinement, const voxel::SliceMask::Slice& slice,
                    std::vector<std::string>& findings) {
   Refined done = refined_contour(polygon, refinement);
@@ -185,14 +185,14 @@ class Edit {
     if (const auto crossing = brep::first_crossing(contour)) refuse_crossing(contour, *crossing, where_);
     contours_[number].is_uncrossed = true;
   }
-  /// The same after an edit that changed these pieces.
+  /// Checks the contour after an edit that changed these pieces.
   void check_edit(std::size_t number, const std::vector<std::size_t>& changed) {
     if (!contours_[number].is_uncrossed) return check(number);
     const brep::Contour& contour = contours_[number].contour;
     if (const auto crossing = brep::first_crossing_of(contour, changed))
       refuse_crossing(contour, *crossing, where_);
   }
-  /// The same after an edit that moved or made a point.
+  /// Checks the contour after an edit that moved or inserted a point.
   void check_about(std::size_t number, std::size_t point) {
     check_edit(number, {piece_before(number, point), point});
   }

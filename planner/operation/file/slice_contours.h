@@ -26,9 +26,9 @@ struct SliceWindow {
 /// Reads POSITION=WINDOW: "30=250:". Throws std::runtime_error with an example.
 SliceWindow parse_slice_window(const std::string& text);
 
-/// The same, where the slice at each of these positions has its own window; `window` is that of the others, which have
-/// no contours without it. Throws std::runtime_error if no slice is within half a slice's distance of a position, or
-/// two positions are of one slice.
+/// Follows contours with separate windows for the slices at these positions; `window` is that of the others,
+/// which have no contours without it. Throws std::runtime_error if no slice is within half a slice's distance
+/// of a position, or two positions are of one slice.
 voxel::SliceMask slice_contours(const voxel::Scene& scene, const std::optional<SampleWindow>& window,
                                 const std::vector<SliceWindow>& own);
 
@@ -54,7 +54,7 @@ voxel::SliceMask refined(const voxel::SliceMask& mask, const Refinement& refinem
 /// Throws std::runtime_error naming the file, the edit and what is wrong, a contour that crosses itself too.
 voxel::SliceMask edited(const voxel::SliceMask& mask, const std::filesystem::path& edits);
 
-/// As read_slices() in region_file.h reads it.
+/// The mask in the format that read_slices() in region_file.h reads.
 nlohmann::ordered_json to_json(const voxel::SliceMask& mask);
 
 /// Freeman's codes of the contours on samples `spacing_mm` apart:

@@ -15,9 +15,9 @@
 // function. FileBench::step distinguishes them: names are paths of files, or objects of the plan.
 namespace octotomy::planner {
 
-/// Whether a name stands for an octree: an .octree file, or any object of the plan.
+/// Whether a name refers to an octree: an .octree file, or any object of the plan.
 bool names_octree(const std::string& name, const FileBench& bench);
-/// The octree that a name stands for; "read" in the timings. Throws as read_timed().
+/// The octree with a name; "read" in the timings. Throws as read_timed().
 voxel::OctreeFile octree_named(const std::string& name, const FileBench& bench);
 /// The triangles that a name stands for: those of a mesh file, or of an object's mesh within the universe.
 /// Throws as read_mesh_in(), and std::runtime_error if the object has no mesh.
@@ -29,8 +29,8 @@ void write_by_verb(const std::string& object, const std::filesystem::path& path,
                    const std::function<FileAnswer(const FileBench& bench)>& run, const AnswerBench& bench,
                    Exported& made);
 
-/// The same as the `write` of an operation whose value has its objects in `Value::inputs()` and its output in
-/// `Value::out`.
+/// Runs `on_files` as the `write` of an operation whose value has its objects in `Value::inputs()` and its
+/// output in `Value::out`.
 template <typename Value, FileAnswer (*on_files)(const Value&, const FileBench&)>
 void write_step(const Value& asked, const AnswerBench& bench, Exported& made) {
   const std::vector<std::string> objects = asked.inputs();

@@ -12,7 +12,7 @@ namespace octotomy::planner {
 namespace {
 
 constexpr std::uint64_t no_address = ~std::uint64_t{0};
-/// Of a symbol table and of a tree's node, in members: readers take the sizes of both from the superblock.
+/// The sizes of a symbol table and of a tree's node, in members. Readers take both from the superblock.
 constexpr std::uint64_t leaf_k = 4, internal_k = 16;
 constexpr std::size_t superblock_bytes = 96, texts_bytes = 4096;
 
@@ -37,13 +37,14 @@ std::string object_header(std::uint64_t count, const std::string& messages) {
 }
 
 std::string real_type() {
-  // Class 1, version 1; little-endian, the mantissa's first bit implied, the sign in bit 63.
+  // Class 1, version 1: a little-endian number whose mantissa's first bit is implied and whose sign is bit
+  // 63.
   return coded(0x11, 1) + coded(0x3f20, 3) + coded(8, 4) + coded(0, 2) + coded(64, 2) + coded(52, 1) +
          coded(11, 1) + coded(0, 1) + coded(52, 1) + coded(1023, 4);
 }
 
 std::string text_type() {
-  // Class 9, of variable length, a text that ends with zero, of bytes.
+  // Class 9, version 1: a text of bytes, of variable length, which ends with a zero.
   return coded(0x19, 1) + coded(1, 3) + coded(16, 4) + coded(0x10, 1) + coded(0, 3) + coded(1, 4) +
          coded(0, 2) + coded(8, 2);
 }
@@ -79,7 +80,8 @@ class Writer {
     return put(object_header(
         4, header_message(0x01, coded(1, 1) + coded(1, 1) + coded(0, 6) + coded(count, 8)) +
                header_message(0x03, type) +
-               // Storage at writing; the default, which is no bytes, is filled in.
+               // Allocates storage when the data are written, and fills it with the default, which is no
+               // bytes.
                header_message(0x05, coded(2, 1) + coded(2, 1) + coded(2, 1) + coded(1, 1) + coded(0, 4)) +
                header_message(0x08, coded(3, 1) + coded(1, 1) + coded(at, 8) + coded(size, 8))));
   }
@@ -115,7 +117,7 @@ class Writer {
     }
     symbols.resize(2 * leaf_k * 40, '\0');
     const std::uint64_t names_at = put(names);
-    // 1 says that no part of the names is free.
+    // A free list that begins at 1 means that no part of the names is free.
     const std::uint64_t heap =
         put("HEAP" + coded(0, 4) + coded(names.size(), 8) + coded(1, 8) + coded(names_at, 8));
     const std::uint64_t table = put("SNOD" + coded(1, 2) + coded(made.members.size(), 2) + symbols);
@@ -128,7 +130,7 @@ class Writer {
 
   void finish_texts() {
     std::string collection = "GCOL" + coded(1, 4) + coded(texts_bytes, 8) + texts_;
-    // Object 0 is the rest that is free, with its own head.
+    // Object 0 is the remaining free space, including its own header.
     collection += coded(0, 8) + coded(texts_bytes - collection.size(), 8);
     collection.resize(texts_bytes, '\0');
     bytes_.replace(texts_at_, texts_bytes, collection);

@@ -14,10 +14,10 @@ struct Hdf5Group {
   std::map<std::string, Member> members;
 };
 
-/// A whole HDF5 file in the oldest form, superblock 0, which every reader since 1998 reads: numbers are IEEE's of 8 bytes,
-/// texts of variable length as ITK expects them. Equal groups make equal bytes. Throws std::invalid_argument if a group has
-/// more than 8 members, all texts together take more than 3 kB, or a row has no numbers.
-/// Source: HDF5 File Format Specification, version 3.0.
+/// A complete HDF5 file in the oldest form, superblock 0, which every reader since 1998 reads. Numbers are
+/// IEEE's of 8 bytes, texts have variable length as ITK expects. Equal groups make equal bytes. Throws
+/// std::invalid_argument if a group has more than 8 members, all texts together take more than 3 kB, or a row
+/// has no numbers. Source: HDF5 File Format Specification, version 3.0.
 std::string hdf5_bytes(const Hdf5Group& root);
 
 }  // namespace octotomy::planner

@@ -8,7 +8,7 @@
 
 namespace octotomy::planner {
 
-/// Where an element of an XML text begins or ends.
+/// The begin or end tag of an element in an XML text.
 struct XmlTag {
   std::string name;  ///< without "svg:"; "foreign" for elements with the prefix of another namespace
   std::map<std::string, std::string> attributes;

@@ -55,7 +55,8 @@ std::vector<Field> flap_fields() {
           field("roll_deg", of(&FlapFields::roll_deg), "A further turn of all segments about their axes.")
               .from(-180)
               .to(180),
-          field("start_mm", of(&FlapFields::start_mm), "From the donor's first point to the first cut.")
+          field("start_mm", of(&FlapFields::start_mm),
+                "The distance from the donor's first point to the first cut.")
               .from(0)
               .to(500),
           field("kerf_mm", of(&FlapFields::kerf_mm), "The width of a saw cut on the donor.").from(0).to(5),

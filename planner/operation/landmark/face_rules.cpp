@@ -142,7 +142,8 @@ class Face {
     return -1;
   }
 
-  /// From a crest, the row a little higher where the rim looks as much up as forward.
+  /// Starts at the crest's row and returns the slightly higher row in which the rim faces as much up as
+  /// forward.
   int edge_row(double out, int crest_row) const {
     if (crest_row < 0) return crest_row;
     int best = crest_row;

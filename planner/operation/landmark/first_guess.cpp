@@ -179,7 +179,7 @@ double scatter(const std::string& name, const glm::dvec3& first_mm, const std::v
   return most;
 }
 
-/// The same bone from a higher threshold on; none without samples.
+/// The bone from a higher threshold on; none if the object has no samples.
 std::optional<voxel::DrawnObject> with_higher_threshold(const voxel::DrawnObject& bone) {
   if (!bone.grey) return std::nullopt;
   constexpr double zero = -150.0;
@@ -327,7 +327,7 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
     if (is_at_scan_end(bone, p_mm))
       missing[name] = "the scan ends there";
     else if (first.doubt_mm[name] > most_within_mm)
-      missing[name] = "the bone is so flat there that its extremal point is not known to 15 mm";
+      missing[name] = "the bone is so flat there that its extremal point is uncertain by more than 15 mm";
     else if (!(within_mm <= most_within_mm))
       missing[name] = "a slightly different position of the head moves it far or loses it";
     else

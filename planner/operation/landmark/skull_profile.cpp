@@ -221,7 +221,7 @@ class Reader {
       miss("lower_incisor",
            "the bone's edge lies too near to the chin for a tooth's: the lower incisors are missing");
     else if (is_seen && !is_closed && over_chin < sure_lower_tooth * nose_height_)
-      miss("lower_incisor", "whether the bone's edge below the open bite is a tooth's is not known");
+      miss("lower_incisor", "the bone's edge below the open bite may not be a tooth's");
     else if (is_seen)
       place("lower_incisor", first);
     else

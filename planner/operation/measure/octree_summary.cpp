@@ -22,7 +22,7 @@ constexpr auto members_of(const LevelRecord&) {
                     member("empty", &L::empty));
 }
 
-/// An octree's answer behind the program's version and the times.
+/// The members of an octree's answer that follow the program's version and the times.
 struct OctreeRecord {
   std::string kind = "octree", name;
   int depth = 0;

@@ -26,7 +26,7 @@ Json doubts_of(const std::vector<voxel::Finding>& audit);
 /// The lines of `scan_audit` in an octree_answer()'s metadata, for people.
 std::vector<std::string> told_doubts(const Json& answer);
 
-/// The same for people.
+/// The answer as a text for people.
 std::string octree_text(const std::string& title, const Json& answer);
 
 /// Writes the file. Returns octree_answer() with the members of `more`, the findings, and octree_text() as

@@ -21,7 +21,7 @@ Json weighted_summary(std::vector<std::pair<double, double>> value_and_weight, c
 Json thickness_json(const brep::Solid& solid, const voxel::Progress& progress,
                     std::vector<double>& at_vertices);
 
-/// The same by the voxel kernel, without rays. Throws and costs as voxel::local_thickness().
+/// The thickness by the voxel kernel, without rays. Throws and costs as voxel::local_thickness().
 Json thickness_json(const voxel::Octree& octree, const voxel::Progress& progress);
 
 }  // namespace octotomy::planner

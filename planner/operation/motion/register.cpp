@@ -109,7 +109,7 @@ constexpr auto members_of(const FitDetails&) {
 /// The resulting motion, with its results for the report.
 struct Laid {
   glm::dmat4 onto_from_object{1.0};
-  std::optional<double> rms_mm;  ///< none of scans, which have no points to be apart
+  std::optional<double> rms_mm;  ///< none for scans, which have no points to compare
   FitDetails details = {};
   std::vector<std::string> findings = {};
 };
@@ -122,7 +122,7 @@ struct Turn {
 Turn turn_of(const glm::dmat4& motion) {
   glm::dmat3 m(motion);
   for (int k = 0; k < 3; ++k) m[k] = glm::normalize(m[k]);
-  // From the quaternion: the matrix's antisymmetric part loses digits near a half turn.
+  // Computed from the quaternion, because the matrix's antisymmetric part loses digits near a half turn.
   const glm::dquat q = glm::normalize(glm::quat_cast(m));
   const glm::dvec3 v = q.w < 0.0 ? -glm::dvec3(q.x, q.y, q.z) : glm::dvec3(q.x, q.y, q.z);
   const double sine = glm::length(v);

@@ -14,7 +14,7 @@ struct Transform {
   std::filesystem::path file;
 };
 
-/// Throws std::runtime_error, with the path, if the file holds no rigid motion.
+/// The motion in a file. Throws std::runtime_error, with the path, if the file contains no rigid motion.
 TransformFile motion_in(const std::filesystem::path& path) {
   TransformFile read = read_itk_transform(path);
   if (!is_rigid(read.moved_from_still))
@@ -24,7 +24,7 @@ TransformFile motion_in(const std::filesystem::path& path) {
 }
 
 void check(const Transform& transform, const FieldLocation& place) {
-  // A missing file is an error of the step's evaluation, as an imported mesh is.
+  // If the file is missing, the step fails when it is evaluated, as an import of a missing mesh does.
   if (place.scope == nullptr || !std::filesystem::exists(place.scope->folder() / transform.file)) return;
   try {
     motion_in(place.scope->folder() / transform.file);

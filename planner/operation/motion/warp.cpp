@@ -114,7 +114,7 @@ void bound(const Warp& warp, const BoundBench& bench, Object& made) {
   made.bound.shift_mm = object.bound.shift_mm;
   made.ends_with_universe = true;
   if (!made.mesh.whole || !object.mesh.whole) return;
-  // Read now, because the file may have changed when the certificate is asked for.
+  // Read at once, because the file may have changed when the certificate is computed.
   const auto deck =
       std::make_shared<const convert::SolvedDeck>(convert::read_solved_deck(bench.folder / warp.result));
   const double fade_mm = made.mesh.details.at("fade_mm");

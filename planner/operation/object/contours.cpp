@@ -28,7 +28,7 @@ struct Contours {
   std::optional<double> tolerance;
   double least_area_mm2 = 0.0, thin_mm = 0.0, by_mm = 0.0;
   std::optional<int> harmonics;
-  // Of the command only.
+  // Options of the command line only.
   std::filesystem::path edits, codes;
   double code_spacing_mm = 1.0;
 
@@ -49,7 +49,8 @@ std::vector<SliceWindow> own_windows(const Contours& contours) {
   return own;
 }
 
-/// Says why options do not go together, by the names that `name` has for them; empty where they do.
+/// The reason why options contradict each other, with the names that `name` returns for them; empty if they
+/// do not.
 std::string conflict_of(const Contours& contours, const std::function<std::string(const char*)>& name) {
   if (!contours.seeds_mm.empty() && has_windows(contours))
     return name("seeds_mm") + ": choose the thresholds themselves: leave " + name("window") + " out";
@@ -58,12 +59,13 @@ std::string conflict_of(const Contours& contours, const std::function<std::strin
   if (contours.tolerance && contours.around_mm.empty())
     return name("tolerance") + ": is of a region around a seed: add " + name("around_mm");
   if (contours.tolerance && has_windows(contours))
-    return name("tolerance") + ": chooses the window itself: leave " + name("window") + " out";
+    return name("tolerance") + ": selects the samples in place of a window: leave " + name("window") + " out";
   if (!contours.around_mm.empty() && !contours.slice_windows.empty())
-    return name("slice_windows") + ": are of whole slices: leave " + name("around_mm") + " out";
+    return name("slice_windows") + ": cannot be combined with regions around pixels: leave " +
+           name("around_mm") + " out";
   if (!contours.around_mm.empty() && !contours.window && !contours.tolerance)
     return name("around_mm") + ": add " + name("window") + " or " + name("tolerance") +
-           ", which say what belongs to the region";
+           ", which bounds the samples of the region";
   return "";
 }
 
@@ -214,34 +216,34 @@ Operation contours_operation() {
   return Describe<Contours>(
              "contours", "Writes contours on a scan's slices: followed, thinned, smoothed, offset, edited.",
              Makes::File)
-      .takes(field("scan", &Contours::scan, "The scan; of the verb also a .json of regions on slices.")
+      .takes(field("scan", &Contours::scan, "The scan; for the verb also a .json of regions on slices.")
                  .required()
                  .positional("file"))
       .takes(field("path", &Contours::out, "A .json of regions on slices, as masks read it.")
                  .required()
                  .called("out"))
-      .takes(field("window", &Contours::window, "Of a scan: LOW:HIGH or LOW: in sample units, or a tissue."))
-      .takes(
-          field(
-              "seeds_mm", &Contours::seeds_mm,
-              "Of a scan, in place of a window: pixels on edges, LPS. Each gives its slice the threshold of "
-              "its sample, and the contour nearest to it.")
-              .repeated()
-              .called("seed"))
-      .takes(
-          field("slice_windows", &Contours::slice_windows,
-                "Of a scan: windows of slices of their own, POSITION=LOW:HIGH, the position in mm along the "
-                "contours' view. Other slices have the window, or none.")
-              .repeated()
-              .called("slice-window"))
+      .takes(field("window", &Contours::window, "For a scan: LOW:HIGH or LOW: in sample units, or a tissue."))
+      .takes(field("seeds_mm", &Contours::seeds_mm,
+                   "For a scan, in place of a window: pixels on edges, LPS. A pixel's sample is the "
+                   "threshold of its "
+                   "slice, whose contour nearest to the pixel is written.")
+                 .repeated()
+                 .called("seed"))
+      .takes(field("slice_windows", &Contours::slice_windows,
+                   "For a scan: separate windows of single slices, POSITION=LOW:HIGH, the position in mm "
+                   "along the "
+                   "contours' view. Other slices use 'window' if it is set; otherwise they have no contours.")
+                 .repeated()
+                 .called("slice-window"))
       .takes(
           field("around_mm", &Contours::around_mm,
-                "Of a scan: pixels within regions, LPS. Each leaves of its slice the connected region of the "
-                "window in which it lies, with its holes.")
+                "For a scan: pixels within regions, LPS. Each keeps in its slice the connected region of the "
+                "window around it, with the region's holes.")
               .repeated()
               .called("around"))
       .takes(field("tolerance", &Contours::tolerance,
-                   "Of regions around pixels, in place of a window: how far samples may be from the pixel's.")
+                   "For regions around pixels, in place of a window: the largest difference from the pixel's "
+                   "sample.")
                  .from(0.0))
       .takes(field("least_area_mm2", &Contours::least_area_mm2, "Leaves contours out that enclose less.")
                  .from(0.0)
@@ -252,16 +254,16 @@ Operation contours_operation() {
       .takes(field("harmonics", &Contours::harmonics, "Number of Fourier harmonics that smooth each contour.")
                  .from(1)
                  .to(10000))
-      .takes(field("by_mm", &Contours::by_mm, "Moves them out by this; in where it is below zero.")
+      .takes(field("by_mm", &Contours::by_mm, "Moves contours outward by this; inward if it is below zero.")
                  .from(-1e6)
                  .to(1e6))
       .verb_takes(
-          field("edits", &Contours::edits, "Edits by hand, made after all else, in order: a .json file.")
+          field("edits", &Contours::edits, "A .json file of manual edits, which are made last, in order.")
               .a_file())
       .verb_takes(field("codes", &Contours::codes, "Writes Freeman's chain codes too, to this .json."))
-      .verb_takes(
-          field("code_spacing_mm", &Contours::code_spacing_mm, "Of the samples that the codes step on.")
-              .greater_than(0.0))
+      .verb_takes(field("code_spacing_mm", &Contours::code_spacing_mm,
+                        "The spacing of the samples on which chain codes step.")
+                      .greater_than(0.0))
       .reads_scans()
       .example(
           R"({"id": "lines", "do": "contours", "scan": "ct", "path": "bone.json",

@@ -266,7 +266,7 @@ Operation eval_operation() {
       .takes(field("path", &Eval::out, "An .octree file, in the universe of the first name.")
                  .required()
                  .called("out"))
-      .verb_takes(field("lets", &Eval::lets, "NAME=FILE: what a name stands for, an .octree file.")
+      .verb_takes(field("lets", &Eval::lets, "NAME=FILE: the .octree file to which a name refers.")
                       .repeated()
                       .called("let"))
       .verb_takes(

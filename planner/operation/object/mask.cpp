@@ -336,9 +336,10 @@ Operation mask_operation() {
           "structure", &Mask::structure,
           "The name or ROI number of the structure that is meant, where the slices are a structure set."))
       .takes(
-          field("bridge_mm", &Mask::bridge_mm,
-                "Of a structure set: interpolates between planes of the structure up to this distance apart. "
-                "Default: as the file says.")
+          field(
+              "bridge_mm", &Mask::bridge_mm,
+              "For a structure set: interpolates between planes of the structure up to this distance apart. "
+              "Default: as the file says.")
               .greater_than(0.0))
       .takes(
           field("other_identity", &Mask::other_identity,

@@ -115,8 +115,8 @@ voxel::Universe universe_around(const voxel::RegionMask& regions,
   return voxel::universe_around(bounds.box(), voxel_mm);
 }
 
-/// The regions as a step of a plan that encloses the same volume in any plan of the scan, whatever the head's
-/// position; null where no step can.
+/// The regions as a step that encloses the same volume in any plan of the scan, independent of the head's
+/// position; null if no step can.
 Json step_of(const std::vector<DrawnRegion>& drawn, bool is_cut_further) {
   Json regions = Json::array();
   for (const DrawnRegion& each : drawn) {

@@ -176,7 +176,7 @@ Recommended of_mesh_alone(const brep::Solid& mesh) {
   return found;
 }
 
-/// As intervals_of(), from the object's own surface.
+/// The intervals of intervals_of(), but from the object's own surface.
 Recommended own_intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
   const glm::dvec3 voxel_mm = bench.universe.lattice().spacing_mm();
   if (object.is_surely_empty) return {};

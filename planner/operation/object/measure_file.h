@@ -23,7 +23,7 @@ struct Measure {
     return !section.empty() || !along.empty() || !distance.empty() || !angle.empty() || curvature ||
            !out.empty();
   }
-  /// The same, or the thickness of walls, which voxels have too.
+  /// Whether the mesh kernel's surface or the thickness of walls is needed. Voxels have a thickness, too.
   bool asks_surface() const { return asks_mesh() || thickness; }
 };
 

@@ -43,7 +43,7 @@ bool is_contour_file(const Meshed& asked) {
   return std::filesystem::path(asked.file.name).extension() == ".json";
 }
 
-/// The surface that is made: contours have no other one than theirs.
+/// The kind of surface that is made. Contours can only be tiled.
 std::string surface_of(const Meshed& asked) {
   return is_contour_file(asked) ? "contours" : asked.surface;
 }
@@ -133,7 +133,7 @@ Made of_octree(const FileBench& bench, const Meshed& asked, std::vector<std::str
   const auto& octree = std::get<voxel::Octree>(file.tree);
   if (cubes) return cuberille_of(octree, asked);
   findings.push_back(
-      "surface: the octree knows voxels only as inside or outside, so that the isosurface runs half way "
+      "surface: the octree stores voxels only as inside or outside, so that the isosurface runs half way "
       "between "
       "them in steps and its area is too large, on a ball by 9 %: a grey or partial octree has a smooth one");
   return convert::isosurface(octree.universe(), octree);

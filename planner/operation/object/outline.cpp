@@ -54,7 +54,7 @@ void check(const Outline& outline, const FieldLocation& place) {
   check_output_path(outline.out, {".json"}, place.at("path"));
 }
 
-/// Cuts by planes across a view, and where the object may lie along it.
+/// The cuts of an object by planes across a view, and the range of positions in which the object may lie.
 struct Cutter {
   std::function<PlaneContours(const ViewPlane& plane)> cut;
   double low_mm = std::numeric_limits<double>::infinity(), high_mm = -low_mm;
@@ -114,7 +114,7 @@ Cutter cutter_of(const Outline& outline, const FileBench& bench, const voxel::Vi
   return cutter;
 }
 
-/// Multiples of the distance, so that stacks of several objects lie in common planes.
+/// The multiples of the distance in the range, so that stacks of several objects lie in common planes.
 std::vector<double> positions_of(const Outline& outline, const Cutter& cutter) {
   if (!outline.at_mm.empty()) {
     std::vector<double> positions = outline.at_mm;
@@ -134,7 +134,7 @@ std::vector<double> positions_of(const Outline& outline, const Cutter& cutter) {
   return positions;
 }
 
-/// The slices with contours, and an empty one at either end, where the object ends.
+/// The slices with contours, and an empty slice beyond either end, where the object ends.
 voxel::SliceMask cut_in(const Outline& outline, const Cutter& cutter, const voxel::View& view) {
   voxel::SliceMask mask;
   mask.view = view;
@@ -226,7 +226,7 @@ Operation outline_operation() {
                  .required()
                  .called("out"))
       .verb_takes(
-          field("window", &Outline::window, "Of samples: LOW:HIGH or LOW: in their unit, or a tissue."))
+          field("window", &Outline::window, "For samples: LOW:HIGH or LOW: in their unit, or a tissue."))
       .reads_scans()
       .example(
           R"({"id": "lines", "do": "outline", "object": "skull", "view": "left", "every_mm": 5, "path": "skull.json"})")

@@ -19,8 +19,8 @@ bool is_voxelised(const Object& object);
 /// Digitises a mesh and stores the voxels as the object's.
 void voxelise(const brep::Solid& mesh, const voxel::Universe& universe, VoxelSide& made);
 
-/// Whether an object is known by whole voxels only, without samples or shapes that place its surface between
-/// their centres.
+/// Whether only an object's whole voxels are available, without samples or shapes that place its surface
+/// between their centres.
 bool is_whole_voxels(const VoxelSide& side);
 
 /// The planes of a scan's ends. There the ends of mesh and voxels may be half a sample apart, rather than

@@ -35,7 +35,7 @@ void check(const ScanOf& step, const FieldLocation& place) {
   check_expression(step.expression, place.at("expression"));
 }
 
-/// In words: "MR samples in no known unit", "labels".
+/// The kind of a scan's samples in words: "MR samples in no known unit", "labels".
 std::string kind_of(const voxel::Scene& scene) {
   if (scene.meaning == voxel::Meaning::Label) return "labels";
   const std::string samples = scene.modality.empty() ? "samples" : scene.modality + " samples";

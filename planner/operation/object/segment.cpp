@@ -450,7 +450,7 @@ voxel::Octree on_own_samples(const Segment& segment, const SegmentSource& source
   const voxel::Lattice& lattice = source.scene.lattice;
   if (made.base)
     return voxel::chosen_samples(lattice, Segmenter(segment, source).base(), *made.base, made.octree);
-  // Only its voxels define where a grown object ends.
+  // A grown object has no base: only its voxels define where it ends.
   return voxel::chosen_samples(lattice, voxel::Octree::empty(source.universe),
                                voxel::Octree::empty(made.octree.universe()), made.octree);
 }

@@ -42,7 +42,7 @@ struct Segment {
   double bridge_mm = 5.0;
   std::vector<glm::dvec3> agreed_mm = {};  ///< as BridgeDecisions
   voxel::FeatureClasses classes = {};      ///< computed where `clusters` is given
-  // Of the verb, which makes an object for each window and octree.
+  // Options of the verb, which makes an object for each window and octree.
   std::vector<std::string> windows, objects;
   std::filesystem::path out, contours;
   std::optional<double> voxel_mm;

@@ -303,7 +303,7 @@ FileAnswer segment_file(const Segment& given, const FileBench& bench) {
   outputs.commit();
   if (!names.empty())
     for (std::string& finding : write_label_table(asked.out, names)) findings.push_back(std::move(finding));
-  // Those of the octree or label map stand first.
+  // The names of the octree or label map come first.
   std::vector<std::string> all;
   for (const Json& finding : answer.json.value("findings", Json::array())) all.push_back(finding);
   all.insert(all.end(), findings.begin(), findings.end());

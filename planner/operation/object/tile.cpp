@@ -68,7 +68,7 @@ voxel::SliceMask drawn_in(const Tile& tile, const std::filesystem::path& folder,
   return mask;
 }
 
-/// The contours that no object has: those that cross themselves or each other.
+/// Refuses contours that bound no area of an object: those that cross themselves or each other.
 void need_uncrossed(const Tile& tile, const FieldLocation& place) {
   for (std::size_t i = 0; i < tile.contours.size(); ++i) {
     const FieldLocation at = place.at("contours[" + std::to_string(i) + "]");
@@ -175,15 +175,15 @@ Operation tile_operation() {
                 "In place of contours: a .json of regions on slices, as the operation contours writes it, or "
                 "a DICOM structure set.")
               .a_file())
-      .takes(
-          field("structure", &Tile::structure, "Of a structure set: the name or ROI number of the structure.")
-              .read_if<Tile>([](const Tile& tile) { return tile.has_file(); },
-                             "is about a structure set: add the set as 'slices'"))
+      .takes(field("structure", &Tile::structure,
+                   "For a structure set: the name or ROI number of the structure.")
+                 .read_if<Tile>([](const Tile& tile) { return tile.has_file(); },
+                                "is about a structure set: add the set as 'slices'"))
       .takes(
           field(
               "between", &Tile::between,
-              "Between two slices: shape_based interpolates the distances to both outlines; nearest goes on "
-              "straight, half way from each.")
+              "Between two slices: shape_based interpolates the distances to both outlines; nearest extends "
+              "either outline unchanged to half way.")
               .one_of({"shape_based", "nearest"})
               .read_if<Tile>([](const Tile& tile) { return !tile.has_file(); },
                              "is the file's: leave it out"))

@@ -24,7 +24,7 @@ std::vector<brep::Section> sections_of(const voxel::SliceMask& mask) {
   for (const voxel::SliceMask::Slice& slice : mask.slices) {
     sections.push_back({slice.position_mm, {}});
     for (const auto& polygon : slice.polygons_mm) {
-      // A point twice in a row makes no side.
+      // Two equal points in a row would make a side without length.
       brep::Contour contour;
       for (const glm::dvec2& p : polygon)
         if (contour.points_mm.empty() || contour.points_mm.back() != p) contour.points_mm.push_back(p);
@@ -47,7 +47,7 @@ TiledSlices tiled_slices(const voxel::SliceMask& mask, std::optional<brep::TileC
   brep::TiledBetween tiled = brep::tile_between(sections_of(mask), between, cost);
   for (glm::dvec3& p : tiled.surface.points_mm)
     p = p.x * mask.view.right + p.y * mask.view.up + p.z * mask.view.look;
-  // (right, up, look) is left-handed, as right = look x up.
+  // (right, up, look) is left-handed, because right = look x up. So triangles are reversed.
   for (auto& face : tiled.surface.faces) std::swap(face[1], face[2]);
   const brep::Proof proof = tiled.is_apart ? brep::Proof::Health : brep::Proof::Rounded;
   return {brep::trusted_solid(std::move(tiled.surface), proof), tiled.sections};

@@ -10,8 +10,8 @@
 #include "verify/witness/reading.h"
 #include "voxel/solid/slice_mask.h"
 
-// The volume that regions on parallel slices enclose, as the mesh kernel and the witness have it. Both follow the
-// rule of voxel::SliceMask between slices.
+// The volume that regions on parallel slices enclose, as a mesh and as a witness. Both follow the rule of
+// voxel::SliceMask between slices.
 namespace octotomy::planner {
 
 /// The largest distance of the sections that tiles join, mm.
@@ -31,12 +31,13 @@ TiledSlices tiled_slices(const voxel::SliceMask& mask,
                          std::optional<brep::TileCost> cost = brep::TileCost::shortest_span,
                          std::stop_token stop = {});
 
-/// The witness of both kernels' answers, which decides by itself what the regions enclose.
+/// The witness against which both kernels' answers are compared. It computes by itself what the regions
+/// enclose.
 verify::Witness witness_of(const voxel::SliceMask& mask);
 
-/// How far straight tiles leave the interpolated surface on the mean: (1 + 1/4) step^2 / (8 r), where r is the
-/// radius of a circle with the contours' ratio of area to length, and at most half a step. None where slices are
-/// not interpolated. Of the drawn contours, not of the answers.
+/// The mean distance by which straight tiles leave the interpolated surface: (1 + 1/4) step^2 / (8 r), where
+/// r is the radius of a circle with the contours' ratio of area to length, and at most half a step. None if
+/// slices are not interpolated. Computed from the drawn contours, so that it does not depend on the answers.
 double tiles_apart_mm(const voxel::SliceMask& mask);
 
 /// The planes of flat faces across the slices, and of sides of polygons of 5 mm or more, that are parallel to the

@@ -43,9 +43,9 @@ std::vector<glm::dvec2> curve_through(const std::vector<glm::dvec2>& points_mm) 
   return curve;
 }
 
-/// Whether a point beside the curve's point `i`, half a width off it, is beyond a bend's centre: nearer to
-/// another point of the curve. Points further along the curve than half the width keep a hundredth more away, so
-/// that the two sides of a bend do not cross.
+/// Whether a point half a width beside the curve's point `i` lies beyond the centre of a bend: it is nearer
+/// to another point of the curve. Points farther along the curve than half the width must be a hundredth
+/// farther away, so that the two sides of a bend do not cross.
 bool is_beyond_bend(const std::vector<glm::dvec2>& curve, std::size_t i, const glm::dvec2& p_mm,
                     double half_mm) {
   constexpr double rounding = 1e-6;
@@ -57,8 +57,8 @@ bool is_beyond_bend(const std::vector<glm::dvec2>& curve, std::size_t i, const g
   return false;
 }
 
-/// Adds the points between the ends of a half disc's arc that begins on the curve's left, or for the curve's
-/// first point on its right.
+/// Adds the inner points of a half disc's arc, which begins on the curve's left or, for the curve's first
+/// point, on its right.
 void add_arc(const glm::dvec2& middle_mm, const glm::dvec2& from, std::vector<glm::dvec2>& outline_mm) {
   constexpr int sides = 24;
   for (int i = 1; i < sides; ++i) {

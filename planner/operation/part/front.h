@@ -12,23 +12,24 @@
 
 namespace octotomy::planner {
 
-/// Where a line of sight first meets a bone.
+/// The first point of a bone on a line of sight.
 struct Seen {
   double depth_mm = 0.0;   ///< p . look
   glm::dvec3 normal{0.0};  ///< of the triangle, unit, LPS
   std::uint32_t face = 0;  ///< of the bone's triangles
 };
 
-/// The side of a bone that is seen along a frame's look, within a box of the view.
+/// The part of a bone's surface that is visible along a frame's look, within a box of the view.
 class Front {
  public:
   /// `low` and `high` are corners of the box in the frame's millimetres (u, v).
   Front() = default;
   Front(const brep::Solid& bone, const ArchFrame& frame, const glm::dvec2& low, const glm::dvec2& high);
 
-  /// None where the line of sight through a place of the view meets no bone.
+  /// The first point of the bone on the line of sight through a position of the view; none if the line meets
+  /// no bone.
   std::optional<Seen> first(const glm::dvec2& p_mm) const;
-  /// The least p . look of the bone's points within the box; none where there are none.
+  /// The least p . look of the bone's points within the box; none if there are none.
   const std::optional<double>& foremost_mm() const { return foremost_mm_; }
 
  private:

@@ -40,7 +40,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// A sleeve about a screw's axis, which a drill passes.
+/// A sleeve around a screw's axis, through which a drill passes.
 struct Sleeve {
   ScrewAxis axis;
   glm::dvec3 outer_mm{0.0};  ///< the middle of its outer end
@@ -75,10 +75,10 @@ struct Guide {
   double sleeve_radius_mm() const { return hole_radius_mm() + sleeve_wall_mm; }
 };
 
-/// Cells of the mesh's level sets. Triangles lie within a 16th of a cell of each of the two: together an eighth of a
-/// millimetre at worst, below a printer's error of 0.16 mm, and a third of that on the mean.
+/// Cell size of the mesh's level sets. Triangles of each of the two lie within a 16th of a cell: together
+/// within an eighth of a millimetre, below a printer's error of 0.16 mm, and a third of that on average.
 constexpr double guide_cell_mm = 1.0;
-/// Room about the region beyond what the guide needs.
+/// Margin around the region beyond what the guide needs.
 constexpr double room_mm = 1.0;
 /// How far rods and holes extend below the bone's surface, because a screw's point may lie slightly off it.
 constexpr double below_mm = 5.0;
@@ -114,7 +114,7 @@ void check(const Guide& guide, const FieldLocation& place) {
   }
 }
 
-/// Sleeves, each within the region and beside all slots.
+/// The sleeves; each must lie within the region and beside all slots.
 std::vector<Sleeve> sleeves_of(const Guide& guide, const SettleBench& bench) {
   std::vector<Sleeve> sleeves;
   for (const ObjectName& name : guide.screws) {
@@ -189,7 +189,7 @@ std::string definition(const Guide& guide, const Objects&) {
          " slots, " + std::to_string(guide.sleeves.size()) + " sleeves";
 }
 
-/// The motion that brings what lies behind the bone to what lies behind a slot's outer rim.
+/// The motion from behind the bone to behind a slot's outer rim, along the saw's direction.
 glm::dmat4 to_rim(const Guide& guide, const SawSlot& slot) {
   return glm::translate(glm::dmat4(1.0), -guide.slot_depth_mm * slot.goes_in);
 }
@@ -198,7 +198,7 @@ voxel::Expression rod_of(const glm::dvec3& from_mm, const glm::dvec3& to_mm, dou
   return voxel::Expression(voxel::Cylinder{from_mm, to_mm, radius_mm});
 }
 
-/// How far beyond a sleeve's outer end and below the bone a drill's hole goes.
+/// The length by which a drill's hole extends beyond a sleeve's outer end and below the bone.
 double beyond_mm(const Guide& guide) {
   return guide.clearance_mm + guide.thickness_mm + guide.sleeve_height_mm + room_mm;
 }
@@ -251,7 +251,7 @@ void triangles(const Guide& guide, const MeshBench& bench, MeshSide& made) {
     const Stopwatch part(bench.timings, stage);
     return work();
   };
-  // The shadow of the grown bone is the bone's shadow grown, and that has fewer triangles.
+  // The shadow of the grown bone equals the grown shadow of the bone, which has fewer triangles.
   const brep::Level taken{
       timed("guide_shadow",
             [&] {

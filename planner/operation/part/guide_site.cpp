@@ -14,14 +14,15 @@
 namespace octotomy::planner {
 namespace {
 
-/// How far off the bone points may be: landmarks are placed by hand.
+/// The largest distance of points from the bone, because landmarks are placed by hand.
 constexpr double off_bone_mm = 3.0;
-/// A point deeper than this behind what is seen is hidden.
+/// A point deeper than this behind the visible bone is hidden.
 constexpr double hidden_mm = 3.0;
-/// A guide's way may turn by at most this from a view, and from the normal of the bone on which it sits.
+/// The largest angle between a guide's insertion direction and its view, and between that direction and the
+/// normal of the bone on which the guide sits.
 constexpr double most_turned_deg = 60.0;
 constexpr double grid_mm = 1.0;
-/// A second bone counts from this share of the region on.
+/// The least share of the region from which a second bone counts.
 constexpr double second_share = 0.05;
 
 voxel::View head_view(const std::string& text, const SettleBench& bench) {
@@ -34,7 +35,7 @@ double turned_deg(const glm::dvec3& a, const glm::dvec3& b) {
   return glm::degrees(std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)));
 }
 
-/// The way in which the guide is put on.
+/// The direction in which the guide is put on.
 glm::dvec3 way_of(const SiteAsked& asked, const SettleBench& bench) {
   const voxel::View side = head_view(asked.side, bench);
   const glm::dvec3 along = asked.direction ? glm::normalize(*asked.direction) : side.look;
@@ -53,7 +54,7 @@ glm::dvec3 way_of(const SiteAsked& asked, const SettleBench& bench) {
   return along;
 }
 
-/// A frame that looks along a direction, its up as near to the head's as can be.
+/// A frame that looks along a direction; its up is as close as possible to the head's.
 ArchFrame frame_along(const glm::dvec3& look, const glm::dmat3& lps_from_head) {
   ArchFrame frame;
   frame.look = look;
@@ -93,7 +94,7 @@ ViewBox box_of(const std::vector<glm::dvec2>& outline_mm, double margin_mm = 0.0
   return box;
 }
 
-/// Outlines of the region and of the bone that counts, in the base's frame.
+/// Computes the outlines of the region and of the bone that counts, in the base's frame.
 void draw_outlines(const SiteAsked& asked, const SettleBench& bench, GuideSite& site) {
   ArchFrame& frame = site.base.frame;
   if (asked.drawn) {
@@ -162,7 +163,7 @@ void need_points_seen(const SiteAsked& asked, const brep::Solid& bone,
   }
 }
 
-/// What is seen of the region: its foremost bone, its pieces and its mean normal.
+/// The visible part of the region: its foremost bone, its pieces and its mean normal.
 struct SeenRegion {
   double foremost_mm = std::numeric_limits<double>::infinity();
   std::vector<std::pair<double, Seen>> all;  ///< each with its depth
@@ -201,7 +202,8 @@ void need_one_bone(const SiteAsked& asked, const SeenRegion& region,
 }
 
 void need_facing(const SiteAsked& asked, const SeenRegion& region, const GuideSite& site) {
-  // Each line of sight stands for an area that grows with the slant, so that this is the mean over the area.
+  // A line of sight represents an area that grows with the slant of the surface, so normals are weighted to
+  // give the mean over the area.
   constexpr double least_slant = 0.05;
   glm::dvec3 sum(0.0);
   for (const auto& [depth_mm, seen] : region.all)

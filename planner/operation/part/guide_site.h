@@ -43,13 +43,13 @@ struct GuideSite {
   brep::BooleanResult bone;   ///< its mesh
   Front front;                ///< of the bone about the region
 
-  /// The bone that is seen at a place of the base's view, within the reach.
+  /// The visible bone at a position of the base's view, within the reach.
   std::optional<glm::dvec3> bone_at(const glm::dvec2& p_mm) const;
 };
 
-/// Settles where a part sits. Throws std::runtime_error in a sentence that says what to change: points off
-/// the bone, on two bones or hidden behind bone, a region on two bones or drawn from another side, a direction
-/// along the bone's sides or from another side.
+/// Computes where a part sits. Throws std::runtime_error, which names the remedy, if points lie off the bone,
+/// on two bones or hidden behind bone; if the region lies on two bones or was drawn from another side; or if
+/// the direction runs along the bone's sides or comes from another side.
 GuideSite guide_site(const SiteAsked& asked, const SettleBench& bench);
 
 }  // namespace octotomy::planner

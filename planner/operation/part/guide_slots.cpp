@@ -28,9 +28,9 @@ namespace octotomy::planner {
 namespace {
 
 constexpr double step_mm = 0.5;
-/// Up to this angle between two directions they count as one.
+/// Two directions count as one if the angle between them is at most this.
 constexpr double most_apart_deg = 45.0;
-/// A saw may go in at up to this angle to the way in which the guide is put on.
+/// The largest angle between a saw's direction and the direction in which the guide is put on.
 constexpr double most_oblique_deg = 60.0;
 constexpr double least_opening_mm = 2.0;
 constexpr double on_other_cut_mm = 1.0;
@@ -55,7 +55,7 @@ double length_of(const Line& line) {
   return length_mm;
 }
 
-/// The piece of a line between two lengths along it.
+/// The part of a line between two lengths along it.
 Line piece_of(const Line& line, double from_mm, double to_mm) {
   Line piece;
   double before_mm = 0.0;
@@ -74,7 +74,7 @@ Line piece_of(const Line& line, double from_mm, double to_mm) {
   return piece;
 }
 
-/// A line with its last edge made longer.
+/// A line whose last edge is made longer.
 Line longer(Line line, double by_mm) {
   const std::size_t last = line.size() - 1;
   line[last] += by_mm * glm::normalize(line[last] - line[last - 1]);
@@ -85,7 +85,7 @@ bool is_in(const SlotsAsked& asked, const glm::dvec2& p_mm) {
   return voxel::contains({asked.base.outline_mm}, p_mm);
 }
 
-/// Where a saw that goes through a point meets the bone of the region.
+/// The point at which a saw through a point meets the bone of the region.
 CutSample met_along(const glm::dvec3& p_mm, const glm::dvec3& direction, const SlotsAsked& asked) {
   const ArchFrame& frame = asked.base.frame;
   const double sinks = glm::dot(direction, frame.look);
@@ -119,8 +119,8 @@ std::vector<CutSample> along_line(const Line& line, const glm::dvec3& direction,
   return samples;
 }
 
-/// Of a line that runs into the bone and is swept across: where its surface meets the bone, for each place of
-/// the sweep.
+/// For a line that runs into the bone and is swept across: the points at which its surface meets the bone,
+/// one for each position of the sweep.
 std::vector<CutSample> along_sweep(const Line& line, const glm::dvec3& sweep, double from_mm, double to_mm,
                                    const SlotsAsked& asked) {
   const glm::dvec3& look = asked.base.frame.look;
@@ -153,7 +153,7 @@ std::vector<CutSample> along_sweep(const Line& line, const glm::dvec3& sweep, do
   return samples;
 }
 
-/// The longest run of samples that are not beside the region, from bone to bone; empty if there is none.
+/// The longest run of samples within the region, from bone to bone; empty if there is none.
 std::vector<CutSample> longest_run(const std::vector<CutSample>& samples) {
   std::vector<CutSample> best, run;
   const auto close = [&] {
@@ -171,7 +171,7 @@ std::vector<CutSample> longest_run(const std::vector<CutSample>& samples) {
   return best;
 }
 
-/// The lengths between which a slot opens, and its walls.
+/// The lengths between which a slot is open, and its walls.
 struct SlotEnds {
   double from_mm, to_mm, walls_from_mm, walls_to_mm;
 };
@@ -189,7 +189,7 @@ std::optional<SlotEnds> ends_of(const std::vector<CutSample>& run, const SlotsAs
   return ends;
 }
 
-/// A blade from before the bone to behind it.
+/// A blade that extends from before the bone to behind it.
 Blade blade_through(Line line, const glm::dvec3& direction, const std::vector<CutSample>& run,
                     const SlotsAsked& asked) {
   double low_mm = std::numeric_limits<double>::infinity(), high_mm = -low_mm;
@@ -203,7 +203,7 @@ Blade blade_through(Line line, const glm::dvec3& direction, const std::vector<Cu
   return {std::move(line), direction, high_mm + asked.margin_mm - low_mm};
 }
 
-/// What a sampled cut gives: a slot, or how long it meets the bone of the region.
+/// The result of a sampled cut: a slot, or the length along which the cut meets the bone of the region.
 struct SlotFound {
   std::optional<SawSlot> slot;
   double met_mm = 0.0;
@@ -241,7 +241,7 @@ SlotFound slot_along_sweep(const Line& line, const glm::dvec3& sweep, const std:
   const std::optional<SlotEnds> ends = ends_of(found.run, asked);
   if (!ends) return found;
   const auto swept = [&](double from_mm, double to_mm) {
-    // The first edge goes on outward, past all that the guide has in front of the bone.
+    // Moves the end of the first edge outward, beyond the guide's front.
     Line points(line.rbegin(), line.rend());
     points = longer(points, 2.0 * asked.margin_mm);
     for (glm::dvec3& p_mm : points) p_mm += sweep * (from_mm - glm::dot(p_mm, sweep));
@@ -256,7 +256,8 @@ SlotFound slot_along_sweep(const Line& line, const glm::dvec3& sweep, const std:
   return found;
 }
 
-/// Whether a point lies within the regions, or on their border: drawn in two views, a cut is a border of both.
+/// Whether a point lies within the regions or on their border. A cut drawn in two views lies on the borders
+/// of both regions.
 bool is_within(const voxel::RegionMask& regions, const glm::dvec3& p_mm) {
   constexpr double border_mm = 0.1;
   if (regions.regions.empty() || voxel::contains(regions, p_mm)) return true;
@@ -269,13 +270,14 @@ bool is_within(const voxel::RegionMask& regions, const glm::dvec3& p_mm) {
   return false;
 }
 
-/// Samples whose bone lies in no other region of the mask are no cut.
+/// Removes samples whose bone lies in no other region of the mask, because nothing is cut there.
 void leave_out_beside(const voxel::RegionMask& others, std::vector<CutSample>& samples) {
   for (CutSample& sample : samples)
     if (sample.on == On::Bone && !is_within(others, sample.bone_mm)) sample.on = On::Beside;
 }
 
-/// The stretches of a closed polygon that run into the bone, from its front, as the guide is put on.
+/// The parts of a closed polygon that run into the bone from its front, as seen along the direction in which
+/// the guide is put on.
 std::vector<Line> stretches_inward(const Line& polygon, const glm::dvec3& along) {
   const std::size_t count = polygon.size();
   const double least = std::cos(glm::radians(most_oblique_deg));
@@ -297,7 +299,7 @@ std::vector<Line> stretches_inward(const Line& polygon, const glm::dvec3& along)
   return found;
 }
 
-/// Whether a slot lies where another one is already, as where a box is drawn in two views.
+/// Whether another slot already lies at the same place, as happens when a box is drawn in two views.
 bool is_double(const SlotFound& found, const std::vector<SawSlot>& slots) {
   for (const SawSlot& slot : slots) {
     std::size_t on = 0, of = 0;
@@ -350,7 +352,8 @@ std::vector<SawSlot> slots_of_mask(const Mask& mask, const glm::dmat3& lps_from_
         if (!is_across) {
           const glm::dvec3 direction = off_deg < 90.0 ? view.look : -view.look;
           Line closed = polygon;
-          // A run does not go over the line's ends, so these are taken beside the region.
+          // A run does not continue across the line's ends, so the ends are moved to samples beside the
+          // region.
           const auto beside = std::find_if(closed.begin(), closed.end(), [&](const glm::dvec3& p_mm) {
             return met_along(p_mm, direction, asked).on == On::Beside;
           });

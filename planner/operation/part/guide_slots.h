@@ -13,7 +13,7 @@
 // The slots of a guide, from the cuts of a plan.
 namespace octotomy::planner {
 
-/// A line of straight pieces swept along a direction, as a saw's blade, for each kernel.
+/// A polyline swept along a direction, like a saw's blade, in a form for each kernel.
 struct Blade {
   std::vector<glm::dvec3> line_mm;  ///< LPS; all points have one p . direction
   glm::dvec3 direction{0, 1, 0};    ///< unit
@@ -24,7 +24,7 @@ struct Blade {
   voxel::RegionMask sides(double width_mm) const;
 };
 
-/// A slot through a guide: what the saw passes, and what guides it.
+/// A slot through a guide: the opening for the saw, and the walls that lead the saw.
 struct SawSlot {
   std::string cut;              ///< the step whose cut it is
   glm::dvec3 goes_in{0, 1, 0};  ///< unit: in which the saw enters the bone
@@ -45,8 +45,8 @@ struct SlotsAsked {
   double margin_mm = 20.0;    ///< how far openings reach before and behind the bone
 };
 
-/// The slots of a saw step or a mask. Throws std::runtime_error, in a sentence that names the step: it is no
-/// cut, the saw goes in from another side, the cut misses the region.
+/// The slots of a saw step or a mask. Throws std::runtime_error, which names the step, if it is no cut, if
+/// the saw enters from another side, or if the cut misses the region.
 std::vector<SawSlot> slots_of(const std::string& cut, const SlotsAsked& asked, const SettleBench& bench);
 
 }  // namespace octotomy::planner

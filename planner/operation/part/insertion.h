@@ -21,12 +21,12 @@ struct Insertion {
 /// Refuses a direction and a view together, neither of them, a direction without length, and an unknown
 /// view.
 void check(const Insertion& insertion, const FieldLocation& place);
-/// A unit vector, LPS.
+/// The insertion direction as a unit vector, LPS.
 glm::dvec3 direction_of(const Insertion& insertion, const glm::dmat3& lps_from_head);
-/// The first direction, then rings about it a step apart up to `within_deg`, their directions about a step
-/// apart. Precondition: a unit vector.
+/// The first direction, then rings of directions around it, a step apart, up to `within_deg`; the directions
+/// on a ring are about a step apart. Precondition: a unit vector.
 std::vector<glm::dvec3> directions_about(const glm::dvec3& first, double within_deg, double step_deg);
-/// "(0, 1, 0)", "the view from anterior".
+/// The direction for messages: "(0, 1, 0)", "the view from anterior".
 std::string in_words(const Insertion& insertion);
 
 /// The fields "direction" and "seen_from" of an operation that holds an insertion.

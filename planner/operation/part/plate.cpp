@@ -56,7 +56,7 @@ struct Plate {
   std::vector<ObjectName> away_from;
   double least_mm = 1.0;
   double least_wall_mm = 0.8;
-  // Set by settle().
+  // The values that settle() computes.
   GuideSite site;
   Slab ridge;  ///< the band that the rounding makes as wide as the plate
   std::vector<ScrewAxis> axes;
@@ -70,9 +70,9 @@ constexpr double plate_room_mm = 1.0;
 constexpr double steepest_screw_deg = 45.0;
 /// Largest distance of a screw's point from the bone; the point was placed by hand.
 constexpr double screw_off_bone_mm = 3.0;
-/// Cells of the mesh's offsets. Triangles lie within a 16th of their cell, and on the mean within a third of that.
-/// A ball of the bending radius touches all triangles of the patch on which it rests, so that their number
-/// determines the running time.
+/// Cell size of the mesh's offsets. Triangles lie within a 16th of a cell, and within a third of that on
+/// average. A ball of the bending radius touches all triangles of the patch on which it rests, so the number
+/// of triangles determines the running time.
 constexpr double plate_outer_cell_mm = 0.6;
 double grown_cell_mm(const Plate& plate) {
   return plate.bend_radius_mm / 5.0;
@@ -128,7 +128,7 @@ std::vector<ScrewAxis> axes_of(const Plate& plate, const SettleBench& bench) {
       throw std::runtime_error("the screw '" + name.name +
                                "' points more than 45 degrees off the direction in which the plate is put "
                                "on: turn the screw, or choose another 'side'");
-    // Where the axis passes the middle of the plate's wall.
+    // The point where the axis crosses the middle of the plate's wall.
     const glm::dvec3 middle_mm = axis.head_mm - (plate.clearance_mm + 0.5 * plate.thickness_mm) * axis.along;
     const double wall_mm = within_mm(plate.site.base.outline_mm, plate.site.base.frame.project(middle_mm)) -
                            plate.hole_radius_mm(axis);
@@ -225,8 +225,8 @@ std::string definition(const Plate& plate, const Objects&) {
          plate.object.name + " from " + plate.side + ", " + std::to_string(plate.axes.size()) + " holes";
 }
 
-/// Length of a hole to both sides of its screw's head: long enough to pass through the plate where it bridges
-/// a gap.
+/// Half the length of a screw's hole, on either side of the screw's head. It passes through the plate even
+/// where the plate bridges a gap.
 double through_mm(const Plate& plate) {
   return plate.clearance_mm + plate.thickness_mm + plate.bend_radius_mm + plate_room_mm;
 }
@@ -357,7 +357,8 @@ void triangles(const Plate& plate, const MeshBench& bench, MeshSide& made) {
   const brep::Solid behind = brep::shadow(bone, {plate.site.along, plate.site.end_mm, progress}).solid;
   const brep::Solid big = grown(behind, plate.bend_radius_mm + plate.clearance_mm, grown_cell_mm(plate));
   if (big.empty()) throw std::runtime_error("no bone of the mesh lies along the plate");
-  // Shrunk by the radius: what lies at most that deep in `big` is no bone, and its depth states how far off.
+  // Shrinks `big` by the radius. Points that lie at most that deep in `big` are outside the bone, and their
+  // depth determines their distance from it.
   const brep::Level closed{big, -plate.bend_radius_mm};
   // The ridge ends below the bone's surface, deeper than the rounding reaches.
   const brep::LevelBody ridge_body{
@@ -399,8 +400,8 @@ void triangles(const Plate& plate, const MeshBench& bench, MeshSide& made) {
                            {"largest_at_mm", to_json(gap->largest_at_mm)}};
 }
 
-/// The half-widths of the gap: the difference between both kernels plus the noise of surfaces of digitised
-/// samples, a tenth of a voxel.
+/// Computes the half-widths of the gap: the difference between both kernels, plus the noise of digitised
+/// surfaces, a tenth of a voxel.
 void bound_gap(const Plate& plate, const BoundBench& bench, const Object& bone, Object& made) {
   const auto json = made.mesh.details.find("gap");
   if (json == made.mesh.details.end() || !made.voxel.symbol || made.voxel.octree.is_empty() ||

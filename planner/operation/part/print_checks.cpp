@@ -34,13 +34,14 @@ glm::dvec3 middle_of(const brep::Triangles& triangles, std::size_t face) {
   return (triangles.points_mm[a] + triangles.points_mm[b] + triangles.points_mm[c]) / 3.0;
 }
 
-/// The sides of an edge in their triangles: how many go from its lower point to the higher, and back.
+/// How the triangles of an edge run along it: the number from its lower point to the higher, and the number
+/// back.
 struct EdgeUse {
   std::uint32_t low = 0, high = 0, face = 0;
   bool is_upward = false;
 };
 
-/// The middle of the first triangle with an edge for which `is_bad(upward sides, downward sides)`.
+/// The middle of the first edge for which `is_bad(upward sides, downward sides)` is true.
 template <typename IsBad>
 std::optional<glm::dvec3> first_bad_edge(const brep::Triangles& triangles, const IsBad& is_bad) {
   std::vector<EdgeUse> uses;
@@ -65,7 +66,7 @@ std::optional<glm::dvec3> first_bad_edge(const brep::Triangles& triangles, const
   return middle_of(triangles, *first);
 }
 
-/// " (first: (1, 2, 3) mm)", or nothing.
+/// " (first: (1, 2, 3) mm)", or an empty text.
 std::string first_at(const std::optional<glm::dvec3>& at_mm) {
   return at_mm ? " (first at " + place_in_words(*at_mm) + ")" : "";
 }
@@ -149,7 +150,7 @@ Footprint footprint_of(const brep::Triangles& triangles, const PrintLimits& limi
     }
     const glm::dvec3 size_mm = high - low;
     const double share = std::max(size_mm.x / limits.bed_mm.x, size_mm.y / limits.bed_mm.y);
-    // Equal but for rounding: the smaller turn.
+    // Among shares that are equal up to rounding, the smaller turn is kept.
     if (share < best.share * (1.0 - 1e-9)) best = {size_mm, 0.5 * step, share};
   }
   return best;
@@ -170,7 +171,7 @@ PrintCheck bed_check(const brep::Triangles& triangles, const PrintLimits& limits
   made.says = size_in_words(found.size_mm) + " turned by " + plain(found.turned_deg) +
               " degrees, on a bed of " + size_in_words(limits.bed_mm);
   if (is_too_wide || is_too_high) {
-    // The highest point, or the one that is furthest from the middle.
+    // The place to report: the highest point or, if the part is too wide, the point farthest from the middle.
     const auto height = [&](const glm::dvec3& p_mm) { return glm::dot(limits.up, p_mm); };
     glm::dvec3 low = triangles.points_mm.front(), high = low;
     for (const glm::dvec3& p_mm : triangles.points_mm) {
@@ -198,7 +199,7 @@ PrintCheck overhang_check(const brep::Linked& surface, const PrintLimits& limits
   const std::vector<brep::Overhang> found =
       brep::overhangs(surface, {limits.up, limits.overhang_deg, brep::OverhangOptions().resting_mm});
   for (const brep::Overhang& patch : found) {
-    // The layer below carries what is smaller than the smallest wall.
+    // Patches smaller than the smallest wall are carried by the layer below.
     if (patch.area_mm2 < least_mm2) break;
     all_mm2 += patch.area_mm2;
     ++patches;
@@ -215,7 +216,7 @@ PrintCheck overhang_check(const brep::Linked& surface, const PrintLimits& limits
   return made;
 }
 
-/// A face of a shell by its least number, so that the place is the same in every run.
+/// A position on a shell: its face with the least number, so that the position is the same in every run.
 glm::dvec3 place_of(const brep::Triangles& triangles, const brep::Component& piece) {
   return middle_of(triangles, piece.faces.front());
 }
@@ -248,7 +249,7 @@ std::optional<glm::dvec3> first_cavity(const brep::Solid& solid) {
   return std::nullopt;
 }
 
-/// The space around an object's voxels in a box, and why it is not whole.
+/// The free space around an object's voxels in a box, and the reason if it is incomplete.
 struct FreeVoxels {
   std::optional<voxel::Octree> octree;
   std::string lacks;
@@ -302,7 +303,7 @@ PrintCheck cavity_check(const brep::Solid& solid, const voxel::Octree* voxels, d
   return made;
 }
 
-/// The least thickness that both kernels find, below `up_to_mm`.
+/// The least thickness that both kernels measure, below `up_to_mm`.
 struct Thinnest {
   std::optional<double> mesh_mm, voxel_mm;
   std::optional<glm::dvec3> at_mm;
@@ -333,7 +334,7 @@ Thinnest thinnest_of(const brep::Solid& solid, const voxel::Octree* voxels, doub
   return found;
 }
 
-/// The line of a least wall or gap: `thin` is the verdict below the limit, `what` "wall".
+/// The line for the least wall or gap. `thin` is the verdict below the limit; `what` is "wall" or "gap".
 PrintCheck thinnest_check(const Thinnest& found, const std::string& what, double limit_mm, const char* thin,
                           const std::string& remedy, const voxel::Octree* voxels) {
   PrintCheck made{what, passes, "", found.at_mm, {}};
@@ -354,7 +355,7 @@ PrintCheck thinnest_check(const Thinnest& found, const std::string& what, double
     made.says = "there is no " + what + " with two sides that are nearly parallel";
   }
   if (voxels == nullptr || voxels->is_empty()) return made;
-  // Each of two digitised sides may lie half a voxel's diagonal off.
+  // Each of the two digitised sides may be off by half a voxel's diagonal.
   const double error_mm = glm::length(voxels->universe().lattice().spacing_mm());
   made.numbers["voxel_error_mm"] = error_mm;
   if (made.verdict == passes && found.voxel_mm && *found.voxel_mm + error_mm < limit_mm) {
@@ -381,7 +382,7 @@ std::vector<PrintCheck> build_checks(const brep::Linked& surface, const PrintLim
 
 std::vector<PrintCheck> solid_checks(const brep::Solid& solid, const voxel::Octree* voxels,
                                      const PrintLimits& limits, const voxel::Progress& progress) {
-  // The box around a part stands off further than any gap of interest is wide.
+  // The box extends beyond the part by more than the width of any gap that counts.
   const double margin_mm = std::max(4.0 * limits.least_gap_mm, 2.0), up_to_mm = 0.9 * margin_mm;
   std::vector<PrintCheck> made{pieces_check(solid, voxels), cavity_check(solid, voxels, margin_mm)};
   made.push_back(thinnest_check(thinnest_of(solid, voxels, std::numeric_limits<double>::infinity(), progress),

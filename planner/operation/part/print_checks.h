@@ -12,7 +12,7 @@
 #include "voxel/space/progress.h"
 #include "voxel/tree/octree.h"
 
-// Whether a printer can make a part: one line a question, each with its verdict, numbers and place.
+// Checks whether a printer can make a part: one line for each question, with a verdict, numbers and a place.
 namespace octotomy::planner {
 
 /// A printer and its material.
@@ -32,19 +32,21 @@ struct PrintCheck {
   Json numbers = Json::object();
 };
 
-/// Closed, self-crossing and outward: what health() finds, with the place of the first fault.
+/// Whether the surface is closed, free of self-intersection and oriented outward, by health(), with the place
+/// of the first fault.
 std::vector<PrintCheck> health_checks(const brep::Triangles& triangles, const brep::Health& health);
-/// Overhangs and the printer's bed, of any surface that has triangles. Precondition: it can be linked.
+/// Checks overhangs and the size of the printer's bed, for any surface with triangles. Precondition: the
+/// surface can be linked.
 std::vector<PrintCheck> build_checks(const brep::Linked& surface, const PrintLimits& limits);
-/// Pieces, cavities, the smallest wall and the smallest gap of a solid. Voxels, where there are any, answer the
-/// same and turn a PASS into a WARN where they are further apart than voxels can tell. Precondition: the solid
-/// is not empty.
+/// Checks pieces, cavities, the smallest wall and the smallest gap of a solid. If there are voxels, they are
+/// checked as well; a PASS becomes a WARN if the two answers differ by more than voxels can resolve.
+/// Precondition: the solid is not empty.
 std::vector<PrintCheck> solid_checks(const brep::Solid& solid, const voxel::Octree* voxels,
                                      const PrintLimits& limits, const voxel::Progress& progress);
-/// The same four, as not measured, with the reason.
+/// The same four lines as solid_checks(), marked as not measured, with the reason.
 std::vector<PrintCheck> missing_solid_checks(const std::string& why);
 
-/// FAIL before WARN before PASS.
+/// The worst verdict: FAIL before WARN before PASS.
 std::string worst_verdict(const std::vector<PrintCheck>& checks);
 Json to_json(const std::vector<PrintCheck>& checks);
 

@@ -87,8 +87,8 @@ Json measure(const Printable& asked, const AnswerBench& bench) {
           bench.progress("printable")));
 }
 
-/// Edge of the voxels that answer about a file: half of the smallest length that counts, but at most 256
-/// of them a side.
+/// The edge of the voxels for a file: half of the smallest length that counts, but with at most 256 voxels a
+/// side.
 double voxel_mm_of(const Printable& asked, const brep::Solid& solid) {
   const glm::dvec3 size_mm = solid.size().high_mm - solid.size().low_mm;
   return asked.voxel_mm.value_or(std::max(0.5 * std::min(asked.least_wall_mm, asked.least_gap_mm),

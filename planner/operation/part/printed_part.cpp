@@ -14,8 +14,8 @@
 namespace octotomy::planner {
 namespace {
 
-/// How far cuts stand off, as a share of the radius: above the error of either kernel's distances on flat and
-/// gently curved parts.
+/// The distance between cuts and the balls, as a share of the radius. It exceeds the error of either kernel's
+/// distances on flat and gently curved parts.
 constexpr double standing_off = 0.1;
 
 }  // namespace
@@ -23,8 +23,8 @@ constexpr double standing_off = 0.1;
 voxel::Expression rounded(const voxel::Expression& solid, double radius_mm, const VoxelBench& bench) {
   const voxel::Octree octree = bench.combined(solid);
   if (octree.is_empty()) return voxel::Expression(octree);
-  // Distances to edges are overstated by up to 2/3 of a voxel's diagonal: of parts that are few voxels thick,
-  // balls narrower than a voxel would cut off the most.
+  // Distances to edges are overstated by up to 2/3 of a voxel's diagonal. Balls narrower than a voxel would
+  // therefore cut off most of a part that is few voxels thick.
   const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
   if (std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z}) > 2.0 * radius_mm) return solid;
   const voxel::Expression core(
@@ -60,7 +60,8 @@ brep::Solid largest_piece(const brep::Solid& solid, const std::string& part, Mes
 brep::Solid printed(const brep::Solid& solid, const std::string& part, MeshSide& made) {
   const brep::Solid largest = largest_piece(solid, part, made);
   brep::Triangles triangles = largest.triangles();
-  // Thin triangles, where a Boolean's surfaces meet, would cross their neighbours when a file is written.
+  // Thin triangles along the intersection of a Boolean's surfaces would cross their neighbours when a file
+  // rounds them to single precision.
   constexpr int most_rounds = 4;
   for (int round = 0; round < most_rounds; ++round) {
     for (glm::dvec3& p_mm : triangles.points_mm) p_mm = glm::dvec3(glm::vec3(p_mm));
@@ -91,7 +92,8 @@ brep::Solid thick_part(const brep::LevelBody& body, const ThickPart& asked, cons
   }
   {
     const Stopwatch watch(bench.timings, part + "_thin");
-    // Edges that are rounded by the radius are left out by up to 0.73 of it, at corners of a cube.
+    // Edges that are rounded by the radius recede by up to 0.73 of it, at the corners of a cube, and do not
+    // count as thin walls.
     const double thin_mm3 = brep::volume_beyond_mm3(body, whole, radius_mm, 0.5);
     made.details["thin_mm3"] = thin_mm3;
     if (thin_mm3 > 0.0)
@@ -103,7 +105,7 @@ brep::Solid thick_part(const brep::LevelBody& body, const ThickPart& asked, cons
 }
 
 double thick_part_allowance_mm(const ThickPart& asked) {
-  // On the mean over a smooth surface triangles are off by a third of the tolerance.
+  // On average over a smooth surface, triangles are off by a third of the tolerance.
   const double radius_mm = 0.5 * asked.least_wall_mm;
   return 2.0 * brep::offset_tolerance_mm({radius_mm, asked.cell_mm, {}}) / 3.0;
 }

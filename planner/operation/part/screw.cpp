@@ -25,7 +25,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// How far from the bone's surface a screw's point may be typed: landmarks are placed by hand.
+/// The largest distance of a screw's point from the bone's surface, because landmarks are placed by hand.
 constexpr double on_surface_mm = 3.0;
 
 void check(const Screw& screw, const FieldLocation& place) {
@@ -56,7 +56,7 @@ ScrewClear clear_of_object(const Object& object, const brep::Solid& rod, const v
   return clear;
 }
 
-/// The distance of a screw from the walls of a mask, on either side of them, or from the bone that a saw
+/// The distance of a screw from the walls of a mask, on either side of them; or from the bone that a saw
 /// removes.
 ScrewClear clear_of_cut(const Object& object, const Action& maker, const brep::Solid& rod,
                         const voxel::Octree& voxels, const std::filesystem::path& folder) {
@@ -144,7 +144,7 @@ Screw settle(const Screw& asked, const SettleBench& bench) {
   made.tip_mm = made.head_mm + asked.length_mm * glm::normalize(asked.direction);
   bench.details = {
       {"head_mm", to_json(made.head_mm)}, {"tip_mm", to_json(made.tip_mm)}, {"off_surface_mm", off_mm}};
-  // Half of the axis lies in bone, or the screw points out of it.
+  // Samples the axis. If no sample lies in bone, the screw points out of it.
   constexpr int samples = 32;
   int inside = 0;
   for (int i = 0; i < samples; ++i)
@@ -215,7 +215,7 @@ std::string too_near(const std::string& screw, const ScrewClear& clear, double l
 brep::Solid rod(const glm::dvec3& from_mm, const glm::dvec3& to_mm, double radius_mm) {
   constexpr int sides = 48;
   const double turn = 2.0 * glm::pi<double>() / sides;
-  // A polygon with the disc's area.
+  // The corners of a polygon with the same area as the disc.
   const double corner_mm = radius_mm * std::sqrt(turn / std::sin(turn));
   brep::Prism prism;
   prism.look = glm::normalize(to_mm - from_mm);
@@ -252,7 +252,7 @@ std::optional<double> hole_off_mm(const brep::Solid& solid, const ScrewAxis& axi
   constexpr double near_mm = 0.05;  // the corners of the hole's prism and their rounding
   const glm::dvec3 aside = std::abs(axis.along.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
   const glm::dvec3 u = glm::normalize(glm::cross(axis.along, aside)), v = glm::cross(axis.along, u);
-  // u^2 + v^2 = 2 a u + 2 b v + c, summed over the points.
+  // A circle u^2 + v^2 = 2 a u + 2 b v + c is fitted; the sums run over all points.
   glm::dmat3 sums(0.0);
   glm::dvec3 right(0.0);
   int count = 0;

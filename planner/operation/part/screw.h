@@ -10,8 +10,8 @@
 #include "planner/operation/table/bench.h"
 #include "planner/operation/table/field.h"
 
-// Screws as objects of a plan: guides drill their holes before the cut, plates have their holes where the
-// plan's motions bring them.
+// Screws as objects of a plan. Guides have holes for them before the cut; plates have holes where the plan's
+// motions carry the screws.
 namespace octotomy::planner {
 
 struct Screw {
@@ -25,7 +25,7 @@ struct Screw {
   glm::dvec3 head_mm{0.0}, tip_mm{0.0};
 };
 
-/// A screw's axis at the place to which the plan's motions carried it.
+/// A screw's axis in its position after the plan's motions.
 struct ScrewAxis {
   std::string screw;    ///< the name of the object
   std::string sits_in;  ///< the bone or piece of the plan

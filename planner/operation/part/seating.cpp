@@ -27,7 +27,7 @@ struct Seating {
   double tolerance_mm = 0.12;
 };
 
-/// Depths of the mesh are good to this.
+/// The accuracy of the mesh's depths.
 constexpr double resolution_mm = 0.01;
 
 void check(const Seating& seating, const FieldLocation& place) {
@@ -110,7 +110,7 @@ Json measure(const Seating& asked, const AnswerBench& bench) {
   for (const ObjectName& name : asked.against) is_lacking = lacks(bench.objects.at(name.name)) || is_lacking;
   if (is_lacking) return json;
 
-  // Each digitised surface may lie half a voxel's diagonal off.
+  // Each digitised surface may be off by half a voxel's diagonal.
   const double voxel_error_mm = glm::length(bench.universe.lattice().spacing_mm());
   json["voxel_error_mm"] = voxel_error_mm;
   double deepest_mm = 0.0;

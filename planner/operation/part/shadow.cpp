@@ -40,7 +40,8 @@ void check(const Shadow& shadow, const FieldLocation& place) {
   check(shadow.insertion, place);
 }
 
-/// The object within the universe, of which both kernels make the shadow. Precondition: it has a mesh.
+/// The object within the universe. Both kernels compute the shadow of this part. Precondition: the object has
+/// a mesh.
 const brep::Solid& solid_within(const Object& object) {
   return object.mesh.within ? *object.mesh.within : *object.mesh.whole;
 }
@@ -69,16 +70,16 @@ std::string definition(const Shadow& shadow, const Objects&) {
   return "shadow of " + shadow.object.name + " along " + in_words(shadow.insertion);
 }
 
-/// Edge of the cells in which the mesh kernel looks for points as deep as the tolerance: a quarter of it, but
-/// not below about 1/200 of the solid's extent.
+/// The edge of the cells in which the mesh kernel searches for points as deep as the tolerance: a quarter of
+/// the tolerance, but not below about 1/200 of the solid's extent.
 double cell_mm(const brep::Solid& solid, double tolerance_mm) {
   const glm::dvec3 extent = solid.size().high_mm - solid.size().low_mm;
   return std::max(0.25 * tolerance_mm, std::max({extent.x, extent.y, extent.z}) / 200.0);
 }
 
-/// The part of a shadow within the universe, whose border also ends its voxels. A plane across an oblique
-/// direction always reaches beyond the universe; the part beyond it does not count as lost. A verb that
-/// works on meshes alone has no universe.
+/// The part of a shadow within the universe, at whose border the voxels of the shadow end too. The plane at
+/// the end of an oblique shadow always extends beyond the universe; this part does not count as lost. A verb
+/// that works on meshes alone has no universe.
 brep::BooleanResult cut_at_universe(const brep::Solid& shadow, bool has_voxels, const MeshBench& bench) {
   const glm::dvec3 &low = bench.low_mm, &high = bench.high_mm;
   if (!has_voxels || shadow.empty() ||
@@ -118,7 +119,7 @@ void voxels(const Shadow& shadow, const VoxelBench& bench, VoxelSide& made) {
     const Stopwatch watch(bench.timings, "shadow_voxel");
     return voxel::shadow(octree, solid, {shadow.along, shadow.end_mm, bench.progress});
   }();
-  // The end is the mesh's. The voxels' own may be off by less than a voxel's diagonal.
+  // The end is taken from the mesh. That of the voxels may be off by less than a voxel's diagonal.
   const double apart_mm =
       std::abs(found.far_end_mm + shadow.tolerance_mm.value_or(0.0) + shadow.beyond_mm - shadow.end_mm);
   if (apart_mm > glm::length(bench.universe.lattice().spacing_mm()))
@@ -171,7 +172,7 @@ void bound(const Shadow& shadow, const BoundBench& bench, Object& made) {
         made.mesh.whole->measures().area_mm2);
     made.bound.reshaped = {shadow.object.name};
   }
-  // The outline of whole voxels stands out by up to half an edge.
+  // The outline of whole voxels is too wide by up to half an edge.
   const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
   if (is_whole_voxels(object.voxel))
     made.bound.measured_apart_mm += 0.5 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});

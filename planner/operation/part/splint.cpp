@@ -55,13 +55,13 @@ struct Splint {
   SplintJaw jaws[2];  ///< upper, lower
 };
 
-/// How far around the band, and above and below it, a jaw counts.
+/// The size of the space around the band in which a jaw counts: beside the band, and above and below it.
 constexpr double margin_mm = 3.0, reach_mm = 12.0;
-/// Found directions are tilted from the arch's normal by at most this, in steps.
+/// Searched directions are tilted from the arch's normal by at most this, in these steps.
 constexpr double search_deg = 20.0, search_step_deg = 10.0;
-/// Beyond this angle from the arch's normal a direction runs along the teeth's sides.
+/// If the angle to the arch's normal is larger than this, a direction runs along the teeth's sides.
 constexpr double steepest_deg = 60.0;
-/// Cells of the mesh's offsets of teeth; flat parts lie within a 16th of it.
+/// Cell size of the mesh's offsets of teeth. Flat parts lie within a 16th of it.
 constexpr double fit_cell_mm = 0.5;
 
 const ObjectName& name_of(const Splint& splint, int jaw) {
@@ -73,7 +73,7 @@ void check(const Splint& splint, const FieldLocation& place) {
     place.at("lower").refuse("is the upper jaw itself: name the object with the lower teeth");
 }
 
-/// Throws where the points do not all lie on one jaw.
+/// Throws if the points do not all lie on one jaw.
 void need_one_jaw(const std::vector<glm::dvec3>& points_mm, const Splint& splint, const SettleBench& bench) {
   constexpr double on_mm = 3.0;  // landmarks are placed by hand
   std::vector<double> to[2];
@@ -97,8 +97,8 @@ void need_one_jaw(const std::vector<glm::dvec3>& points_mm, const Splint& splint
   }
 }
 
-/// The tips of a jaw's teeth in the band: the least p . look of the upper jaw there, the largest of the lower.
-/// The column is the band, as far up and down as jaws count.
+/// The tips of a jaw's teeth in the band: the least p . look of the upper jaw, the largest of the lower jaw.
+/// `column` is the band, extended up and down as far as jaws count.
 double tip_of(const brep::Solid& jaw, const Slab& column, double sign, const std::string& name,
               const SettleBench& bench) {
   const brep::Solid teeth =
@@ -106,7 +106,7 @@ double tip_of(const brep::Solid& jaw, const Slab& column, double sign, const std
   double tip_mm = std::numeric_limits<double>::infinity();
   for (const glm::dvec3& p_mm : teeth.triangles().points_mm)
     tip_mm = std::min(tip_mm, sign * glm::dot(p_mm, column.frame.look));
-  // A jaw that goes on beyond the column has its tips nowhere in it.
+  // A jaw that continues beyond the column has no tips in it.
   constexpr double cut_mm = 1e-3;
   if (!(std::abs(sign * tip_mm - column.frame.height_mm) < reach_mm - cut_mm))
     throw std::runtime_error("'" + name + "' has no tips of teeth within " + three_figures(reach_mm) +
@@ -115,7 +115,7 @@ double tip_of(const brep::Solid& jaw, const Slab& column, double sign, const std
   return sign * tip_mm;
 }
 
-/// The direction along which the least of the teeth within the slab is undercut.
+/// The direction along which the teeth within the slab have the least undercut.
 glm::dvec3 found_direction(const Object& object, const Slab& slab, double sign, const SettleBench& bench,
                            nlohmann::ordered_json& details) {
   const glm::dvec3 first = sign * slab.frame.look;
@@ -187,7 +187,7 @@ Splint settle(const Splint& asked, const SettleBench& bench) {
     } else {
       of.along = found_direction(bench.objects.at(name_of(asked, jaw).name), slab, sign, bench, details);
     }
-    // The jaw counts a little beyond the slab, where no cut of it comes near.
+    // The jaw counts slightly beyond the slab, so that its cut stays away from the splint.
     (jaw == 0 ? of.near.high_mm : of.near.low_mm) =
         jaw == 0 ? slab.high_mm + margin_mm : slab.low_mm - margin_mm;
     of.end_mm = std::max(of.near.far_end_mm(of.along), slab.far_end_mm(of.along)) + margin_mm;
@@ -209,14 +209,14 @@ std::string definition(const Splint& splint, const Objects&) {
          plain(splint.offset_mm) + " mm off the teeth";
 }
 
-/// How far the surface that casts the shadow lies off the teeth. The teeth themselves cast it where that is
-/// less than flat parts of the mesh's offsets are good to.
+/// The distance between the teeth and the surface that casts the shadow. The teeth themselves cast it if that
+/// distance is below the accuracy of the mesh's offsets on flat parts.
 double shadow_by_mm(const Splint& splint) {
   const double by_mm = splint.offset_mm - splint.tolerance_mm;
   return std::abs(by_mm) < fit_cell_mm / 16.0 ? 0.0 : by_mm;
 }
 
-/// The voxels of a jaw that a splint needs free.
+/// The voxels that must stay free of splint because of a jaw.
 voxel::Expression taken_by(const Splint& splint, int jaw, const VoxelBench& bench) {
   const VoxelSide& object = bench.object(name_of(splint, jaw).name);
   const voxel::Expression near = splint.jaws[jaw].near.expression();
@@ -252,7 +252,7 @@ void voxels(const Splint& splint, const VoxelBench& bench, VoxelSide& made) {
   keep_largest(rounded(whole, 0.5 * splint.thickness_mm, bench), bench, made);
 }
 
-/// The same of a jaw's mesh.
+/// The levels that must stay free of splint because of a jaw, for the mesh kernel.
 std::vector<brep::Level> taken_by(const Splint& splint, int jaw, const MeshBench& bench, MeshSide& made) {
   const brep::Progress progress{bench.progress.stop, bench.progress.report};
   const brep::BooleanResult near =
@@ -264,7 +264,7 @@ std::vector<brep::Level> taken_by(const Splint& splint, int jaw, const MeshBench
     return brep::shadow(casts, {splint.jaws[jaw].along, splint.jaws[jaw].end_mm, progress}).solid;
   };
   std::vector<brep::Level> taken{{near.solid, splint.offset_mm}};
-  // The shadow of the grown teeth is the teeth's shadow grown; that of shrunk ones is no such thing.
+  // The shadow of grown teeth equals the grown shadow of the teeth. For shrunk teeth that does not hold.
   if (const double by_mm = shadow_by_mm(splint); by_mm >= 0.0) {
     taken.push_back({shadow_of(near.solid), by_mm});
   } else if (const brep::Solid casts = brep::offset(near.solid, {by_mm, fit_cell_mm, progress});

@@ -9,7 +9,7 @@ namespace octotomy::planner {
 
 /// The sRGB colour, 0..1, that #RRGGBB names; none where the text is anything else.
 std::optional<glm::vec3> colour_of_text(const std::string& text);
-/// The same; throws std::runtime_error with an example where the text is anything else.
+/// As colour_of_text(), but throws std::runtime_error with an example if the text is no colour.
 glm::vec3 need_colour(const std::string& text);
 /// #rrggbb.
 std::string text_of_colour(const glm::vec3& colour);

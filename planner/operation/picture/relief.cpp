@@ -57,7 +57,7 @@ Heights heights_of(const voxel::Picture& picture, int cells, Relief& relief) {
   std::set<float> levels;
   for (int y = 0; y < heights.corners.y; ++y)
     for (int x = 0; x < heights.corners.x; ++x) {
-      // The pixel that a corner of the grid stands for.
+      // The pixel whose depth a corner of the grid has.
       const glm::ivec2 pixel(glm::dvec2(x + 0.5, y + 0.5) * heights.cell_px);
       const float depth =
           picture.depth_mm[static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(picture.size_px.x) +

@@ -242,7 +242,7 @@ RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> d
 /// Checks the grammar and the names of an expression of a plan's objects.
 void check_expression(const Render& render, const FieldLocation& place) {
   try {
-    // Only the grammar and the names matter, so any object stands for each name.
+    // Only the grammar and the names matter, so every name is bound to one arbitrary object.
     voxel::parse_expression(render.expression, {[&](std::string_view name) -> voxel::Expression {
                                                   place.need_object(std::string(name));
                                                   return voxel::Sphere{};

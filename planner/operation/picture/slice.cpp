@@ -285,7 +285,7 @@ Json draw_outlines(const Slice& slice, const std::vector<Outlined>& objects, con
   return list;
 }
 
-/// From (column, row, 0, 1) to LPS; none for a curve.
+/// Maps (column, row, 0, 1) to LPS; none for a curve.
 std::optional<glm::dmat4> lps_from_pixel(const CutSheet& cut) {
   if (!cut.position_mm) return std::nullopt;
   const voxel::Sheet& sheet = cut.sheet;

@@ -55,7 +55,7 @@ struct Records {
   std::function<void*(const std::string& name)> add;      ///< the name matters to ByName only
 };
 
-/// Where a field's value lies in an operation. The alternative is the field's type.
+/// A pointer to a field's value in an operation. The alternative is the field's type.
 using Slot = std::variant<
     bool*, int*, double*, std::string*, std::filesystem::path*, glm::dvec3*, ObjectName*, ScanName*, Site*,
     std::optional<double>*, std::optional<int>*, std::optional<std::string>*, std::optional<glm::dvec3>*,

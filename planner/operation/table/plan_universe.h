@@ -16,7 +16,7 @@ namespace octotomy::planner {
 /// more memory than is free.
 voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> voxel_mm);
 
-/// The same for a scan. The samples of a label map are cells; `are_labels` declares a label map whose file
+/// The universe of a scan. The samples of a label map are cells; `are_labels` declares a label map whose file
 /// does not state it. Then borders of voxels lie on those of the first cell: otherwise all voxels with their
 /// centre on a border between two cells would be assigned to the same side.
 voxel::Universe universe_of(const voxel::Scene& scan, std::optional<double> voxel_mm,

@@ -31,7 +31,7 @@ class Scope {
   void bind(const std::string& where, const std::string& id, const Operation& operation);
   /// Throws std::runtime_error, with the nearest existing name, if no earlier step makes this object.
   void need_object(const std::string& where, const std::string& name) const;
-  /// The same for a scan of the document.
+  /// As need_object(), for a scan of the document.
   void need_scan(const std::string& where, const std::string& name) const;
   /// Records that a step writes a path. Throws std::runtime_error if an earlier step writes it.
   void take_path(const std::string& where, const std::string& path);

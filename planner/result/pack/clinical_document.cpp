@@ -21,7 +21,7 @@ std::string in_base64(std::string_view bytes) {
   return base64({bytes.begin(), bytes.end()});
 }
 
-/// The bytes that a hexadecimal text spells.
+/// The bytes that a hexadecimal text represents.
 std::string bytes_of_hex(const std::string& hex) {
   std::string bytes;
   for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
@@ -29,7 +29,7 @@ std::string bytes_of_hex(const std::string& hex) {
   return bytes;
 }
 
-/// Base64 in groups of four, without breaks; none if a symbol is another.
+/// Decodes Base64 in groups of four symbols without line breaks; none if there is any other symbol.
 std::optional<std::string> from_base64_text(std::string_view text) {
   constexpr std::string_view symbols = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   if (text.size() % 4 != 0) return std::nullopt;
@@ -50,7 +50,7 @@ std::optional<std::string> from_base64_text(std::string_view text) {
   return bytes;
 }
 
-/// A text of the source as XML's, in UTF-8; empty if it is absent or of an unknown character set.
+/// An attribute of the source as XML text in UTF-8; empty if it is absent or its character set is unknown.
 std::string text_of(const voxel::DicomSource& source, voxel::DicomTag tag) {
   const auto found = source.attributes.find(tag);
   if (found == source.attributes.end()) return "";
@@ -63,7 +63,7 @@ std::string text_of(const voxel::DicomSource& source, voxel::DicomTag tag) {
   return escaped(text);
 }
 
-/// <family> and <given> of a name's alphabetic group.
+/// The elements <family> and <given> for the alphabetic group of a name.
 std::string names_in_cda(const std::string& name) {
   const std::string group = name.substr(0, name.find('='));
   const std::size_t caret = group.find('^');

@@ -5,8 +5,8 @@
 
 namespace octotomy::planner {
 
-/// Versions of the libraries that the program computes, reads and writes with, by their names. Shared libraries
-/// state the version that is loaded, the others that of the build.
+/// The versions of the libraries that the program uses, by their names. For shared libraries, the version
+/// that is loaded; for others, that of the build.
 nlohmann::ordered_json library_versions();
 
 }  // namespace octotomy::planner

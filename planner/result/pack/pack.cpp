@@ -80,7 +80,7 @@ void add_folder(Listed& archive, const fs::path& folder) {
     archive.add("result/" + path.lexically_relative(folder).generic_string(), voxel::file_bytes(path));
 }
 
-/// The scan that an object is a window of; nullptr for other objects.
+/// The scan of which an object is a window; nullptr for other objects.
 const voxel::Scene* scan_of_window(const Result& result, const Object& object) {
   if (object.kind != "window") return nullptr;
   const auto step = std::ranges::find(result.plan.steps, object.id, &Step::id);

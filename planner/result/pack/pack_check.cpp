@@ -33,7 +33,7 @@ Json parsed(const std::filesystem::path& path, const std::string& name, const st
   return json;
 }
 
-/// Entries with their sums. Throws Json::exception if the manifest lacks them.
+/// The SHA-256 of each entry. Throws Json::exception if the manifest lacks them.
 std::map<std::string, std::string> sums_of(const Json& manifest) {
   std::map<std::string, std::string> sums;
   for (const Json& file : manifest.at("files"))
@@ -65,7 +65,7 @@ PackContents read_entries(const std::filesystem::path& path, const brep::ZipArch
   return pack;
 }
 
-/// The name of a list's element in `where`: its id or object, else its position.
+/// A list element's label in `where`: its id or object, else its position.
 std::string name_of(const Json& element, std::size_t position) {
   for (const char* key : {"id", "object", "name", "operation"})
     if (element.is_object() && element.contains(key) && element[key].is_string())
@@ -73,7 +73,7 @@ std::string name_of(const Json& element, std::size_t position) {
   return std::to_string(position);
 }
 
-/// All values, keyed by their place.
+/// Collects all values, keyed by their position in the JSON.
 void flatten(const Json& json, const std::string& where, std::map<std::string, std::string>& values) {
   const auto below = [&where](const std::string& name) {
     return where.empty() ? name : where + " / " + name;
@@ -92,7 +92,8 @@ void flatten(const Json& json, const std::string& where, std::map<std::string, s
   }
 }
 
-/// The values that a replay need not share: the folders of files, and the version that wrote them.
+/// The result without values that may differ in a replay: the folders of files, and the version that wrote
+/// them.
 Json comparable(Json result) {
   result.erase("octotomy");
   if (result.contains("scans"))

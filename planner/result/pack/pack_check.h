@@ -18,7 +18,7 @@ struct PackContents {
 /// is missing or does not have the stated SHA-256, or if it was written in a later format.
 PackContents read_pack(const std::filesystem::path& path);
 
-/// A value that two results do not share.
+/// A value that differs between two results.
 struct DifferentValue {
   std::string where;             ///< "objects / maxilla / voxel / volume_mm3"
   std::string packed, replayed;  ///< as JSON; empty: the result has no such value

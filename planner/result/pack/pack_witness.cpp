@@ -15,7 +15,7 @@ namespace {
 
 using Rows = std::vector<std::int32_t>;
 
-/// z, y, x, x behind the end of each run of voxels.
+/// For each run of voxels a row: z, y and x of its first voxel, and x behind its last.
 Rows runs_of(const voxel::Octree& octree) {
   Rows runs;
   voxel::SliceBits slice;
@@ -47,13 +47,13 @@ struct CellSamples {
   std::array<double, 8> samples{};
 };
 
-/// None where the cell is not wholly within the scan.
+/// None if the cell is not completely within the scan.
 std::optional<CellSamples> cell_at(const voxel::Scene& scene, const glm::dvec3& centre_mm) {
   const glm::dvec3 at = scene.lattice.voxel(centre_mm);
   const glm::ivec3 dims = scene.lattice.dims;
   CellSamples found;
   for (int axis = 0; axis < 3; ++axis) {
-    // A position on the last sample belongs to the last cell.
+    // A position on the last sample is assigned to the last cell.
     if (!(at[axis] >= 0.0 && at[axis] <= dims[axis] - 1.0) || dims[axis] < 2) return std::nullopt;
     found.cell[axis] = std::min(static_cast<int>(at[axis]), dims[axis] - 2);
   }
@@ -69,8 +69,8 @@ std::optional<CellSamples> cell_at(const voxel::Scene& scene, const glm::dvec3& 
   return found;
 }
 
-/// Chooses voxels: for some runs the first voxel and the voxel before it, and the same number anywhere in
-/// the universe.
+/// Chooses voxels: for some runs the first voxel and the voxel before it, and as many others anywhere in the
+/// universe.
 std::vector<glm::ivec3> chosen_voxels(const Rows& runs, int side) {
   std::vector<glm::ivec3> voxels;
   const std::size_t count = runs.size() / 4, quarter = most_samples / 4;
@@ -80,7 +80,7 @@ std::vector<glm::ivec3> chosen_voxels(const Rows& runs, int side) {
     voxels.push_back(first);
     if (first.x > 0) voxels.push_back(first - glm::ivec3(1, 0, 0));
   }
-  // Numbers of a linear congruential generator (Knuth, MMIX): fixed, so that equal plans make equal packs.
+  // A linear congruential generator (Knuth, MMIX) with a fixed seed, so that equal plans make equal packs.
   std::uint64_t state = 1;
   const auto next = [&state, side] {
     state = state * 6364136223846793005U + 1442695040888963407U;
@@ -112,7 +112,7 @@ std::map<std::string, std::string> witness_arrays(const Object& object, const vo
   std::map<std::string, std::string> arrays;
   const Rows runs = runs_of(object.voxel.octree);
   arrays["runs"] = numpy_array(runs, 4);
-  // Of tools, too: the result states the volume and area of their surfaces.
+  // Tools have a surface too: the result states its volume and area.
   if (object.mesh.within) {
     const brep::Triangles& triangles = object.mesh.within->triangles();
     std::vector<double> points;

@@ -11,11 +11,11 @@
 namespace octotomy::planner {
 namespace {
 
-/// MS-DOS's date and time of 1980-01-01, the earliest that a zip archive can state.
+/// The date 1980-01-01 as MS-DOS encodes it, the earliest that a zip archive can state.
 constexpr unsigned long earliest_date = 0x00210000;
-/// Coordinates compress little: higher levels take three times as long for 2 % less.
+/// Coordinates hardly compress: higher levels take three times as long and save 2 %.
 constexpr int level = 3;
-/// minizip accepts lengths of 32 bits.
+/// minizip accepts at most 32 bits of length per call.
 constexpr std::size_t most_at_once = std::size_t{1} << 30;
 
 }  // namespace

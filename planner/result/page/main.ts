@@ -17,7 +17,7 @@ function drawn(page: Page): Child {
   }
 }
 
-// Dark as the system says, on screens; paper is light.
+// On screens, dark or light as the system prefers; light on paper.
 const dark = matchMedia("screen and (prefers-color-scheme: dark)");
 const follow_theme = (): void => {
   document.documentElement.dataset.theme = dark.matches ? "dark" : "light";

@@ -72,7 +72,7 @@ export interface OneWay {
   mean_mm: number; p95_mm: number; max_mm: number; signed_mean_mm: number;
   bands: {tolerance_mm: number; share_within: number}[];
 }
-/// A measurement has the members of its kind; the first of each kind here tells it.
+/// A measurement has the members of its kind. The kind is identified by the first member listed here.
 export interface Measurement {
   id: string; object: string; to: string; finding?: string; findings?: string[];
   volume_mm3?: number; voxel: {area_mm2: Maybe<number>}; mesh: Maybe<{volume_mm3: number}>; area_mm2: Maybe<number>;

@@ -17,7 +17,7 @@ namespace octotomy::planner {
 ///   unsupported: the count of numbers without support or with a contradiction.
 nlohmann::ordered_json credibility_json(const nlohmann::ordered_json& result);
 
-/// The same as a page of HTML.
+/// The credibility report as a page of HTML.
 std::string credibility_html(const nlohmann::ordered_json& credibility);
 
 }  // namespace octotomy::planner

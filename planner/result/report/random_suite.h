@@ -64,7 +64,7 @@ struct RandomSuite {
   std::vector<Disagreement> disagreements;
   std::optional<verify::Contested> worst;  ///< the worst of the bounded tier's objects
 
-  /// Results of substance as a share of all.
+  /// The share of all questions whose results count in `of_substance`.
   double substance() const;
 };
 

@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 using Points = std::vector<glm::dvec3>;
 
 Json numbers(const glm::dvec3& v) {
-  // No negative zeros.
+  // Adding 0.0 turns negative zeros into zeros.
   return {v.x + 0.0, v.y + 0.0, v.z + 0.0};
 }
 
@@ -32,7 +32,7 @@ Json control_point(std::size_t number, const std::string& label, const glm::dvec
           {"positionStatus", "defined"}};
 }
 
-/// `more` are members of the markup's type.
+/// Creates a markup; `more` are the members that its type adds.
 SceneMarkup markup(const std::string& type, const std::string& name, Json points,
                    const Json& more = Json::object()) {
   Json list{{"type", type}, {"coordinateSystem", "LPS"}, {"coordinateUnits", "mm"}, {"labelFormat", "%N-%d"}};
@@ -54,8 +54,8 @@ SceneMarkup markup_of_points(const std::string& type, const std::string& name, c
   return markup(type, name, std::move(points));
 }
 
-/// Slicer reads the control point, the axes of baseToNode and the bounds; center, normal and orientation are for
-/// other readers.
+/// Slicer reads the control point, the axes of baseToNode and the bounds. Centre, normal and orientation are
+/// written for other readers.
 SceneMarkup markup_of_plane(const std::string& name, const MarkupPlane& plane) {
   const glm::dvec3 &x = plane.right, &y = plane.up, &z = plane.normal, &o = plane.origin_mm;
   const glm::dvec2 low = *plane.low_mm, high = *plane.high_mm;
@@ -86,7 +86,7 @@ void add_saw(const std::string& id, const Saw& saw, std::vector<SceneMarkup>& ma
       return p_mm + (entry_mm - glm::dot(p_mm, along)) * along;
     };
     const glm::dvec3 from_mm = at_entry(saw.line_mm[i]), to_mm = at_entry(saw.line_mm[i + 1]);
-    // A piece along the blade cuts nothing by itself.
+    // A piece of the line along the blade's direction cuts nothing by itself.
     if (!(glm::distance(from_mm, to_mm) > 0.0)) continue;
     MarkupPlane plane;
     plane.origin_mm = 0.5 * (from_mm + to_mm) + 0.5 * saw.depth_mm * along;
@@ -122,7 +122,7 @@ void add_sides(const std::string& name, const std::vector<glm::dvec2>& polygon, 
     MarkupPlane plane;
     plane.origin_mm = 0.5 * (a + b);
     plane.right = glm::normalize(b - a);
-    // The view's right x up points at the observer, against `look`.
+    // The cross product of the view's right and up points at the observer, against `look`.
     plane.normal = turn * glm::cross(plane.right, look);
     plane.up = glm::cross(plane.normal, plane.right);
     plane.high_mm = glm::dvec2(0.5 * glm::distance(a, b), reach_mm);
@@ -154,7 +154,7 @@ void add_mask(const std::string& id, const Mask& mask, const Evaluation& evaluat
   }
 }
 
-/// The screws' axes, each at the place of its object.
+/// Adds the axes of the screws, each at the position of its object.
 void add_screws(const Plan& plan, const Evaluation& evaluation, std::vector<SceneMarkup>& made) {
   const auto maker_of = [&](const std::string& name) -> const Action* {
     for (const Step& step : plan.steps)

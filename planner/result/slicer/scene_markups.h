@@ -18,16 +18,16 @@ struct SceneMarkup {
 
 /// The markups of a plan:
 /// - its landmarks, one list;
-/// - of each saw a plane for each piece of its line, the rectangle that the blade sweeps, entering where the plane's
-///   second axis is least; and the line itself where it has several pieces;
-/// - of each mask a closed curve for each polygon, in the plane through the universe's centre across the view, and
-///   where all of a polygon's sides are few enough to be cuts (`most_sides`), a plane for each, with its normal into
-///   the mask;
-/// - of each screw, also of a moved one, a line from its head to its tip.
+/// - for each saw, a plane for each piece of its line: the rectangle that the blade sweeps, entered where the
+///   coordinate along the plane's second axis is least; and the line itself if it has several pieces;
+/// - for each mask, a closed curve for each polygon, in the plane through the universe's centre across the
+///   view; and, if a polygon has at most `most_sides` sides, so that they may be cuts, a plane for each side
+///   with its normal into the mask;
+/// - for each screw, also a moved one, a line from its head to its tip.
 /// Precondition: the plan was evaluated. Throws as the readers of the plan's files do.
 std::vector<SceneMarkup> scene_markups(const Plan& plan, const Evaluation& evaluation);
 
-/// Polygons with more sides were drawn by hand: they are curves alone.
+/// Polygons with more sides were drawn by hand: they get no planes, only a curve.
 inline constexpr std::size_t most_sides = 8;
 
 }  // namespace octotomy::planner

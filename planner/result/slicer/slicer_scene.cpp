@@ -26,7 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Colours that people with any type of colour vision distinguish (Okabe and Ito 2008), repeated.
+/// Colours that people with any type of colour vision can distinguish (Okabe and Ito 2008); they repeat after
+/// the last.
 glm::vec3 colour_of(std::size_t index) {
   constexpr std::array<glm::vec3, 7> colours{{{0.90f, 0.87f, 0.79f},
                                               {0.90f, 0.62f, 0.00f},
@@ -38,7 +39,8 @@ glm::vec3 colour_of(std::size_t index) {
   return colours[index % colours.size()];
 }
 
-/// A file name for an object or scan: letters, digits, '_' and '-' stay. Different names stay different.
+/// File names for objects and scans. Letters, digits, '_' and '-' stay; different names get different file
+/// names.
 class FileNames {
  public:
   std::string of(const std::string& name, const std::string& extension) {
@@ -152,7 +154,7 @@ class SceneFolder {
                 {"curves", Json::array()},     {"lines", Json::array()}};
 };
 
-/// Writes a folder as a zip archive whose entries lie in one folder of the archive's name.
+/// Writes a folder as a zip archive. The entries lie in one folder that has the archive's name.
 void write_bundle(const fs::path& folder, const fs::path& path) {
   std::set<fs::path> files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))

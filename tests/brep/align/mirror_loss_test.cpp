@@ -37,7 +37,7 @@ double spread_of_mm(const Mesh& mesh) {
   return std::sqrt(squares);
 }
 
-/// Without the triangles furthest along a direction that hold a share of the area.
+/// The mesh without the triangles farthest along a direction that make up a share of the area.
 Mesh lost_along(const Mesh& mesh, double share, const glm::dvec3& direction) {
   std::vector<std::pair<double, std::uint32_t>> order;
   double area = 0.0;
@@ -92,7 +92,7 @@ TEST(MirrorLoss, BonesThatLackUpToThirtyPerCentOfOneSideKeepTheirMidPlaneOrAreDo
       const double x = normal(random), y = normal(random), z = normal(random);
       return glm::normalize(glm::dvec3(x, y, z));
     };
-    // At least 45 degrees towards one side.
+    // A direction at least 45 degrees towards one side.
     glm::dvec3 side = direction();
     const double across = glm::dot(side, bone.plane.normal);
     const glm::dvec3 along = glm::normalize(side - across * bone.plane.normal);

@@ -14,7 +14,7 @@
 namespace octotomy::brep {
 namespace {
 
-/// Its own mirror image about x = 0 and about no other plane: a long head with a nose and a lean.
+/// A head that is its own mirror image about x = 0 and about no other plane: long, with a nose, and leaning.
 Triangles head() {
   Triangles t = shapes::sphere({0, 0, 0}, 1, 4);
   for (glm::dvec3& p : t.points_mm) {
@@ -32,7 +32,7 @@ TEST(Mirror, AMirrorImageIsASolidAndTwiceIsTheSame) {
   EXPECT_NEAR(volume_mm3(image), volume_mm3(still), 1e-9 * volume_mm3(still));
   for (const auto v : still.mesh().vertices()) {
     EXPECT_LT((back.mesh().point(v) - still.mesh().point(v)).norm(), 1e-12 * 200);
-    // Half way between lies the plane.
+    // The plane lies half way between a point and its image.
     const auto middle = 0.5 * (image.mesh().point(v) + still.mesh().point(v));
     EXPECT_NEAR(
         glm::dot(glm::dvec3(middle[0], middle[1], middle[2]) - plane.point_mm, glm::normalize(plane.normal)),
@@ -64,8 +64,8 @@ TEST(Mirror, APieceMissingOnOneSideDoesNotPullThePlane) {
   EXPECT_NEAR(glm::dot(-fit.plane.point_mm, fit.plane.normal), 0.0, 0.2);
 }
 
-/// A jaw: a tube along an arch, as thick below as above, so that its two halves are nearly mirror images about
-/// a plane along it, too. Loses a share of its right end.
+/// A jaw: a tube along an arch, equally thick below and above, so that its two halves are nearly mirror
+/// images about a plane along it too. It loses a share of its right end.
 Triangles jaw(double lost) {
   constexpr int along = 120, around = 24;
   Triangles t;

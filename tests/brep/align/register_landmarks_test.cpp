@@ -111,7 +111,7 @@ TEST(RegisterLandmarks, ThreePointsTrustTheFirstThenTheDirectionToTheSecond) {
   EXPECT_LT(largest_difference(register_landmarks(face(), there, MotionModel::three_points).fixed_from_moving,
                                motion),
             1e-12);
-  // The second pair disagrees about its distance only, the third about its place in the plane, the rest in
+  // The second pair is off only in its distance, the third only in its position in the plane, the others in
   // any way: none of that may turn the answer.
   there[1].p_mm += 2.5 * glm::normalize(there[1].p_mm - there[0].p_mm);
   there[2].p_mm += 3.0 * (there[1].p_mm - there[0].p_mm) + 0.5 * (there[2].p_mm - there[0].p_mm);
@@ -120,7 +120,7 @@ TEST(RegisterLandmarks, ThreePointsTrustTheFirstThenTheDirectionToTheSecond) {
   EXPECT_LT(largest_difference(fit.fixed_from_moving, motion), 1e-12);
   EXPECT_LT(fit.residuals_mm[0], 1e-12);
   EXPECT_NEAR(fit.residuals_mm[1], 2.5, 1e-12);
-  // Least squares spreads the same errors over all, the first pair too.
+  // Least squares distributes the same errors over all pairs, including the first.
   EXPECT_GT(register_landmarks(face(), there).residuals_mm[0], 1.0);
 }
 

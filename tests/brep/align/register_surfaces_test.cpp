@@ -44,7 +44,7 @@ Mesh with_noise(Mesh mesh, double sigma_mm, unsigned seed) {
   return mesh;
 }
 
-/// Without the share of its triangles that lie furthest along a direction.
+/// The mesh without the share of its triangles that lie farthest along a direction.
 Mesh without(const Mesh& mesh, double share, const glm::dvec3& direction) {
   std::vector<std::pair<double, std::uint32_t>> order;
   for (const auto f : mesh.faces()) {
@@ -59,7 +59,7 @@ Mesh without(const Mesh& mesh, double share, const glm::dvec3& direction) {
   return part_of(mesh, faces);
 }
 
-/// Of the motion found against the true one: the turn between them, and the largest displacement of a vertex.
+/// The difference between the fitted and the true motion: the turn, and the largest displacement of a vertex.
 struct MotionError {
   double degrees = 0.0, mm = 0.0;
 };
@@ -184,7 +184,7 @@ TEST(RegisterSurfaces, BodiesThatHaveNothingInCommonAreAFailedFit) {
   ASSERT_FALSE(fit.findings.empty());
   EXPECT_TRUE(fit.findings.back().starts_with("FAIL registration: ")) << fit.findings.back();
   EXPECT_NE(fit.findings.back().find("--landmarks"), std::string::npos);
-  // From a start, too, where there is no search to compare with.
+  // The misfit is detected from a given start too, although there is no search to compare with.
   const SurfaceFit started = register_surfaces(mesh_of(other), fixed, {.start = glm::dmat4(1.0)});
   EXPECT_NE(started.trust->verdict, FitVerdict::Right);
   EXPECT_EQ(started.trust->starts, 0U);

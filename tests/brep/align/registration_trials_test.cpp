@@ -85,7 +85,7 @@ double area_mm2(const Mesh& mesh) {
   return area;
 }
 
-/// Without the triangles furthest along a direction that hold a share of the area.
+/// The mesh without the triangles farthest along a direction that make up a share of the area.
 Mesh lacking(const Mesh& mesh, double share, const glm::dvec3& direction) {
   std::vector<std::pair<double, std::uint32_t>> order;
   for (const auto f : mesh.faces()) {
@@ -115,8 +115,8 @@ int asked(const char* name, int otherwise) {
 TEST(RegistrationTrials, WrongMotionsAreToldAndRightOnesNotCalledFailed) {
   OCTOTOMY_NEEDS_DATA("meshes/fran_cut.vtk");
   const std::vector<Body> all = bodies();
-  // Besides the first three: caps of a bumpy ball that fit elsewhere and have no rival (106) or a poor one (286); a
-  // hyoid of which 48 % are left, right but matched by few (202).
+  // The first three, and hard cases: caps of a bumpy ball that fit elsewhere and have no rival
+  // (106) or a poor one (286); a hyoid of which 48 % are left, right but matched by few (202).
   std::vector<int> seeds = {0, 1, 2, 106, 202, 286};
   if (const int count = asked("OCTOTOMY_REGISTRATIONS", 0); count > 0) {
     seeds.resize(static_cast<std::size_t>(count));

@@ -33,7 +33,7 @@ glm::dmat4 any_motion(Random& random, double reach) {
   return glm::rotate(glm::translate(glm::dmat4(1.0), shift), uniform(random, 0, 6.28), glm::normalize(axis));
 }
 
-/// A trunk that forks, each of its sections drawn by wavy contours, tiled by a cost or by overlaying.
+/// A trunk that forks. Its sections are drawn as wavy contours and tiled by a cost or by overlaying.
 Triangles tiled_contours(Random& random) {
   const double waves = 2.0 + static_cast<double>(random() % 4), depth = uniform(random, 0.0, 0.3);
   const double spread = uniform(random, 0.0, 3.5), radius = uniform(random, 1.5, 2.5);
@@ -90,7 +90,7 @@ void expect_closed(const Mesh& mesh, const std::string& what) {
   EXPECT_TRUE(h.closed && h.manifold && h.oriented) << what << ": " << h.findings.front();
 }
 
-/// 60 pairs, or as many as OCTOTOMY_PAIRS says; one alone with OCTOTOMY_PAIR=number.
+/// Tests 60 pairs, or the number in OCTOTOMY_PAIRS; a single pair with OCTOTOMY_PAIR=number.
 TEST(BooleanPairs, VolumesOfRandomPairsAddUp) {
   const char *count_text = std::getenv("OCTOTOMY_PAIRS"), *one_text = std::getenv("OCTOTOMY_PAIR");
   const int count = count_text ? std::atoi(count_text) : 60;
@@ -104,7 +104,7 @@ TEST(BooleanPairs, VolumesOfRandomPairsAddUp) {
     ASSERT_TRUE(results.united && results.intersection && results.a_minus_b && results.b_minus_a) << what;
     ASSERT_TRUE(results.residual) << what;
     EXPECT_LE(*results.residual, 1e-9) << what;
-    // The identities cannot see a part on the wrong side, which these inequalities do.
+    // The identities cannot detect a part on the wrong side; these inequalities can.
     const double of_a = volume_mm3(a), of_b = volume_mm3(b), common = volume_mm3(*results.intersection);
     EXPECT_GE(common, -1e-9) << what;
     EXPECT_LE(common, std::min(of_a, of_b) * (1 + 1e-9)) << what;
@@ -190,7 +190,7 @@ TEST(BooleanPairs, TouchingSolidsComeOutRightInEveryPose) {
         was_shifted |= finding.rfind("shifted", 0) == 0;
         told_of_touching += finding.find("touches itself") != std::string::npos;
       }
-      // Rounded coordinates, or three steps of the remedy over the area of either.
+      // The tolerance for rounded coordinates, or three steps of the remedy over the area of either operand.
       const double tolerance = was_shifted ? 3 * 0x1p-18 * std::sqrt(48.0) * 24 : 1e-11;
       const double of_a = volume_mm3(a), of_b = volume_mm3(b);
       EXPECT_NEAR(volume_mm3(results.intersection.value()), touching.common_mm3, tolerance) << what;
@@ -206,18 +206,19 @@ TEST(BooleanPairs, TouchingSolidsComeOutRightInEveryPose) {
 }
 
 TEST(BooleanPairs, FacesThatCoincideButForRoundingLeaveNoFilmInAnyPose) {
-  // One box on a side of another, with little to roughen its face, and two.
+  // A box on a side of another one, whose face is then divided little; and two such boxes.
   const Triangles cube = shapes::box({0, 0, 0}, {2, 2, 2}), one = shapes::box({2, 0.25, 0.25}, {4, 0.5, 0.5}),
                   two = shapes::together(one, shapes::box({2, 1.25, 1.25}, {4, 1.75, 1.75}));
   for (int i = 0; i < 68; ++i) {
-    // Turned only: a shift's rounding may exceed the last places of where it leads to.
+    // The operands are only turned: the rounding of a shift may exceed the last digits of the shifted
+    // coordinates.
     const glm::dmat4 motion(glm::dmat3(poses().at(static_cast<std::size_t>(i / 2))));
     const Booleans results =
         booleans(moved(solid_of(cube), motion), moved(solid_of(i % 2 ? two : one), motion));
     for (const std::string& finding : results.findings)
       EXPECT_EQ(finding.find("film"), std::string::npos) << i << ": " << finding;
     EXPECT_EQ(results.intersection.value().mesh().n_faces(), 0u) << i;
-    // The parts of `two` are apart: one must not be taken for inside because it all but touches.
+    // The parts of `two` are apart. None may be taken for inside because it almost touches.
     EXPECT_NEAR(volume_mm3(results.united.value()), i % 2 ? 8.625 : 8.125, 1e-12);
   }
 }
@@ -230,7 +231,7 @@ TEST(BooleanPairs, SurfacesARoundingApartEndAndAddUp) {
   const BooleanResult common = boolean(solid_of(exact), Operation::Intersection, solid_of(rounded));
   const double whole = size_of(exact).volume_mm3;
   EXPECT_NEAR(volume_mm3(common.solid), whole, 4 * 0x1p-18 * 42.0 * size_of(exact).area_mm2);
-  // Too few of the results may be manifold for a residual; then that is told.
+  // Too few of the results may be manifold for a residual; then a finding reports it.
   if (common.residual) {
     EXPECT_LE(*common.residual, 1e-9);
   } else {
@@ -243,7 +244,7 @@ struct ReferenceSolid {
   Triangles triangles;
 };
 
-/// The healthy ones of the reference meshes; of each other it is checked that a refusal can name a triangle.
+/// The healthy reference meshes. For every other one, checks that a refusal names a triangle.
 std::vector<ReferenceSolid> reference_solids() {
   std::vector<ReferenceSolid> solids;
   int refused = 0;
@@ -265,7 +266,7 @@ std::vector<ReferenceSolid> reference_solids() {
   return solids;
 }
 
-/// About the origin and of one size, so that all overlap.
+/// The triangles moved to the origin and scaled to one size, so that all overlap.
 Triangles centred(Triangles triangles) {
   const Size size = size_of(triangles);
   const double extent = glm::length(size.high_mm - size.low_mm);

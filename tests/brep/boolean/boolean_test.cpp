@@ -183,8 +183,8 @@ TEST(Boolean, ASharedEdgeIsKeptOnceForEachSheetAndTold) {
 }
 
 TEST(Boolean, TheShiftThatIsToldIsTheShiftThatWasMadeAndAShareOfTheExtent) {
-  // A tunnel whose roof's ridge lies on the top, which is then no manifold. Far from the origin, so that neither
-  // corner stands for the extent.
+  // A tunnel whose roof has its ridge on the top, which makes the result no manifold. It is far from the
+  // origin, so that its extent differs from its coordinates.
   const glm::dvec3 at(100, 200, 300);
   Triangles tunnel;
   for (const double y : {1.0, 3.0})
@@ -215,7 +215,7 @@ TEST(Boolean, TheShiftThatIsToldIsTheShiftThatWasMadeAndAShareOfTheExtent) {
   EXPECT_LT(nearest, 0.05 * glm::length(shift)) << "no corner of a where the finding says it was moved to";
 }
 
-/// A tetrahedron with its tip at a point, its far face about where the way leads.
+/// A tetrahedron with its tip at a point; its far face lies in the direction `way`.
 Triangles tip(const glm::dvec3& at, const glm::dvec3& way) {
   const glm::dvec3 side = glm::normalize(glm::cross(way, glm::dvec3(0.3, 0.5, 0.8)));
   const glm::dvec3 other = glm::normalize(glm::cross(way, side));
@@ -250,7 +250,7 @@ TEST(Boolean, TellsOfTheDifferenceThatItIsInTheCallersOrder) {
 }
 
 TEST(Boolean, OneResultAloneIsVouchedForToo) {
-  // All triangles meet, so that the whole is corefined.
+  // All triangles meet, so that everything is corefined.
   const Solid a = solid_box({-1, -1, -1}, {1, 1, 1});
   const Solid b = moved(a, glm::rotate(glm::dmat4(1.0), 0.6, glm::normalize(glm::dvec3(1, 2, 3))));
   for (const Operation operation : {Operation::Union, Operation::Intersection, Operation::Difference}) {
@@ -261,7 +261,8 @@ TEST(Boolean, OneResultAloneIsVouchedForToo) {
 }
 
 TEST(Boolean, ResultsThatDoNotAddUpAreNotGiven) {
-  // Two balls through each other as one mesh: what is in both counts twice for its volume, once for a result.
+  // Two balls through each other in one mesh: their common part counts twice in the mesh's volume, but once
+  // in a result.
   const Solid twice =
       trusted_solid(shapes::together(shapes::sphere({0, 0, 0}, 3, 3), shapes::sphere({1, 0.5, 0.25}, 3, 3)),
                     Proof::Connection);
@@ -329,7 +330,7 @@ TEST(Boolean, ASharedVertexIsKeptOnceForEachSheetAndTold) {
 }
 
 TEST(Boolean, APieceCutOffAndSlidAlongTheCutUnitesWithItsRest) {
-  // The everyday of osteotomy: both cut faces lie in one plane again.
+  // The usual case in osteotomy: both cut faces lie in one plane again.
   const Solid ball = solid_sphere({0, 0, 0}, 10, 4);
   Prism prism;
   prism.polygons_mm = {{{-20, -20}, {20, -20}, {20, -2.5}, {-20, -2.5}}};
@@ -339,8 +340,8 @@ TEST(Boolean, APieceCutOffAndSlidAlongTheCutUnitesWithItsRest) {
   for (const glm::dvec3& slide : {glm::dvec3(0, -6, 0), glm::dvec3(0.125, 0.25, 0), glm::dvec3(0, 0, 0)}) {
     const Solid piece = moved(*cut.intersection, glm::translate(glm::dmat4(1.0), slide));
     const BooleanResult united = boolean(*cut.a_minus_b, Operation::Union, piece);
-    // Cut points are rounded, so the faces meet to the last place only. Where that leaves them touching in
-    // points, the piece is shifted and it is told: by up to three steps over the area of the cut.
+    // Cut points are rounded, so the faces meet only to the last digit. If they would touch in points, the
+    // piece is shifted by up to three steps over the area of the cut, and a finding states it.
     const bool shifted = told(united.findings).find("shifted: b was moved by") != std::string::npos;
     const double cut_mm2 = std::numbers::pi * (10 * 10 - 2.5 * 2.5);
     const double step_mm = 0x1p-18 * glm::length(glm::dvec3(20, 26, 20));
@@ -368,7 +369,7 @@ TEST(Boolean, StopsWhereAskedTo) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     stop.request_stop();
   });
-  // It may end before that on a quick machine, and then must not once it was asked.
+  // On a fast machine it may end before the stop is requested; afterwards it must not.
   try {
     for (int i = 0; i < 100; ++i) boolean(a, Operation::Union, b, stop.get_token());
     ADD_FAILURE() << "never stopped";

@@ -31,7 +31,7 @@ bool tells_of_a_shift(const std::vector<std::string>& findings) {
   return told(findings).find("shifted: ") != std::string::npos;
 }
 
-/// What the remedy may change: three steps over the area of the operand that was moved.
+/// The volume that the remedy may change: three steps over the area of the operand that was moved.
 double shift_tolerance(const Solid& a, const Solid& b) {
   const Size &p = a.size(), &q = b.size();
   const double extent = glm::length(glm::max(p.high_mm, q.high_mm) - glm::min(p.low_mm, q.low_mm));
@@ -40,8 +40,8 @@ double shift_tolerance(const Solid& a, const Solid& b) {
 
 enum class Way { Plain, AndExact };
 
-/// All results of both orders have the volumes that the common one implies, each asked for alone, all at once
-/// and, if told to, by exact numbers. Returns whether a result was shifted.
+/// Expects that all results in both orders have the volumes that follow from the common one: each computed
+/// alone, all at once and, if requested, with exact numbers. Returns whether a result was shifted.
 bool expect_common(const Solid& a, const Solid& b, double common_mm3, Way way, const std::string& what) {
   bool shifted = false;
   for (const bool swapped : {false, true}) {
@@ -62,7 +62,7 @@ bool expect_common(const Solid& a, const Solid& b, double common_mm3, Way way, c
     expect(united.solid, p_mm3 + q_mm3 - common_mm3, united.findings, "union");
     expect(common.solid, common_mm3, common.findings, "intersection");
     expect(less.solid, p_mm3 - common_mm3, less.findings, "difference");
-    // Where surfaces cross, what either has alone meets in edges, which takes the shift.
+    // If surfaces cross, the differences meet in edges, which requires the shift.
     if (!tells_of_a_shift(less.findings) && !tells_of_a_shift(more.findings)) {
       const BooleanResult either = boolean(less.solid, Operation::Union, more.solid);
       const bool before = shifted;
@@ -84,7 +84,7 @@ bool expect_common(const Solid& a, const Solid& b, double common_mm3, Way way, c
   return shifted;
 }
 
-/// The box, each of its sides cut along one diagonal, the other, or both: as the bits of a number say.
+/// The box. Each of its sides is cut along one diagonal, the other, or both, as the bits of a number choose.
 Triangles cut_box(const glm::dvec3& low, const glm::dvec3& high, std::uint64_t cuts) {
   Triangles t = box(low, high);
   for (std::size_t side = 0; side < 6; ++side, cuts /= 3) {
@@ -131,7 +131,7 @@ TEST(CoincidentShells, ABallInABallOfTheSameCavity) {
 }
 
 TEST(CoincidentShells, BesideAFinerSurfaceThatIsCutElsewhere) {
-  // Few triangles are near the cut: whether the near ones alone will do is not for this to say.
+  // Few triangles are near the cut, so whether the near ones suffice is not tested here.
   const Triangles plug = box({-1, -1, -1}, {1, 1, 1});
   const Solid around = solid_of(together(shapes::sphere({0, 0, 0}, 10, 5), inside_out(plug)));
   const Triangles knife = shapes::sphere({9.9, 3.1, 1.2}, 1.5, 3);
@@ -140,7 +140,7 @@ TEST(CoincidentShells, BesideAFinerSurfaceThatIsCutElsewhere) {
   EXPECT_FALSE(expect_common(around, solid_of(together(plug, knife)), common_mm3, Way::Plain, "knife"));
 }
 
-/// Boxes one within another, of which each operand takes some for its shells: by depth outward and inward.
+/// Boxes inside one another. Each operand uses some of them as shells: outward or inward by their depth.
 struct NestedBox {
   glm::dvec3 low, high;
   int parent;
@@ -153,7 +153,8 @@ const std::vector<NestedBox>& nested_boxes() {
   return boxes;
 }
 
-/// Whether what is within a box and no smaller one is inside the operand that takes the boxes of some bits.
+/// Whether the space inside a box, but outside all smaller ones, is inside the operand that uses the boxes of
+/// some bits.
 bool is_within(int number, unsigned taken) {
   bool inside = false;
   for (; number >= 0; number = nested_boxes()[static_cast<std::size_t>(number)].parent)
@@ -172,7 +173,7 @@ Solid taken_boxes(unsigned taken, std::mt19937_64& random) {
   return solid_of(all);
 }
 
-/// The volume within both operands, box by box less the boxes in it.
+/// The volume inside both operands, computed box by box, without the boxes in it.
 double common_boxes_mm3(unsigned a, unsigned b) {
   double sum = 0.0;
   for (int i = 0; i < static_cast<int>(nested_boxes().size()); ++i) {
@@ -211,7 +212,7 @@ TEST(CoincidentShells, PlugsThatTouchTheirSocketInPart) {
       boolean(solid_of(box({0, 0, 0}, {10, 10, 5})), Operation::Difference, solid_of(plug)).solid;
   EXPECT_NEAR(volume_mm3(half), 500 - 108, 1e-11);
   EXPECT_FALSE(expect_common(half, solid_of(plug), 0, Way::AndExact, "half a socket"));
-  // The plug reaches out of its cavity into the wall.
+  // The plug extends from its cavity into the wall.
   EXPECT_FALSE(expect_common(around, solid_of(box({2, 2, 2}, {8, 8, 9})), 36, Way::AndExact, "too long"));
   EXPECT_FALSE(expect_common(around, solid_of(box({3, 3, 2}, {7, 7, 7})), 0, Way::AndExact, "on the floor"));
   EXPECT_FALSE(expect_common(around, solid_of(box({2, 2, 2}, {5, 8, 8})), 0, Way::AndExact, "half a plug"));

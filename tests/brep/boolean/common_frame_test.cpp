@@ -25,7 +25,7 @@ glm::dmat4 pose(int seed) {
   return glm::rotate(glm::translate(glm::dmat4(1.0), to), angle(random), axis);
 }
 
-/// Turned point by point, and rounded as files of floats are where that is asked for.
+/// A surface turned point by point; rounded to single precision, as in files, if requested.
 Solid turned(Triangles surface, const glm::dmat4& pose, bool as_floats = false) {
   for (glm::dvec3& p : surface.points_mm) {
     p = glm::dvec3(pose * glm::dvec4(p, 1.0));

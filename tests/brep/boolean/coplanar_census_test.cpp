@@ -61,7 +61,7 @@ Pair of_boxes(const Box& a, const Box& b) {
           common.volume_mm3()};
 }
 
-/// On planes of few whole numbers, so that faces of both share planes.
+/// A box whose planes have few whole numbers, so that faces of two boxes share planes.
 Box box_on_planes(Random& random) {
   Box box;
   for (int k = 0; k < 3; ++k) {
@@ -89,7 +89,7 @@ Pair nearly_flush_boxes(Random& random) {
   return of_boxes(a, b);
 }
 
-/// On a face, an edge or a corner.
+/// The boxes touch on a face, an edge or a corner.
 Pair touching_boxes(Random& random) {
   const Box a = box_on_planes(random);
   Box b = box_on_planes(random);
@@ -207,7 +207,7 @@ Pair flush_prisms(Random& random) {
                    {5.0 * b_low, 5.0 * whole(random, b_low + 1, 4)});
 }
 
-/// The same prism beside itself by 1e-3 to 1e-14 of its size.
+/// The same prism twice, shifted by 1e-3 to 1e-14 of its size.
 Pair nearly_identical_prisms(Random& random) {
   const Polygon a = regular(random);
   Polygon b = a;
@@ -316,8 +316,8 @@ Solid bone() {
   return solid_of(surface);
 }
 
-/// What a box or a prism cuts out of a bone, with the bone itself. The piece is no answer under test: it is an
-/// operand, and its volume is the truth for all three operations.
+/// A bone, and the piece that a box or a prism cuts out of it. The piece is an operand here and not an answer
+/// under test, and its volume is the truth for all three operations.
 Pair bone_and_piece(Random& random) {
   static const Solid whole_bone = bone();
   const Polygon base = regular(random);
@@ -356,7 +356,7 @@ glm::dmat4 any_pose(Random& random) {
   return glm::rotate(glm::translate(glm::dmat4(1.0), shift), uniform(random, 0.1, 6.2), glm::normalize(axis));
 }
 
-/// What the findings allow: each such sentence ends in "changes a volume by at most X mm3".
+/// The volume error that the findings allow: each such sentence ends in "changes a volume by at most X mm3".
 double stated_mm3(const std::vector<std::string>& findings) {
   double stated = 0.0;
   for (const std::string& finding : findings) {
@@ -427,7 +427,7 @@ void append(std::ofstream& out, const Triangles& surface) {
     for (const std::uint32_t corner : face) put(corner);
 }
 
-/// Manifold's volumes of all questions; none where it refuses.
+/// Manifold's volumes for all questions; none if it refuses.
 std::vector<std::optional<double>> manifold_volumes(const std::filesystem::path& questions) {
   const std::string command = "node '" OCTOTOMY_SOURCE_DIR "/tests/brep/boolean/manifold_volumes.mjs' '" +
                               manifold_folder().string() + "' '" + questions.string() + "'";
@@ -440,7 +440,7 @@ std::vector<std::optional<double>> manifold_volumes(const std::filesystem::path&
   return volumes;
 }
 
-/// 66 Booleans, or as many as OCTOTOMY_COPLANAR says; one alone with OCTOTOMY_COPLANAR_ONE=number.
+/// Tests 66 Booleans, or the number in OCTOTOMY_COPLANAR; a single one with OCTOTOMY_COPLANAR_ONE=number.
 TEST(CoplanarCensus, VolumesAreRightOrTheErrorIsStatedInEveryPose) {
   const char *count_text = std::getenv("OCTOTOMY_COPLANAR"), *one = std::getenv("OCTOTOMY_COPLANAR_ONE");
   const int first = one ? std::atoi(one) : 0;

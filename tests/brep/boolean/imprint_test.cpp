@@ -51,7 +51,7 @@ TEST(Imprint, APieceOfABallHasTheBallsTrianglesInAnyPose) {
   EXPECT_LT(both->moved_mm, 1e-12);
   EXPECT_NEAR(volume_mm3(both->a), volume_mm3(ball), 1e-8);
   EXPECT_NEAR(volume_mm3(both->b), volume_mm3(piece), 1e-8);
-  // All but the triangles of the cut.
+  // The common triangles are all but those of the cut.
   EXPECT_GT(common_count(both->a, both->b), b.triangles().faces.size() * 3 / 4);
   const BooleanResult rest = boolean(a, Operation::Difference, b);
   EXPECT_NEAR(volume_mm3(rest.solid), volume_mm3(ball) - volume_mm3(piece), 1e-8);

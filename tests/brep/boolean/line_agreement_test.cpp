@@ -85,7 +85,7 @@ TEST(LineAgreement, HoldsInAnyPoseFarFromTheOriginAndForFilms) {
     EXPECT_FALSE(disagreement(a, b, of_union, placed(whole_cube()))) << pose;
     const std::optional<LineDisagreement> found = disagreement(a, b, of_intersection, b);
     EXPECT_TRUE(found && found->length_mm > 5.99) << pose;
-    // The inner cube's points a last place off: what is wrong is thinner than rounding.
+    // The inner cube's points are off by the last digit, so the wrong region is thinner than rounding.
     Triangles off_by_rounding = b;
     for (glm::dvec3& p : off_by_rounding.points_mm)
       p = glm::dvec3(std::nextafter(p.x, 0.0), std::nextafter(p.y, 1e9), p.z);

@@ -31,7 +31,7 @@ TEST(NearBoolean, HasTheVolumesOfWholeCorefinementAndIsSolid) {
 }
 
 TEST(NearBoolean, PartsThatNothingTouchesAreToldByTheRayAlone) {
-  // One ball cuts, one is swallowed, one is far off.
+  // One ball is cut, one is completely inside, one is far away.
   const Triangles a =
       shapes::together(shapes::together(shapes::sphere({0, 0, 0}, 5, 4), shapes::sphere({30, 0, 0}, 2, 2)),
                        shapes::sphere({0.5, 40, 0}, 1, 2));
@@ -40,7 +40,7 @@ TEST(NearBoolean, PartsThatNothingTouchesAreToldByTheRayAlone) {
   ASSERT_EQ(sewn.obstacle, "");
   const double a_mm3 = size_of(a).volume_mm3, b_mm3 = size_of(b).volume_mm3;
   EXPECT_NEAR(*sewn.volumes_mm3[of_union] + *sewn.volumes_mm3[of_intersection], a_mm3 + b_mm3, 1e-10);
-  // The small ball at x = 30 is wholly in common.
+  // The small ball at x = 30 lies completely in the common part.
   EXPECT_GT(*sewn.volumes_mm3[of_intersection], size_of(shapes::sphere({30, 0, 0}, 2, 2)).volume_mm3 + 1.0);
   EXPECT_TRUE(health(*sewn.results[of_b_minus_a]).solid());
 }

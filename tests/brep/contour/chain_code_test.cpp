@@ -44,7 +44,7 @@ TEST(ChainCode, ComesBackWithinHalfASampleAndCodesTheSameAgain) {
 TEST(ChainCode, LengthsAreRightOnTheAverageOfDirections) {
   const double length = chain_length(chain_code(circle(200, 4000), {1, 1}));
   EXPECT_NEAR(length, 2 * pi * 200, 0.01 * 2 * pi * 200);
-  // The naive 1 and sqrt 2 overstate it by five per cent.
+  // The naive weights 1 and sqrt 2 overstate the length by five per cent.
   double naive = 0.0;
   for (const std::uint8_t step : chain_code(circle(200, 4000), {1, 1}).steps)
     naive += step % 2 == 0 ? 1.0 : std::sqrt(2.0);

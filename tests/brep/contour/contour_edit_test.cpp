@@ -64,7 +64,7 @@ TEST(ContourEdit, CrossingsAreFoundExactlyAndCornersAreNone) {
   EXPECT_FALSE(first_crossing(point_moved(touching, 3, {2, std::numeric_limits<double>::denorm_min()})));
 }
 
-/// By its definition over all pairs, for points on whole numbers.
+/// The first crossing by its definition over all pairs, for points on whole numbers.
 std::optional<std::pair<std::size_t, std::size_t>> plainly_first_crossing(const Contour& contour) {
   const auto& p = contour.points_mm;
   const std::size_t count = contour.closed || p.empty() ? p.size() : p.size() - 1;

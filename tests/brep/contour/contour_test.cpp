@@ -60,7 +60,8 @@ bool meet(const std::vector<Contour>& contours) {
     for (const Piece& t : pieces) {
       if (s.contour == t.contour && (s.k == t.k || (s.k + 1) % s.count == t.k || (t.k + 1) % t.count == s.k))
         continue;
-      // Pieces of one line, apart from each other, have no area anywhere: their boxes tell.
+      // Pieces of one line that are apart have no area in either test; their boxes show that they do not
+      // meet.
       if (glm::any(glm::lessThan(glm::max(s.a, s.b), glm::min(t.a, t.b))) ||
           glm::any(glm::lessThan(glm::max(t.a, t.b), glm::min(s.a, s.b))))
         continue;
@@ -140,7 +141,7 @@ TEST(Contour, NoiseWithSamplesExactlyAtTheThresholdGivesContoursThatNeverMeet) {
     const auto found = follow(noise.slice, {});
     contours += found.size();
     EXPECT_FALSE(meet(found)) << "seed " << seed;
-    // A contour's direction tells how deep it lies, so depth by nesting must alternate with it.
+    // A contour's direction depends on its depth, so the depth by nesting must alternate with the direction.
     const auto around = nest(found);
     for (std::size_t c = 0; c < found.size(); ++c) {
       const bool is_hole = signed_area_mm2(found[c]) < 0.0;
@@ -163,8 +164,8 @@ TEST(Contour, WhatIsNoSliceIsRefused) {
   EXPECT_THROW(follow(picture.slice, {}), std::invalid_argument);
 }
 
-/// By its definition for contours that do not touch: the smallest larger one that a ray from a point of the
-/// contour leaves, over all pieces of all contours.
+/// Nesting by its definition, for contours that do not touch: the smallest larger contour that a ray from a
+/// point of the contour leaves, over all pieces of all contours.
 std::vector<std::optional<std::size_t>> plainly_nested(const std::vector<Contour>& contours) {
   std::vector<std::optional<std::size_t>> around(contours.size());
   const auto area = [&](std::size_t c) { return std::abs(signed_area_mm2(contours[c])); };

@@ -51,10 +51,10 @@ TEST(CrossSection, APlaneThroughCornersEdgesAndFacesCutsAsIfJustBelow) {
   const Mesh cube = mesh_of(shapes::box({0, 0, 0}, {2, 2, 2}));
   EXPECT_NEAR(cross_section(cube, plane_through({0, 0, 2}, {0, 0, 1})).area_mm2, 4.0, 1e-14);
   EXPECT_EQ(cross_section(cube, plane_through({0, 0, 0}, {0, 0, 1})).contours.size(), 0u);
-  // Through four corners, along two edges.
+  // The plane passes through four corners, along two edges.
   EXPECT_NEAR(cross_section(cube, plane_through({0, 0, 0}, {1, -1, 0})).area_mm2, 4.0 * std::sqrt(2.0),
               1e-13);
-  // Through three corners: an equilateral triangle of side 2 sqrt 2.
+  // The plane passes through three corners: an equilateral triangle of side 2 sqrt 2.
   EXPECT_NEAR(cross_section(cube, plane_through({2, 0, 0}, {1, 1, 1})).area_mm2, 2.0 * std::sqrt(3.0), 1e-13);
   EXPECT_TRUE(cross_section(cube, plane_through({0, 0, 3}, {0, 0, 1})).contours.empty());
 }

@@ -13,8 +13,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// By its definition: each coefficient summed over all pieces, each point over all coefficients. Waves are
-/// taken of whole turns' remainders, so that many turns lose no digits.
+/// Smoothing by its definition: each coefficient is summed over all pieces, each point over all coefficients.
+/// Waves are computed from the remainder of whole turns, so that many turns lose no digits.
 Contour plainly_smooth(const Contour& contour, const FourierOptions& options) {
   using Complex = std::complex<double>;
   const auto& p = contour.points_mm;
@@ -76,7 +76,7 @@ TEST(FourierSmooth, MoreHarmonicsThanTheContourHasPointsBringACornerNearerStill)
   for (const std::size_t harmonics : {8U, 80U, 800U, 8000U}) {
     const Contour smooth = fourier_smooth(square, {harmonics, 4 * harmonics});
     const double away = glm::distance(smooth.points_mm[0], square.points_mm[0]);
-    // The harmonics left out fall with their square, so their sum as their number.
+    // The dropped harmonics fall with the square of their number, so their sum falls with the number.
     if (before > 0.0) {
       EXPECT_NEAR(before / away, 10.0, 1.0) << harmonics;
     }

@@ -25,7 +25,7 @@ double area(const std::vector<Contour>& contours) {
   return sum;
 }
 
-/// Below 0 inside, by the crossing rule over all contours.
+/// The signed distance, negative inside, by the crossing rule over all contours.
 double signed_distance(const glm::dvec2& p, const std::vector<Contour>& contours) {
   double nearest = std::numeric_limits<double>::infinity();
   bool inside = false;
@@ -105,7 +105,7 @@ TEST(OffsetContours, EveryPointOfWavyRingsIsAsFarAsAskedAndNoneIsForgotten) {
       for (const Contour& contour : moved)
         for (const glm::dvec2& p : contour.points_mm)
           ASSERT_NEAR(signed_distance(p, rings), by, 2e-3 * std::abs(by)) << "seed " << seed << " by " << by;
-      // And by samples of the plane, which tell where a contour is missing.
+      // Samples of the plane detect contours that are missing.
       for (double x = -13.03; x < 13; x += 0.61)
         for (double y = -13.01; y < 13; y += 0.59) {
           const double d = signed_distance({x, y}, rings) - by;

@@ -49,14 +49,14 @@ TEST(SectionsBetween, BetweenTwoCirclesTheRadiusIsInterpolated) {
 
 TEST(SectionsBetween, AFrustumAndItsFlatEndsHaveTheirVolume) {
   const double tiled = volume_of(sections_between({{0.0, {circle(10.0)}}, {8.0, {circle(14.0)}}}));
-  // The frustum, and a cylinder of half a gap at either end.
+  // The truth is the frustum, and a cylinder of half a gap at either end.
   const double pi = std::numbers::pi;
   const double frustum = pi * 8.0 / 3.0 * (100.0 + 140.0 + 196.0), ends = pi * 4.0 * (100.0 + 196.0);
   EXPECT_NEAR(tiled, frustum + ends, 2e-3 * (frustum + ends));
 }
 
 TEST(SectionsBetween, TheVolumeConvergesAtSecondOrder) {
-  // Of two circles that are apart: the outline between has no closed form, its finest volume is the measure.
+  // The outline between two circles that are apart has no closed form, so the finest volume is the reference.
   const std::vector<Section> drawn{{0.0, {circle(10.0)}}, {6.0, {circle(6.0, {8.0, 0.0})}}};
   const double fine = volume_of(sections_between(drawn, {.step_mm = 0.5}));
   const double at_1_5 = std::abs(volume_of(sections_between(drawn, {.step_mm = 1.5})) - fine),

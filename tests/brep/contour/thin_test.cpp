@@ -21,7 +21,8 @@ double distance_to_piece(const glm::dvec2& p, const glm::dvec2& a, const glm::dv
   return glm::distance(p, a + t * along);
 }
 
-/// By its definition: each piece goes as far as all points that it passes, asked one by one, let it.
+/// Thinning by its definition: each piece extends as long as every point that it passes, tested one by one,
+/// allows it.
 Contour plainly_thin(const Contour& contour, double limit_mm, std::size_t& longest) {
   const Points& p = contour.points_mm;
   const std::size_t least = contour.closed ? 3 : 2, end = p.size() - (contour.closed ? 0 : 1);

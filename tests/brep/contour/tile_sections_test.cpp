@@ -30,7 +30,7 @@ Contour rectangle(const glm::dvec2& low, const glm::dvec2& high) {
   return {{low, {high.x, low.y}, high, {low.x, high.y}}, true};
 }
 
-/// Sections of a body given by its contours at each height, `count` of them a step apart.
+/// Sections of a body at `count` heights, a step apart. `at` returns the body's contours at a height.
 template <typename At>
 std::vector<Section> sections_of(double low, double step, int count, const At& at) {
   std::vector<Section> sections;
@@ -73,7 +73,7 @@ TEST(TileSections, ABallsVolumeConvergesAtSecondOrder) {
 }
 
 TEST(TileSections, ATorusOnItsSideBranchesAndMerges) {
-  // Its axis lies in the section planes: two rings merge into one and part again.
+  // The ring's axis lies in the section planes: two contours merge into one and split again.
   const double big = 10.0, small = 3.0;
   const auto at = [&](double z) {
     // Where |sqrt(x^2 + z^2) - big| <= sqrt(small^2 - y^2), followed on fine samples.
@@ -188,7 +188,8 @@ TEST(TileSections, SmallContoursFarApartForTheirSizeAreJoinedByEachCost) {
 }
 
 TEST(TileSections, ContoursThatCrossOrHaveFoldsThatTheOtherDoesNotSeeAreJoinedByEachCost) {
-  // A comb over one whose teeth stand between; a small contour at the end of a large one.
+  // A comb over another one whose teeth stand between the first one's; a small contour at the end of a large
+  // one.
   Contour comb, shifted;
   for (int tooth = 0; tooth < 4; ++tooth)
     for (const glm::dvec2& p : {glm::dvec2{0, -3}, glm::dvec2{0, 3}, glm::dvec2{1, 3}, glm::dvec2{1, -3}}) {
@@ -239,7 +240,7 @@ TEST(TileSections, ContoursOfASmoothFieldWithHolesAndIslandsFallBackOnLessThanTw
 }
 
 TEST(TileSections, AnyNestedContoursWillDo) {
-  // Noise, followed: contours of every shape, corner to corner, unlike their neighbours in every way.
+  // Contours followed in noise: of every shape, corner to corner, and unlike their neighbours.
   std::size_t strips = 0, overlaid = 0;
   for (unsigned seed = 0; seed < 12; ++seed) {
     std::mt19937 random(seed);

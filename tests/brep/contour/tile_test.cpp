@@ -44,7 +44,7 @@ struct Sums {
   double area = 0.0, cones = 0.0, angle = 0.0;
 };
 
-/// Cones are over the lower ring's first point, so the flat ends add nothing or always the same.
+/// Cones have their tip at the lower ring's first point, so the flat ends add nothing, or always the same.
 Sums sums_of(const Ring& lower, const Ring& upper, const std::vector<std::array<std::uint32_t, 3>>& faces) {
   const auto at = [&](std::uint32_t v) {
     return v < lower.points_mm.size() ? glm::dvec3(lower.points_mm[v], lower.z_mm)
@@ -106,7 +106,7 @@ TEST(Tile, EachCostIsTheLeastOfItsKind) {
   EXPECT_GT(differ, 60);
 }
 
-/// The least area of all strips, from every start by itself.
+/// The least area of all strips, computed separately from every start.
 double least_area_by_trial(const Ring& lower, const Ring& upper) {
   const std::size_t m = lower.points_mm.size(), n = upper.points_mm.size();
   const auto on = [](const Ring& ring, std::size_t k) {
@@ -203,7 +203,7 @@ TEST(Tile, RefusesRingsWhoseTablesWouldNotFitTheMemory) {
 }
 
 TEST(TileClear, KeepsToTheAreaBetweenTheRingsWhateverTheCost) {
-  // A ring with a deep bay about a ring that follows it: the greatest volume of all closes the bay.
+  // A ring with a deep bay around another ring that follows it: the strip of greatest volume closes the bay.
   const auto bay = [](double out, double z) {
     Ring made{{}, z};
     for (int k = 0; k < 80; ++k) {
@@ -227,7 +227,7 @@ TEST(TileClear, KeepsToTheAreaBetweenTheRingsWhateverTheCost) {
   for (const TileCost cost : all_costs) EXPECT_EQ(crossed(tile_clear(lower, upper, cost, sides)), 0);
   const auto clear = tile_clear(lower, upper, TileCost::greatest_volume, sides);
   EXPECT_GT(crossed(tile(lower, upper, TileCost::greatest_volume)), 0) << "the bay matters";
-  // Of the clear strips the best by its cost, as far as the others show.
+  // Among the clear strips it is the best by its cost, as far as the other strips can show.
   for (const TileCost cost : all_costs) {
     const auto other = tile_clear(lower, upper, cost, sides);
     EXPECT_GE(sums_of(lower, upper, clear).cones, sums_of(lower, upper, other).cones * (1 - 1e-12));

@@ -26,7 +26,7 @@ Triangles lps_box() {
   return shapes::box({10, 30, -5}, {20, 50, 25});
 }
 
-/// The box as a file in another frame and unit has it: the inverse of what reading does.
+/// The box as a file in another frame and unit stores it: the inverse of reading.
 Triangles in_file(const std::string& frame, double unit_mm) {
   Triangles t = lps_box();
   const glm::dmat3 lps = lps_from(frame);
@@ -329,7 +329,7 @@ TEST(MeshConventions, WhatIsNoFrameOrUnitIsNoStatement) {
   EXPECT_NE(refusal(wrong).find("'ell' is not a unit"), std::string::npos);
 }
 
-/// The millimetres of a length of 1 in a file with that comment, or 0 where it is refused.
+/// The millimetres of a length of 1 in a file with that comment; 0 if it is refused.
 double mm_by(const std::string& comment) {
   try {
     const Extent extent = read_row({"", "a.ply", ply(in_file("LPS", 1), comment)}).extent();

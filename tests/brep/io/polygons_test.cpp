@@ -29,7 +29,7 @@ Split split_of(const std::vector<glm::dvec3>& points) {
   return split_of(points, corners);
 }
 
-/// The sum of the triangles' sizes, which is more than the polygon's where triangles overlap.
+/// The sum of the triangles' areas, which exceeds the polygon's area if triangles overlap.
 double area(const Triangles& t) {
   double sum = 0.0;
   for (const auto& f : t.faces)

@@ -77,7 +77,7 @@ TEST(WeldSeams, SplitSolidsThatTouchStayTwo) {
     const Health found = health(two, {false});
     EXPECT_TRUE(found.closed && found.manifold);
   }
-  // About a common side four open sides lie on one another: which belong together cannot be known.
+  // Four open sides coincide along a common side, so it is unknown which belong together.
   Triangles other = split_cube();
   for (glm::dvec3& p : other.points_mm) p.x += 2.0;
   Triangles two = shapes::together(split_cube(), other);
@@ -88,7 +88,7 @@ TEST(WeldSeams, SplitSolidsThatTouchStayTwo) {
 }
 
 TEST(WeldSeams, OpenSidesThatRunTheSameWayStayOpen) {
-  // Two sheets on one another that face alike, and a hole.
+  // Two coincident sheets that face the same way, and a hole.
   Triangles sheets = shapes::together({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}},
                                       {{{0, 0, 0}, {1, 0, 0}, {0, -1, 0}}, {{0, 1, 2}}});
   EXPECT_TRUE(weld_seams(sheets).empty());

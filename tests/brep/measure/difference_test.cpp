@@ -112,8 +112,8 @@ TEST(Difference, AFaceMovedAMillimetreAlongItsNormalsReadsAMillimetre) {
   const Mesh still = mesh_of(face);
   for (const double by_mm : {1.0, -1.0}) {
     const Difference d = difference(moved_along_normals(still, by_mm), still, {.spacing_mm = 1.0});
-    // The vertices read a millimetre. Their triangles, some 5 mm long, lie nearer to each other by the cosine
-    // of half the angle at their edges.
+    // The vertices are a millimetre apart. Their triangles, about 5 mm long, are nearer to each other by the
+    // cosine of half the angle at their edges.
     std::vector<double> vertex_mm = d.vertex_mm;
     const auto middle = vertex_mm.begin() + static_cast<std::ptrdiff_t>(vertex_mm.size() / 2);
     std::nth_element(vertex_mm.begin(), middle, vertex_mm.end());

@@ -200,7 +200,7 @@ TEST(SurfaceTree, OfNothingHasNoDistanceAndNoInside) {
   EXPECT_FALSE(tree.meets_any({0, 0, 0}, {1, 1, 1}, [](std::uint32_t) { return true; }));
 }
 
-/// The search that SurfaceTree's answers are defined by, one box and one triangle at a time.
+/// The search by which SurfaceTree's answers are defined: one box and one triangle at a time.
 class PlainSearch {
  public:
   explicit PlainSearch(const Triangles& surface)

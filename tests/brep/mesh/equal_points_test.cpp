@@ -14,7 +14,7 @@ TEST(EqualPoints, NameTheFirstOfTheirPlace) {
   EXPECT_TRUE(first_equal_points({}).empty());
 }
 
-/// Whatever room was expected: points met again after many others keep their numbers.
+/// Points that occur again after many others keep their numbers, independent of the expected count.
 TEST(EqualPoints, KeepTheNumbersInWhichTheyWereMet) {
   constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
   for (const std::size_t expected : {0, 3, 5000}) {

@@ -18,7 +18,7 @@ namespace {
 using FacePairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 constexpr std::size_t all = 1'000'000;
 
-/// Of lattice points below 2^20: exactly.
+/// The triangles without area, exact for lattice points below 2^20.
 std::vector<std::uint8_t> without_area(const Triangles& t) {
   std::vector<std::uint8_t> marks;
   for (const auto& [a, b, c] : t.faces)
@@ -33,7 +33,7 @@ SelfIntersections found(const Triangles& t, std::size_t most_first = all) {
   return self_intersections({t, tree, degenerate, most_first});
 }
 
-/// By exact predicates without a filter of ours.
+/// Whether two triangles meet elsewhere, by exact predicates without our filter.
 bool meet_elsewhere(const Triangles& t, std::array<std::uint32_t, 3> f, std::array<std::uint32_t, 3> g) {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   const auto point = [&](std::uint32_t v) {

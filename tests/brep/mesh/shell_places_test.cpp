@@ -29,7 +29,8 @@ struct Boxes {
     const std::vector<std::uint32_t> first = first_equal_points(triangles.points_mm);
     return shell_places({triangles, first, shell}, &tree);
   }
-  /// The first of its points of largest x, of those that no other shell shares where there are any.
+  /// The first of its points with the largest x. Points that other shells share are left out if there are
+  /// others.
   glm::dvec3 probe_of(std::uint32_t name) const {
     const std::vector<std::uint8_t> touching =
         shared_points(triangles, first_equal_points(triangles.points_mm), shell);
@@ -42,7 +43,7 @@ struct Boxes {
     }
     return probe;
   }
-  /// By all triangles of all other shells.
+  /// The winding number by all triangles of all other shells.
   int winding_about(std::uint32_t name) const {
     const glm::dvec3 probe = probe_of(name);
     int winding = 0;

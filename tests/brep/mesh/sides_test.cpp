@@ -41,7 +41,7 @@ TEST(Sides, OfTrianglesInAnyOrderAreTheSameOnAnyNumberOfThreads) {
   Triangles triangles;
   triangles.points_mm.resize(9000);
   for (std::uint32_t f = 0; f < 20000; ++f) {
-    // About in the order of their points, then in none.
+    // First roughly in the order of their points, then in random order.
     const auto point = [&] {
       return static_cast<std::uint32_t>(f < 10000 ? (f * 8999 / 10000 + random() % 40) % 9000
                                                   : random() % 9000);

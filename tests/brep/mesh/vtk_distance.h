@@ -8,7 +8,7 @@ namespace octotomy::tests {
 
 using Point = std::array<double, 3>;
 
-/// A surface as VTK takes it.
+/// A surface in the form that VTK reads.
 struct FlatSurface {
   std::vector<Point> points;
   std::vector<std::array<unsigned, 3>> faces;

@@ -114,7 +114,7 @@ TEST(Decimate, WhatIsStillThereIsNotMeasuredAgainAndTheSameIsFound) {
           std::find(fine.points_mm.begin(), fine.points_mm.end(), p) - fine.points_mm.begin()));
     return numbers;
   };
-  // From coarse to fine and back: triangles go and come.
+  // From coarse to fine and back, so triangles are removed and come back.
   const std::vector<Triangles> rounds = {coarse_at(0.5), coarse_at(0.1), coarse_at(0.02), coarse_at(0.1),
                                          fine};
   const double limit_mm = 0.5 * far_places(fine, tree, rounds.front(), 1.0).largest_mm;

@@ -41,7 +41,7 @@ TEST(Enclose, AHoleIsClosedByASheetAcrossIt) {
   const Enclosed made = enclose(open, {.cell_mm = 0.25});
   EXPECT_TRUE(health(made.solid).solid());
   EXPECT_GT(made.points_across_holes, 100u);
-  // Of the sphere without its cap of height 2.
+  // The volume of the sphere without its cap of height 2.
   const double cap = std::numbers::pi * 4.0 * (15.0 - 2.0) / 3.0,
                whole = 4.0 / 3.0 * std::numbers::pi * 125.0;
   EXPECT_NEAR(made.solid.size().volume_mm3, whole - cap, 0.03 * whole);

@@ -25,7 +25,7 @@ Solid box(const glm::dvec3& low_mm, const glm::dvec3& high_mm) {
 Solid ball(double radius_mm) {
   return solid_of(shapes::sphere({0.1, 0.2, 0.3}, radius_mm, 5));
 }
-/// What balls of a radius hold of a body.
+/// The union of all balls of a radius within a body.
 Solid opened(const LevelBody& body, double radius_mm, double cell_mm) {
   const Solid core = core_of(body, {-radius_mm, cell_mm});
   return core.empty() ? core : offset(core, {radius_mm, cell_mm});

@@ -99,7 +99,7 @@ TEST(Repair, ShellsFaceOutwardAndCavitiesInward) {
   EXPECT_EQ(count_of(mended, "orient"), 24);
 }
 
-/// A solid of the surface by its Booleans, never by enclosing.
+/// The volume of a solid that Booleans make of the surface, never by enclosing.
 double united_mm3(const Triangles& surface, std::size_t shells) {
   RepairOptions options;
   options.solid = true;

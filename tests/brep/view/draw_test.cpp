@@ -44,7 +44,7 @@ TEST(DrawFacets, PixelsOnAnEdgeOfTwoTrianglesBelongToOneOfThem) {
   EXPECT_EQ(std::count(picture.item.begin(), picture.item.end(), 0) +
                 std::count(picture.item.begin(), picture.item.end(), 1),
             100);
-  // Of the column at 0.5 all pixels belong to one side.
+  // All pixels of the column at 0.5 belong to one side.
   const int owner = picture.item[pixel(10, 10)];
   for (int row = 5; row < 15; ++row) EXPECT_EQ(picture.item[pixel(10, row)], owner) << row;
 }

@@ -50,7 +50,7 @@ std::vector<glm::dvec3> all_by(const NodeSet& set, const glm::dvec3& by_mm) {
   return std::vector<glm::dvec3>(set.nodes.size(), by_mm);
 }
 
-/// A beam of square section, both ends held against turning, one moved across.
+/// A beam of square section. Both ends are held against turning, and one is moved across.
 class Beam : public testing::TestWithParam<std::tuple<Mesher, bool>> {};
 
 TEST_P(Beam, IsAsStiffAsTimoshenkoSays) {
@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(DeckElements, Beam,
                          testing::Combine(testing::Values(Mesher::TetGen, Mesher::Mesh3, Mesher::Stuffing),
                                           testing::Bool()));
 
-/// A ball cut in two; its halves touch without friction, one is pressed on the other and moved along the cut.
+/// A ball cut in two. Its halves touch without friction; one is pressed on the other and moved along the cut.
 TEST(DeckElements, HalvesInContactSlideAlongAFlatCutWithoutForce) {
   OCTOTOMY_NEEDS_PROGRAM("ccx", "calculix-ccx");
   const glm::dvec3 middle_mm(15.5);

@@ -10,7 +10,7 @@
 namespace octotomy::convert {
 namespace {
 
-/// Sets, surfaces, materials and contacts whose names solvers take for others'.
+/// Sets, surfaces, materials and contacts with names that solvers would confuse.
 DeckOptions clashing() {
   DeckOptions options;
   options.materials = {{"BONE", 17000.0, 0.3}, {"bone", 1.0, 0.3}};

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 using tests::has_program;
 using tests::ScratchFolder;
 
-/// Status of a command within a folder; what it says goes to a file there.
+/// The status of a command that runs in a folder; its output goes to a file there.
 int run_in(const ScratchFolder& folder, const std::string& command) {
   return std::system(("cd '" + folder.path().string() + "' && " + command + " > log 2>&1").c_str());
 }
@@ -114,7 +114,7 @@ std::vector<glm::dvec3> solved_by_ccx(const ScratchFolder& folder, const Tetrahe
   return displacements;
 }
 
-/// How far nodes are from a field at most when those of the surface are put there.
+/// The largest distance of nodes from a field, if the nodes of the surface are moved by that field.
 double worst_within(const ScratchFolder& folder, const Tetrahedra& t,
                     const std::function<glm::dvec3(const glm::dvec3&)>& field) {
   DeckOptions options;
@@ -131,7 +131,7 @@ TEST(DeckSolver, AQuadraticDisplacementIsQuadraticWithinByTenNodesAndNotByFour) 
   if (!has_program("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
   const ScratchFolder folder;
   const Tetrahedra linear = graded_block();
-  // Without divergence and with a Laplacian of zero: in equilibrium whatever the stiffness.
+  // A field without divergence and with a Laplacian of zero, which is in equilibrium for any stiffness.
   const auto field = [](const glm::dvec3& p) {
     return 1e-6 * glm::dvec3(p.y * p.y - p.z * p.z + p.y * p.z, p.z * p.z - p.x * p.x,
                              p.x * p.x - p.y * p.y + 2.0 * p.x * p.y);
@@ -140,7 +140,7 @@ TEST(DeckSolver, AQuadraticDisplacementIsQuadraticWithinByTenNodesAndNotByFour) 
   EXPECT_GT(worst_within(folder, linear, field), 1e-7);
 }
 
-/// A wall between two balls, pushed out from within by 0.1 and held without: u = a r + b / r^2, whatever the
+/// A wall between two balls, pushed out from within by 0.1 and held on the outside: u = a r + b / r^2 for any
 /// stiffness.
 struct ThickSphere {
   static constexpr double inner = 10.0, outer = 20.0, pushed = 0.1;
@@ -166,7 +166,7 @@ struct ThickSphere {
 struct WallErrors {
   double mean = 0.0, worst = 0.0;
 };
-/// Radial displacements in the wall's middle against the closed form, of them.
+/// The radial displacements in the wall's middle, relative to the closed form.
 WallErrors errors_of(const std::vector<glm::dvec3>& nodes_mm, const std::vector<glm::dvec3>& solved) {
   constexpr double inner = ThickSphere::inner, outer = ThickSphere::outer;
   const double b = ThickSphere::pushed / (1.0 / (inner * inner) - inner / (outer * outer * outer));
@@ -189,7 +189,8 @@ WallErrors errors_of(const std::vector<glm::dvec3>& nodes_mm, const std::vector<
 TEST(DeckSolver, AThickSpheresWallMovesAsTheClosedFormSaysAndCloserByTenNodesOfTheSameElements) {
   if (!has_program("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
   const ScratchFolder folder;
-  // The mesher is asked for 85 % of it: elements of up to 8 mm3, whose four nodes are far from exact.
+  // The mesher is called with 85 % of this volume, so elements take up to 8 mm3: their four nodes are far from
+  // exact.
   const ThickSphere wall(8.0 / 0.85);
   const WallErrors by_four = errors_of(wall.t.nodes_mm, solved_by_ccx(folder, wall.t, wall.options));
   EXPECT_LT(by_four.mean, 0.025);
@@ -197,7 +198,7 @@ TEST(DeckSolver, AThickSpheresWallMovesAsTheClosedFormSaysAndCloserByTenNodesOfT
   const SecondOrder finer = second_order(wall.t, wall.options);
   const WallErrors by_ten =
       errors_of(finer.tetrahedra.nodes_mm, solved_by_ccx(folder, finer.tetrahedra, finer.options));
-  // What is left of the mean is the flat triangles', whose middles are prescribed off the balls.
+  // The remaining mean error comes from the flat triangles, whose middles are prescribed off the balls.
   EXPECT_LT(by_ten.mean, by_four.mean);
   EXPECT_LT(by_ten.worst, 0.25 * by_four.worst);
   RecordProperty("by_four", std::to_string(by_four.mean) + " " + std::to_string(by_four.worst));
@@ -223,8 +224,8 @@ TEST(DeckSolver, ASolvedDeckOfTenNodesIsReadAsEightLinearPartsEach) {
   }
 }
 
-/// Two blocks of 6 x 6 x 6 mm, one upon the other, that touch or share their nodes; the lower one is held
-/// below, the upper one moved above.
+/// Two blocks of 6 x 6 x 6 mm, one on top of the other, that touch or share their nodes; the lower one is
+/// held below, the upper one moved above.
 struct TwoBlocks {
   Tetrahedra t;
   DeckOptions options;
@@ -273,7 +274,7 @@ struct TwoBlocks {
 TEST(DeckSolver, ContactPressesAsSharedNodesDoAndLetsGoWhereTheyPull) {
   if (!has_program("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
   const ScratchFolder folder;
-  // By symmetry what is between two equal blocks moves half as far.
+  // By symmetry, the plane between two equal blocks moves half as far.
   EXPECT_NEAR(TwoBlocks(false, -0.06).between_mm(folder), -0.03, 1e-4);
   EXPECT_NEAR(TwoBlocks(true, -0.06).between_mm(folder), -0.03, 1e-3);
   EXPECT_NEAR(TwoBlocks(false, 0.06).between_mm(folder), 0.03, 1e-4);

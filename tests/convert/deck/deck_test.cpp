@@ -27,7 +27,7 @@ std::ptrdiff_t file_count(const ScratchFolder& folder) {
                        std::filesystem::directory_iterator());
 }
 
-/// Far from the origin, with coordinates that need their digits.
+/// A cube far from the origin, with coordinates that need all their digits.
 Tetrahedra far_cube() {
   return tests::cube_in_five({-123.456789012345, 98.7654321098765, 0.000123456789012345});
 }
@@ -46,7 +46,7 @@ struct InpDeck {
   std::string section;
 };
 
-/// Reads what write_inp writes, by Abaqus's rules: keyword lines, comma-separated fields, numbers from 1.
+/// Reads an .inp file by Abaqus's rules: keyword lines, comma-separated fields, numbers from 1.
 InpDeck read_inp(const std::filesystem::path& path) {
   InpDeck deck;
   std::ifstream in(path);
@@ -150,7 +150,7 @@ TEST(Deck, ATitleCannotEndACommentAndKeepsItsHyphens) {
   }
 }
 
-/// The appended block that a DataArray's offset names.
+/// The appended block to which a DataArray's offset refers.
 template <typename T>
 std::vector<T> appended(const std::string& file, const std::string& name) {
   const std::size_t tag = file.find("Name=\"" + name + "\"");
@@ -219,7 +219,7 @@ TEST(Deck, AFileThatCannotBeWrittenIsNamedAndNothingIsLeft) {
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("absent"), std::string::npos) << error.what();
   }
-  // A folder in the file's place: the write succeeds, the renaming cannot.
+  // A folder occupies the file's path: the write succeeds, but the renaming cannot.
   std::filesystem::create_directories(folder / "b.inp" / "full");
   EXPECT_THROW(write_deck(far_cube(), folder / "b.inp"), std::runtime_error);
   EXPECT_EQ(file_count(folder), 1) << "the unfinished file is gone";

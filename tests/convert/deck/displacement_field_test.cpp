@@ -35,8 +35,8 @@ DisplacementField affine_field() {
   return {elements, displacements, 20.0};
 }
 
-/// The ball with one displacement for all of its nodes. Its voxels' box is x 2.5..27.5, y 3.5..28.5,
-/// z 1.5..26.5.
+/// A field with one displacement for all nodes of the ball. Its voxels' box is x 2.5..27.5, y 3.5..28.5, z
+/// 1.5..26.5.
 DisplacementField uniform_field(const glm::dvec3& displacement_mm, double fade_mm = 20.0) {
   const Tetrahedra elements = ball_of_elements();
   return {elements, std::vector<glm::dvec3>(elements.nodes_mm.size(), displacement_mm), fade_mm};

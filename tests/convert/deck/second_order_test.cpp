@@ -12,7 +12,7 @@ namespace {
 
 using tests::cube_in_five;
 
-/// Nodes of a set behind the cube's eight, by where they are.
+/// The nodes of a set behind the cube's eight, by their positions.
 std::set<std::array<double, 3>> middles(const SecondOrder& made, const std::vector<std::uint32_t>& nodes) {
   std::set<std::array<double, 3>> at;
   for (const std::uint32_t node : nodes)
@@ -74,7 +74,7 @@ TEST(SecondOrder, ASetOfASurfaceTakesTheMiddlesOfItsTrianglesAlone) {
 
 TEST(SecondOrder, ASetWithinAndOneOfAnInterfaceTakeTheirs) {
   Tetrahedra cube = cube_in_five();
-  // A node in the middle of the fifth element, which so becomes four.
+  // A node in the middle of the fifth element, which thus becomes four elements.
   cube.nodes_mm.emplace_back(0.5, 0.5, 0.5);
   cube.tets.pop_back();
   for (const std::array<std::uint32_t, 4>& tet :

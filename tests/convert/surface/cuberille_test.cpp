@@ -19,7 +19,7 @@ namespace {
 
 using tests::unit_universe;
 
-/// The octree of the voxels that `inside` says.
+/// The octree of the voxels for which `inside` is true.
 template <typename Inside>
 voxel::Octree octree_where(const voxel::Universe& universe, const Inside& inside) {
   const int side = universe.side();
@@ -64,7 +64,7 @@ std::int64_t six_volumes_half(const LatticeSurface& surface) {
   return six;
 }
 
-/// Twice the area; triangles lie in coordinate planes, so that it is whole.
+/// Twice the area. It is a whole number, because triangles lie in coordinate planes.
 std::int64_t twice_area_half(const LatticeSurface& surface) {
   std::int64_t twice = 0;
   for (const auto& [a, b, c] : surface.faces) {
@@ -75,7 +75,7 @@ std::int64_t twice_area_half(const LatticeSurface& surface) {
   return twice;
 }
 
-/// Why the surface is not the octree's boundary, or nothing.
+/// The reason why the surface is not the octree's boundary; empty if it is.
 std::string fault_of(const voxel::Octree& octree, const LatticeSurface& surface) {
   const brep::Triangles triangles = triangles_of(surface);
   if (octree.is_empty()) return surface.faces.empty() ? "" : "triangles about nothing";

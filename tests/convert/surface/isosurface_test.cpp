@@ -49,7 +49,7 @@ voxel::Scene noise(const glm::ivec3& dims, unsigned seed, int part_inside_percen
   return scene_of(voxel::axis_aligned_lattice(dims, {1, 1, 1}, {0, 0, 0}), samples);
 }
 
-/// How much of each voxel of the lattice a ball fills, by 8^3 points, as int16 from 0 to 1000.
+/// The share of each voxel of the lattice that a ball fills, by 8^3 points, as int16 from 0 to 1000.
 voxel::Scene ball_scene(const voxel::Lattice& lattice, const glm::dvec3& centre_mm, double radius_mm) {
   constexpr int cuts = 8;
   voxel::Int16Samples samples;
@@ -96,7 +96,7 @@ BallErrors errors_of(const voxel::Scene& scene, double radius_mm) {
   return {volume_mm3(surface) / volume - 1.0, area_mm2(surface) / area - 1.0};
 }
 
-/// Off the lattice's symmetry, so that no error cancels by it.
+/// A centre off the lattice's symmetry, so that no errors cancel.
 glm::dvec3 ball_centre_mm(const voxel::Lattice& lattice) {
   return glm::dvec3(0.13, 0.29, -0.21) * lattice.spacing_mm().x;
 }
@@ -105,7 +105,7 @@ BallErrors partial_volume_errors(const voxel::Lattice& lattice, double radius_mm
   return errors_of(ball_scene(lattice, ball_centre_mm(lattice), radius_mm), radius_mm);
 }
 
-/// The samples fall linearly with the distance from the centre: all that is left is the triangles' own error.
+/// The samples fall linearly with the distance from the centre, so only the triangles' own error remains.
 BallErrors distance_errors(const voxel::Lattice& lattice, double radius_mm) {
   voxel::FloatSamples samples;
   for (int z = 0; z < lattice.dims.z; ++z)
@@ -179,7 +179,7 @@ TEST(Isosurface, StaysApartAsFarFromTheOriginAsItSays) {
     scene.lattice.lps_from_voxel[3].x = 14000.0;
     EXPECT_FALSE(stays_apart(scene.lattice));
   }
-  // What the bound is for: here doubles are a quarter of a millimetre apart.
+  // The case for which the bound exists: doubles are a quarter of a millimetre apart here.
   scene.lattice.lps_from_voxel[3].x = 0x1p51;
   EXPECT_FALSE(stays_apart(scene.lattice));
   EXPECT_GT(brep::health(isosurface(scene, 1000, no_limit)).self_intersections, 0U);
@@ -285,8 +285,8 @@ TEST(Isosurface, AnObjectThatReachesTheScansBorderIsClosedHalfAVoxelBeyondIt) {
   }
   EXPECT_EQ(low, box.low_mm);
   EXPECT_EQ(high, box.high_mm);
-  // In voxels: the box less an eighth a unit of edge, less what the eight corners lose beside (1/2 - 1/48 -
-  // ...).
+  // In voxels: the box minus an eighth per unit of edge, minus what the eight corners lose in addition (1/2 -
+  // 1/48 - ...).
   const double edges = 4.0 * ((5 - 1) + (4 - 1) + (3 - 1));
   const double voxels = 5.0 * 4.0 * 3.0 - edges / 8.0 - 8.0 * (1.0 / 8.0 - 1.0 / 48.0);
   EXPECT_NEAR(volume_mm3(surface), voxels * lattice.voxel_mm3(), 1e-10);
@@ -403,7 +403,7 @@ TEST(Isosurface, OfARealSkullIsCutToTheSameBitsWhereverMemoryLies) {
     const auto take = [&] {
       piece = brep::boolean(skull, brep::Operation::Intersection, cut).solid.triangles();
     };
-    // Another thread has a heap of its own.
+    // Another thread uses another heap.
     if (i % 2 == 0)
       take();
     else

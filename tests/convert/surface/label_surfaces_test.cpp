@@ -54,7 +54,7 @@ voxel::Scene three_in_a_shell(int side) {
   });
 }
 
-/// What is wrong with the surfaces as a division of space; empty if nothing is.
+/// The reason why the surfaces do not divide space; empty if they do.
 std::string fault_in(const brep::PartedSurface& parted) {
   double sum_mm3 = 0.0;
   for (const auto& [part, unused] : parted.names) {
@@ -65,7 +65,7 @@ std::string fault_in(const brep::PartedSurface& parted) {
     if (!health.solid()) return which + health.findings.front();
     sum_mm3 += volume_mm3(surface);
   }
-  // What has nothing on one side bounds all of them together.
+  // Triangles with nothing on one side bound all parts together.
   brep::PartedSurface whole = parted;
   for (auto& [behind, front] : whole.sides) {
     behind = behind == 0 ? 0 : 1;

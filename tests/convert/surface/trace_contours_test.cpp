@@ -55,8 +55,8 @@ TEST(ContourSurface, ABoundedWindowLeavesTheCoreOut) {
   EXPECT_THROW(trace_contours(scene, std::nan(""), 1.0), std::invalid_argument);
 }
 
-/// The volumes may differ by the surface's area times a share of the distance of slices: isosurface() joins
-/// across the gap what contours that do not overlap close half way.
+/// The volumes may differ by the surface's area times a share of the distance of slices. Across a gap,
+/// isosurface() joins contours that do not overlap; the tiled surface closes them half way.
 void expect_near_isosurface(const voxel::Scene& scene, double low, double share) {
   const brep::TiledSections tiled = contour_surface(scene, low, infinity);
   const brep::Health found = brep::health(tiled.surface);

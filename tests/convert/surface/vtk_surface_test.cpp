@@ -50,7 +50,7 @@ TEST(VtkSurface, OfABlurredBallIsTheSameToAHundredthOfAVoxelAndInTrianglesToTheL
   const brep::Triangles vtk = of_vtk(scene, 300.0);
   EXPECT_EQ(own.faces.size(), vtk.faces.size());
   EXPECT_LE(between(own, vtk).back(), 0.01 * 0.8);
-  // The comparison sees a level that is off by little.
+  // The comparison detects a level that is slightly off.
   EXPECT_GT(between(isosurface(scene, 320.0, std::numeric_limits<double>::infinity()), vtk).back(),
             0.01 * 0.8);
 }

@@ -77,8 +77,8 @@ void expect_healthy(const voxel::Scene& scene, double low, double high, const st
 TEST(WindowSurface, OfAnyPatternOfSamplesIsClosedManifoldAndFreeOfSelfIntersection) {
   const float nan = std::numeric_limits<float>::quiet_NaN(),
               infinite = std::numeric_limits<float>::infinity();
-  // Below, in and above 10..20; on the bounds and beside them; so steep that crossings come as close as they
-  // may; and all of these with samples that were not measured.
+  // Samples below, in and above 10..20; on the bounds and beside them; so steep that crossings are as close
+  // as possible; and all of these with samples that were not measured.
   const std::vector<std::vector<float>> lists = {
       {0, 5, 9, 12, 15, 18, 21, 25, 30},
       {9.99F, 10, 20, 20.01F, 15},

@@ -39,7 +39,7 @@ void expect_sound(const Tetrahedra& t) {
   EXPECT_GT(q.min_volume_mm3, 0.0);
   EXPECT_GT(q.min_dihedral_deg, stuffed_dihedral_deg());
   EXPECT_LE(most_at_a_face(t), 2u);
-  // The boundary's volume is the elements': no two lie on each other, and none is missing between others.
+  // The boundary's volume equals that of the elements: no two overlap, and none is missing between others.
   EXPECT_NEAR(tests::volume_mm3(surface_of(t)), q.volume_mm3, 1e-9 * q.volume_mm3);
 }
 

@@ -28,7 +28,8 @@ Tetrahedra by_mesh3(const brep::Triangles& surface) {
   return tetrahedralise(brep::mesh_of(surface), options);
 }
 
-/// A ball whose faces are cut at a point close to one of their sides: triangles no kept surface is good on.
+/// A ball whose faces are cut at a point close to one of their sides, so that no surface that keeps these
+/// triangles is good.
 brep::Triangles with_needles() {
   brep::Triangles t = ball({0, 0, 0}, 20.0, 3);
   const std::size_t faces = t.faces.size();
@@ -94,7 +95,7 @@ TEST(Mesh3Tetrahedra, BestTakesItWhereNeedlesOfTheKeptSurfaceSpoilTheAngles) {
 TEST(Mesh3Tetrahedra, NoMiddleOfAThinPlateIsLost) {
   TetOptions options;
   options.mesher = Mesher::Best;
-  // Of each, Mesh_3 gave the ends alone, thickened to the whole volume.
+  // For each of these, Mesh_3 made only the ends, thickened to the whole volume.
   for (const glm::dvec3& size_mm :
        {glm::dvec3(156, 6, 0.6), glm::dvec3(13, 13, 0.2341), glm::dvec3(1000, 1000, 0.001)}) {
     const Tetrahedra t = tetrahedralise(brep::mesh_of(box({0, 0, 0}, size_mm)), options);
@@ -170,7 +171,7 @@ TEST(Mesh3Tetrahedra, ATimeLimitTooSmallIsNamed) {
 }
 
 TEST(Mesh3Tetrahedra, FilmsOfRealBoneAreLeftOutAndToldAndAThickShellNever) {
-  // Films as welding and splitting leave them where a model's sheets touch.
+  // Films as they result from welding and splitting where a model's sheets touch.
   const brep::Triangles film{{{30, 0, 0}, {30.3, 0, 0}, {30, 0.3, 0}, {30.1, 0.1, 5e-4}},
                              {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
   const Tetrahedra t = by_mesh3(together(ball({0, 0, 0}, 20.0, 3), film));

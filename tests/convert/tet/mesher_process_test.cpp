@@ -19,7 +19,7 @@ MesherInput long_work(int depth = 6) {
   return {surface.points_mm, surface.faces, {}};
 }
 
-/// A child of this process by the name of its executable; -1 where there is none.
+/// A child of this process by the name of its executable; -1 if there is none.
 pid_t child_named(const std::string& name) {
   for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
     std::ifstream children(task.path() / "children");
@@ -32,7 +32,7 @@ pid_t child_named(const std::string& name) {
   return -1;
 }
 
-/// How TetGen's run ends when its process gets a signal as soon as it is there.
+/// The outcome of TetGen's run if its process receives a signal as soon as it exists.
 MesherOutcome struck_by(int signal, std::chrono::milliseconds time) {
   std::jthread striker([signal](const std::stop_token& stop) {
     while (!stop.stop_requested())

@@ -12,7 +12,7 @@
 namespace octotomy::convert {
 namespace {
 
-/// By side_log2, z, y, x.
+/// Positions as side_log2, z, y, x.
 using Places = std::vector<std::array<int, 4>>;
 
 /// The side_log2 of each voxel's cell by the definition, voxel by voxel; -1 without one.

@@ -36,7 +36,7 @@ voxel::Octree random_cubes(int depth, unsigned seed) {
   return voxel::combine(universe, all);
 }
 
-/// Why the elements do not fill the voxels exactly and share whole faces, or nothing.
+/// The reason why the elements do not fill the voxels exactly or do not share whole faces; empty if they do.
 std::string fault_of(const voxel::Octree& octree, const Tetrahedra& t) {
   std::map<std::array<std::uint32_t, 3>, int> faces;
   for (const auto& [a, b, c, d] : t.tets)
@@ -136,7 +136,8 @@ TEST(OctreeTetrahedra, RegionsOfRandomCubesShareTheirInterfacesAndNoneReachesInt
       EXPECT_NEAR(volumes[0], static_cast<double>(a.voxel_count()), 1e-6);
       EXPECT_NEAR(volumes[1], static_cast<double>(b.voxel_count()), 1e-6);
 
-      // The interface's area is what the two have more of surface than both together, halved.
+      // The interface's area is half of the surface that the two regions have in addition to that of both
+      // together.
       double area_mm2 = 0.0;
       for (const Interface& between : interfaces(t))
         for (const ElementFace& face : between.faces) {
@@ -166,7 +167,7 @@ TEST(OctreeTetrahedra, WhatIsInTwoRegionsIsTheFirsts) {
   EXPECT_NEAR(quality(t).volume_mm3, 96.0, 1e-9);
 }
 
-/// Of nodes, elements, boundary and regions, their order included.
+/// A checksum of nodes, elements, boundary and regions, including their order.
 std::uint64_t sum_of(const Tetrahedra& t) {
   std::uint64_t sum = 14695981039346656037U;  // FNV-1a
   const auto add = [&sum](const void* data, std::size_t bytes) {
@@ -181,7 +182,7 @@ std::uint64_t sum_of(const Tetrahedra& t) {
 }
 
 TEST(OctreeTetrahedra, NodesAndElementsStandInTheOrderInWhichDecksNumberThem) {
-  // Frozen: decks on disk name nodes and elements by these numbers.
+  // Frozen, because decks on disk refer to nodes and elements by these numbers.
   const voxel::Universe universe = unit_universe(5);
   const voxel::Octree ball = voxel::combine(universe, voxel::Sphere{{15.3, 16.1, 14.2}, 12.7});
   const voxel::Octree slab = voxel::combine(universe, voxel::Box{{-0.5, -0.5, 3.5}, {31.5, 20.5, 19.5}});
@@ -203,7 +204,7 @@ TEST(OctreeTetrahedra, BoundaryNodesAreThoseOfFacesOfOneElement) {
 }
 
 TEST(OctreeTetrahedra, WhatTakesMoreMemoryThanThereIsIsRefusedBefore) {
-  // In a process of its own, as the limit is the process's.
+  // In a process of its own, because the limit applies to the process.
   const voxel::Octree ball = voxel::combine(unit_universe(7), voxel::Sphere{{63, 63, 63}, 60.0});
   EXPECT_EXIT(
       {

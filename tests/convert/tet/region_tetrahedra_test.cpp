@@ -39,7 +39,7 @@ double area_mm2(const Tetrahedra& t, const std::vector<ElementFace>& faces) {
 }
 
 TEST(RegionTetrahedra, ACoreAndItsShellAreSmoothShareTheirNodesAndHaveNoFlatElement) {
-  // The core is the first's, what is left of the ball the second's.
+  // The core belongs to the first region, the rest of the ball to the second.
   const Tetrahedra t = smooth_tetrahedra_of({ball(7.0), ball(12.0)});
   const double core_mm3 = 4.0 / 3.0 * M_PI * std::pow(7.0, 3),
                whole_mm3 = 4.0 / 3.0 * M_PI * std::pow(12.0, 3);
@@ -94,7 +94,8 @@ TEST(RegionTetrahedra, AnObliqueCutBetweenTwoPiecesIsFlatButForNodesThatAreTold)
     EXPECT_GE(quality(t).min_dihedral_deg, 5.0);
     std::vector<double> off_mm = off_plane_mm(t, on_mm, normal);
     std::sort(off_mm.begin(), off_mm.end());
-    // The plane is known from voxels alone, to a part of one. Steps of voxels would put half of the nodes off.
+    // The plane is determined from voxels alone, to a fraction of a voxel. Steps of voxels would put half of
+    // the nodes off.
     constexpr double known_mm = 0.25;
     EXPECT_LT(off_mm[off_mm.size() * 85 / 100], known_mm) << size_mm;
     const bool is_told = std::any_of(t.findings.begin(), t.findings.end(), [](const std::string& finding) {

@@ -35,7 +35,7 @@ TEST(SharpEdges, OfABoxAreKeptByMeshersThatMakeASurfaceOfTheirOwn) {
     const Tetrahedra t = tetrahedralise(brep::mesh_of(tests::box(low, high)), options);
     const std::vector<double> away_mm = brep::SurfaceTree(surface_of(t)).distances_mm(side_points(low, high));
     const auto near = std::count_if(away_mm.begin(), away_mm.end(), [](double mm) { return mm < 1e-6; });
-    // Where no element would stay fit, the edge stays cut off.
+    // If no element would stay good, the edge stays cut off.
     EXPECT_GT(near, 80 * static_cast<std::ptrdiff_t>(away_mm.size()) / 100) << t.method;
     EXPECT_GE(quality(t).min_dihedral_deg, fit_dihedral_deg()) << t.method;
     EXPECT_NEAR(quality(t).volume_mm3, 9.8 * 10.3 * 30.5, 2e-3 * 9.8 * 10.3 * 30.5) << t.method;

@@ -34,7 +34,7 @@ double smallest_angle_deg(const brep::Triangles& t) {
   return least;
 }
 
-/// Mean length of the sides of elements whose middles are within a reach of a point, and how many.
+/// The mean length and the number of the sides of elements whose middles are within a distance of a point.
 struct Sides {
   double mean_mm = 0.0;
   std::size_t elements = 0;

@@ -15,7 +15,7 @@ using tests::box;
 using tests::inside_out;
 using tests::together;
 
-/// What the call throws, as text; empty where it does not.
+/// The message of the exception that the call throws; empty if it throws none.
 template <typename Error>
 std::string refusal(const brep::Triangles& solid, const TetOptions& options = {}) {
   try {

@@ -38,7 +38,7 @@ double winding_by_solid_angles(const brep::Triangles& t, const glm::dvec3& p) {
   return angle / (4.0 * std::numbers::pi);
 }
 
-/// The first voxel that is not as the winding number says, or none.
+/// The first voxel that contradicts the winding number, or none.
 std::optional<glm::ivec3> first_unlike_winding(const voxel::Octree& octree, const brep::Triangles& t) {
   const int side = octree.universe().side();
   const voxel::Lattice lattice = octree.universe().lattice();
@@ -94,7 +94,8 @@ TEST(Voxelise, VerticesAndEdgesOnRowsOfVoxelCentresDoNotLeak) {
 }
 
 TEST(Voxelise, TwoSolidsThatShareAFaceShareNoVoxelAndLoseNone) {
-  // A box cut along a plane through voxel centres and lattice corners: the shared face is the same triangles.
+  // A box cut along a plane through voxel centres and lattice corners: both parts have the same triangles in
+  // the shared face.
   brep::Triangles lower = box({2, 2, 2}, {12, 12, 12});
   lower.points_mm[5] = {12, 2, 5};
   lower.points_mm[7] = {12, 12, 5};

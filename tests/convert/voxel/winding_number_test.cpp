@@ -27,7 +27,7 @@ using tests::inside_out;
 using tests::together;
 using tests::unit_universe;
 
-/// The universe of a surface with room about it.
+/// The universe of a surface, with space around it.
 voxel::Universe universe_of(const brep::Triangles& surface, int side) {
   voxel::Box box{surface.points_mm[0], surface.points_mm[0]};
   for (const glm::dvec3& p : surface.points_mm) {
@@ -38,8 +38,8 @@ voxel::Universe universe_of(const brep::Triangles& surface, int side) {
   return voxel::universe_around(box, 1.05 * std::max({extent.x, extent.y, extent.z}) / side);
 }
 
-/// The first voxel that is not as the sum of solid angles says, or none. Centres at which that sum is within
-/// rounding of a half are passed over.
+/// The first voxel that contradicts the sum of solid angles, or none. Centres at which that sum is within
+/// rounding of a half are skipped.
 std::string first_difference(const voxel::Octree& octree, const brep::Triangles& surface) {
   const int side = octree.universe().side();
   const voxel::Lattice lattice = octree.universe().lattice();
@@ -213,8 +213,8 @@ TEST(WindingNumber, GivesTheSameOctreeOnOneThreadAndMany) {
   EXPECT_TRUE(voxelise_by_winding_number(unit_universe(6), open) == many);
 }
 
-/// Sound meshes of the reference data are broken in the ways that scanners and exporters break them; what is
-/// away from the damage must not change.
+/// Sound meshes of the reference data are broken in the ways of scanners and exporters. Voxels away from the
+/// damage must not change.
 class Broken : public testing::TestWithParam<const char*> {};
 
 TEST_P(Broken, VoxelsAwayFromTheDamageAreThoseOfTheSoundTwin) {

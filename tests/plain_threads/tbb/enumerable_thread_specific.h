@@ -8,7 +8,7 @@
 
 namespace tbb {
 
-/// A value for each thread that asked for one.
+/// A value for each thread that has requested one.
 template <typename Value>
 class enumerable_thread_specific {
  public:

@@ -16,7 +16,7 @@ class global_control {
   ~global_control() { most() = before_; }
 
   static std::size_t active_value(parameter) { return most(); }
-  /// Threads that a loop may take: a few, so that they meet even where there are less processors.
+  /// The number of threads of a loop: a few, so that they meet even on fewer processors.
   static std::atomic<std::size_t>& most() {
     static std::atomic<std::size_t> threads{4};
     return threads;

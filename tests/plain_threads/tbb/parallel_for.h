@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-// What this project uses of oneTBB, on plain threads: the thread sanitizer knows what std::thread and
-// std::atomic order, but not what a library that was built without it does, and finds races in all that such
-// a library hands from thread to thread. Iterations run in any order on any thread, as they may there; loops
-// within loops run on the thread they are met on.
+// The part of oneTBB that this project uses, on plain threads. The thread sanitizer recognises the order that
+// std::thread and std::atomic impose. In a library that was built without it, it does not, and reports races
+// for everything that such a library passes between threads. Iterations run in any order on any thread, as in
+// oneTBB; loops within loops run on the thread that meets them.
 
 #include <algorithm>
 #include <atomic>

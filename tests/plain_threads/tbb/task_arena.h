@@ -7,7 +7,7 @@
 
 namespace tbb {
 
-/// As many threads as were asked for; the limit holds for the whole program.
+/// An arena of the requested number of threads; the limit holds for the whole program.
 class task_arena {
  public:
   explicit task_arena(int threads) : threads_(static_cast<std::size_t>(threads)) {}
@@ -28,7 +28,7 @@ inline int max_concurrency() {
   return static_cast<int>(global_control::most());
 }
 
-/// A thread of these takes up no work but its own anyway.
+/// These threads never work on other tasks anyway, so the function is simply called.
 template <typename Function>
 auto isolate(const Function& function) {
   return function();

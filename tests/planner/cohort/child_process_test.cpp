@@ -11,7 +11,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// A shell of a child process.
+/// A child process that runs a shell script.
 ChildProcess shell(const std::string& script) {
   return {.words = {"sh", "-c", script}};
 }

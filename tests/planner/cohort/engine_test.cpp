@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 /// The program on a cohort of three subjects.
 class CohortEngine : public tests::CommandLine {
  protected:
-  /// The scans: files of so many bytes with this beginning, which take no room on the disk.
+  /// Makes the scans: files with this beginning and size, which occupy no room on the disk.
   void make_scans(const std::string& beginning, std::uintmax_t bytes) const {
     write("scan.nrrd", beginning);
     fs::resize_file(folder_ / "scan.nrrd", bytes);
@@ -43,7 +43,7 @@ class CohortEngine : public tests::CommandLine {
       ::execv(arguments[0], arguments.data());
     });
   }
-  /// Whether a participant has its subject in hand.
+  /// Whether a participant is working on its subject.
   bool is_at_work() const {
     return tests::holds_soon([this] { return fs::exists(folder_ / "out/code/locks/1"); });
   }

@@ -13,7 +13,7 @@
 
 namespace octotomy::tests {
 
-/// Whether it comes to hold within a minute.
+/// Whether a condition becomes true within a minute.
 inline bool holds_soon(const std::function<bool()>& holds) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
   while (!holds()) {
@@ -23,7 +23,7 @@ inline bool holds_soon(const std::function<bool()>& holds) {
   return true;
 }
 
-/// Does the work in a process of its own, which ends with it.
+/// Runs the work in a new process, which ends when the work has ended.
 inline pid_t in_process(const std::function<void()>& work) {
   const pid_t process = ::fork();
   if (process != 0) return process;
@@ -35,7 +35,8 @@ inline pid_t in_process(const std::function<void()>& work) {
   ::_exit(0);
 }
 
-/// While it lives, processes whose parents end become children of this process, which so knows their ends.
+/// While this object exists, processes whose parents end become children of this process, so that it can
+/// observe their ends.
 class Orphans {
  public:
   Orphans() { ::prctl(PR_SET_CHILD_SUBREAPER, 1); }

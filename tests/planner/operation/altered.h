@@ -21,7 +21,7 @@ struct Answer {
   brep::Solid mesh;
 };
 
-/// The answer of another object of the plan. An empty name stands for nothing at all.
+/// The answers of both kernels for an object of the plan. An empty name means an empty object.
 inline Answer answer_of(const planner::Evaluation& evaluation, const std::string& id) {
   if (id.empty()) return {voxel::Octree::empty(evaluation.universe), brep::Solid()};
   const planner::Object& object = evaluation.object(id);
@@ -54,7 +54,7 @@ inline verify::Certificate altered_certificate(const planner::Evaluation& evalua
   return altered_certificate(evaluation, id, answer_of(evaluation, by), which);
 }
 
-/// In either kernel and in both, another answer must fail.
+/// Expects that another answer fails, in either kernel and in both.
 inline void expect_fails_as(const planner::Evaluation& evaluation, const std::string& id, const Answer& by,
                             const std::string& name) {
   for (const Altered which : {Altered::Voxels, Altered::Mesh, Altered::Both}) {

@@ -12,7 +12,7 @@
 namespace octotomy::tests {
 
 constexpr double ball_radius_mm = 20.0;
-/// Of balls for tests that certify many answers: an eighth of the voxels.
+/// The radius of balls for tests that certify many answers; they have an eighth of the voxels.
 constexpr double small_radius_mm = 10.0;
 
 /// A plan on a ball about the origin, in voxels of 1 mm: the object "ball", then the steps. The scan is 3.2
@@ -27,7 +27,7 @@ inline planner::Plan ball_plan(const ScratchFolder& folder, const std::string& s
                              folder.path());
 }
 
-/// Both kernels have the volume within `share` of the truth, and their certificate passes.
+/// Expects the volume of both kernels within `share` of the truth, and a certificate that passes.
 inline void expect_certified(const planner::Object& object, double truth_mm3, double share) {
   EXPECT_NEAR(object.voxel.measures.volume_mm3 / truth_mm3, 1.0, share) << object.id;
   ASSERT_TRUE(object.mesh.within) << object.id << testing::PrintToString(object.findings);
@@ -37,8 +37,8 @@ inline void expect_certified(const planner::Object& object, double truth_mm3, do
       << object.id << testing::PrintToString(object.certificate->reasons);
 }
 
-/// Both kernels have the volume within `share` of the truth, and the certificate says that one code made both
-/// answers: their agreement is no PASS.
+/// Expects the volume of both kernels within `share` of the truth, and a certificate that states that one
+/// code made both answers, so that their agreement is no PASS.
 inline void expect_not_independent(const planner::Object& object, double truth_mm3, double share) {
   EXPECT_NEAR(object.voxel.measures.volume_mm3 / truth_mm3, 1.0, share) << object.id;
   ASSERT_TRUE(object.mesh.within) << object.id << testing::PrintToString(object.findings);
@@ -49,7 +49,7 @@ inline void expect_not_independent(const planner::Object& object, double truth_m
   EXPECT_NE(reasons.find("not independent"), std::string::npos) << object.id << reasons;
 }
 
-/// The refusal of a plan with these steps; empty where it is read.
+/// The refusal of a plan with these steps; empty if it is read.
 inline std::string ball_refusal(const ScratchFolder& folder, const std::string& steps) {
   try {
     ball_plan(folder, steps);
@@ -59,7 +59,7 @@ inline std::string ball_refusal(const ScratchFolder& folder, const std::string& 
   return "";
 }
 
-/// The refusal of a plan with these steps when it is read or its objects are made; empty where they are made.
+/// The refusal of a plan with these steps when it is read or its objects are made; empty if they are made.
 inline std::string made_refusal(const ScratchFolder& folder, const std::string& steps) {
   try {
     planner::EvaluateOptions options;

@@ -233,7 +233,7 @@ TEST_F(Caveats, HolesThatAMotionLeftAreNoMissingTissue) {
   }
 }
 
-/// Copies of samples, too, have what no scanner measured.
+/// Copied samples, too, have voxels that no scanner measured.
 TEST_F(Caveats, SamplesThatAreNoNumbersAreKnownInScansThatStepsMake) {
   write_without_numbers({{2, 2, 2}});
   plan_["steps"] = SortedJson::array();
@@ -266,7 +266,7 @@ TEST_F(Caveats, WhatOnlyTheMeshKernelDoesStaysSoThroughBooleansAndMotions) {
   const verify::Certificate& clean = *evaluation.object("clean").certificate;
   EXPECT_TRUE(clean.independent());
   EXPECT_EQ(clean.verdict, Verdict::Pass) << reasons(evaluation.object("clean"));
-  // From the operands on: the window's and the Boolean's code of each kernel.
+  // The makers begin with the operands: the window's and the Boolean's code of each kernel.
   EXPECT_GE(clean.voxel.makers.size(), 3U);
   EXPECT_GE(clean.mesh.makers.size(), 3U);
 }

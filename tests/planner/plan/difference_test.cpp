@@ -67,7 +67,7 @@ TEST(Difference, AnotherOrderIsToldOnce) {
   EXPECT_EQ(found.reordered, (std::vector<std::string>{"b", "a"}));
 }
 
-/// Of steps that both plans have, those that follow another one of them than before, by a look at all pairs.
+/// The steps of both plans that follow another step than before, computed by comparing all pairs.
 std::vector<std::string> plainly_reordered(const std::string& from, const std::string& to) {
   const auto before = [](const std::string& plan, const std::string& other, char id) {
     char last = ' ';

@@ -208,7 +208,7 @@ TEST_F(History, ACopyOfItsOneFileHasEveryEditWhileItIsOpen) {
   EXPECT_EQ(copied.newest(1)[0].what, "edit");
 }
 
-/// Gives a history the log that older ones have.
+/// Adds to a history the log that older histories have.
 void give_a_log(const fs::path& plan) {
   sqlite3* database = nullptr;
   ASSERT_EQ(sqlite3_open(PlanHistory::path_of(plan).c_str(), &database), SQLITE_OK);
@@ -329,7 +329,7 @@ TEST_F(History, OfAFolderThatCannotBeWrittenIsRead) {
   }));
 }
 
-/// Records edits for ever, telling each one's number once record() returned.
+/// Records edits for ever, and prints each one's number once record() has returned.
 [[noreturn]] void edit_until_killed(const fs::path& plan, int from, int told) {
   try {
     PlanHistory history(plan);
@@ -370,7 +370,8 @@ TEST_F(History, AKillAtAnyInstantLosesNoEditThatWasTold) {
     const std::string text = history.text();
     ASSERT_EQ(file(), text) << "after kill " << kill;
     const int found = nlohmann::json::parse(text).at("steps")[0].at("low").get<int>();
-    // Told edits are there; the one in the making may be; an undo of it may be the last that was done.
+    // Edits whose numbers were printed exist; the one that was being made may exist; the last action may have
+    // been an undo of it.
     ASSERT_GE(found, last - 0) << "after kill " << kill;
     ASSERT_LE(found, last + 1) << "after kill " << kill;
     next = found + 1;
@@ -378,7 +379,7 @@ TEST_F(History, AKillAtAnyInstantLosesNoEditThatWasTold) {
   EXPECT_GT(killed_late, kills / 4) << "most kills came before the first edit";
 }
 
-/// Bytes that this process has read from files so far; none where the system does not count them.
+/// The number of bytes that this process has read from files; none if the system does not count them.
 std::optional<std::int64_t> bytes_read() {
   std::ifstream counts("/proc/self/io");
   std::string name;

@@ -18,7 +18,7 @@ SortedJson le_fort_i() {
   return SortedJson::parse(file);
 }
 
-/// What a plan is refused with; empty where it is taken.
+/// The message with which a plan is refused; empty if it is accepted.
 std::string refusal(const std::string& text) {
   try {
     parse_plan(text, "/plans");

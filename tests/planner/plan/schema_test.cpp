@@ -8,7 +8,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// Whether a value fits a schema of the words that plan_schema() uses; the first misfit is said in `why`.
+/// Whether a value fits a schema made of the words that plan_schema() uses; `why` receives the first misfit.
 bool fits(const SortedJson& value, const SortedJson& schema, const std::string& where, std::string& why) {
   const auto misfit = [&](const std::string& what) {
     if (why.empty()) why = where + ": " + what;

@@ -11,7 +11,7 @@ namespace octotomy::planner {
 namespace {
 
 using namespace tests;
-/// All errors but those that are named are none.
+/// A trial's errors: zero except for those that are named.
 std::string errors_json(const std::string& named) {
   std::string text = named;
   for (const char* key : {"landmark_mm", "kerf_mm", "segmentation_mm", "seating_mm", "seating_deg"})

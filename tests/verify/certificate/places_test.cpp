@@ -117,7 +117,7 @@ struct Spoiled {
   bool keeps_mesh = false;
 };
 
-/// Of errors that a Spoiler makes.
+/// The number of kinds of errors that a Spoiler makes.
 constexpr std::uint64_t kinds = 10;
 
 /// Random errors of one subject.
@@ -126,7 +126,7 @@ class Spoiler {
   Spoiler(const Subject& subject, std::uint64_t seed)
       : subject_(subject), boundary_(voxel::voxel_boundary(subject.octree)), random_(seed) {}
 
-  /// Kinds take turns, one for each of `kinds` numbers.
+  /// Takes the kinds in turn, one for each of `kinds` numbers.
   Spoiled next(std::uint64_t number) {
     switch (number % kinds) {
       case 0:
@@ -403,7 +403,7 @@ class LumpOnAThread : public testing::Test {
     return judge_places(voxel::combine(universe_, voxels), convert::voxelise(universe_, mesh.linked()), mesh,
                         witness);
   }
-  /// What the voxels chose has the lump, what the mesh chose has not.
+  /// The parts that the voxels chose contain the lump, those that the mesh chose do not.
   ChosenParts chosen(std::vector<glm::dvec3> decided_mm = {}) const {
     return {voxel::combine(universe_, Expression(body_) | Expression(lump_)), body_mesh_,
             std::move(decided_mm)};
@@ -439,7 +439,7 @@ TEST_F(LumpOnAThread, StaysOpenInWhatIsCutFromTheChosenPartsAndMoved) {
   const Places moved = judged(voxel::moved(lump_alone, motion), brep::Solid(), carried(carried_on, motion));
   EXPECT_EQ(moved.voxel_count, 0U);
   ASSERT_EQ(moved.open.size(), 1U);
-  // Of the body, on which the choices agree, nothing is open.
+  // The choices agree on the body, so nothing about it is uncertain.
   const Places lost = judged(Expression(body_), brep::Solid(), witness_of_parts(whole(true), chosen()));
   EXPECT_GT(lost.voxel_count, 1000U);
 }

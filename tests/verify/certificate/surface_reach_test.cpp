@@ -60,7 +60,8 @@ class ReshapedBalls : public testing::Test {
         [max_error_mm] { return Reshaped{surface_decimated(balls().triangles(), max_error_mm)}; });
   }
 
-  /// As the planner certifies what the mesh kernel alone makes. The voxels are the answer's own.
+  /// Certifies the answer like an object that the mesh kernel alone makes. The voxels are computed from the
+  /// answer.
   static Certificate certified(const brep::Solid& answer, const Witness& witness) {
     const voxel::Universe universe = tests::universe_about_origin(6);
     const voxel::Box world = voxel::bounds(universe.lattice());
@@ -77,7 +78,7 @@ class ReshapedBalls : public testing::Test {
   static std::string told(const Certificate& certificate) {
     return verdict_text(certificate) + testing::PrintToString(certificate.reasons);
   }
-  /// The larger of both distances.
+  /// The larger one of the two distances.
   static double reach_mm(const Certificate& certificate) {
     double most_mm = -1.0;
     for (const Comparison& comparison : certificate.comparisons)

@@ -184,7 +184,7 @@ TEST(HeadPhantom, TheFaceLooksToTheFrontAndTheCrownIsUp) {
   EXPECT_FALSE(head_contains(HeadPart::Bone, {0, 33, -25}));       // foramen magnum
 }
 
-// Rows as sampling asks them, points as chance does, and both by turns.
+// Reads points in rows as sampling does, points at random, and both in turn.
 TEST(HeadPhantom, APartHoldsAPointWhereItsClosedFormIsNegativeInAnyOrderOfAsking) {
   const HeadSolids& head = head_solids();
   const std::array<std::pair<HeadPart, const ImplicitSolid*>, 4> parts{{{HeadPart::Bone, &head.bone},

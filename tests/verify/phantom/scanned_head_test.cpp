@@ -58,7 +58,7 @@ fs::path scanned(double tilt_deg, double slice_mm) {
   return folder;
 }
 
-// The slices of a series that are wanted, under names that say nothing of their order.
+// The wanted slices of a series, under names that do not show their order.
 fs::path shuffled(const fs::path& series, const std::string& name,
                   const std::function<int(std::size_t)>& copies) {
   const fs::path folder = scratch() / name;
@@ -127,7 +127,7 @@ TEST(ScannedHead, IsTheSameWithASliceMissingAndOneStoredTwice) {
 }
 
 TEST(ScannedHead, IsTheSameWithSlicesUnevenlyApart) {
-  // Of slices half a millimetre apart every second or third: gaps of 1 and 1.5 mm.
+  // From slices half a millimetre apart, every second or third is kept: gaps of 1 and 1.5 mm.
   const voxel::Scene scene = voxel::read_scene(
       shuffled(scanned(0, 0.5), "uneven", [](std::size_t k) { return k % 5 == 0 || k % 5 == 2 ? 1 : 0; }));
   EXPECT_EQ(verdict(scene, "slice_spacing"), Verdict::Warn);

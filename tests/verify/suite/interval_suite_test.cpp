@@ -18,7 +18,7 @@ TEST(IntervalSuite, IntervalsHoldTheTruthAsOftenAsTheyClaimAndAreNotIdle) {
     if (!row.group.empty()) continue;
     ++pooled;
     EXPECT_EQ(row.cases, solids);
-    // Of 120 at most four may miss, which 99 % does once in a hundred.
+    // At most four of 120 may miss, which intervals of 99 % exceed once in a hundred runs.
     EXPECT_GE(std::lround(row.held * solids), solids - 4) << row.quantity;
     EXPECT_GE(row.p99_share, least_p99_share) << row.quantity;
   }

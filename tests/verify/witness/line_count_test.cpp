@@ -126,7 +126,7 @@ TEST(LineCount, MovesWithItsObjectBeyondAnyUniverse) {
   EXPECT_NEAR(count.volume_mm3, ball_mm3(10.0), 0.02 * ball_mm3(10.0));
 }
 
-/// Whether each name holds, by Python's precedence, written out by hand for each text.
+/// Whether the expression of each name is true, by Python's precedence, written by hand for each text.
 using Truth = bool (*)(bool a, bool b, bool c);
 
 TEST(LineReading, ReadsExpressionsAsPointsDo) {

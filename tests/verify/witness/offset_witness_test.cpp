@@ -66,7 +66,7 @@ class OffsetOfABall : public testing::Test {
     return brep::offset(of.both.mesh, {.by_mm = by, .cell_mm = cell_mm});
   }
 
-  /// Answers are held against what was asked of `asked`.
+  /// The certificate of answers, judged by the offset of `asked`.
   static Certificate certified(const Operand& asked, double by, const voxel::Octree& octree,
                                const brep::Solid& solid) {
     BoundInputs inputs;

@@ -75,7 +75,7 @@ TEST(Headrest, ComesBackBitByBit) {
   ASSERT_NE(std::get<Int16Samples>(removal.scene.samples), std::get<Int16Samples>(scene.samples));
   EXPECT_EQ(restore(removal.scene, removal.removed), removal.voxels);
   EXPECT_EQ(std::get<Int16Samples>(removal.scene.samples), std::get<Int16Samples>(scene.samples));
-  // Not into another scan.
+  // Samples cannot be restored into another scan.
   Scene moved = scene;
   moved.lattice.lps_from_voxel[3].x += 1.0;
   EXPECT_THROW(restore(moved, removal.removed), std::invalid_argument);
@@ -114,7 +114,7 @@ TEST(Headrest, ThatIsLargerThanASmallHeadOnAThinBridgeIsRemovedAndTheHeadStays) 
         head += in_head(p_mm);
         head_gone += in_head(p_mm) && !is_solid;
         board += in_board(p_mm);
-        // Of a link, a foot of up to 5 mm may stay on the head.
+        // A foot of up to 5 mm of the link may stay on the head.
         board_left += in_board(p_mm) && p_mm.y > radius + 5 && is_solid;
       });
       ASSERT_GT(board, is_whole ? head : head / 2);

@@ -158,7 +158,7 @@ TEST(Padding, SurvivesEveryFileFormatThatWeWrite) {
     EXPECT_EQ(range(read).low, 100.0) << name;
     EXPECT_EQ(padded_samples(read), padded_samples(scene)) << name;
   }
-  // A file that states a padding among its values is not believed; what its values show is told.
+  // A stated padding that lies among the file's values is ignored, and the contradiction is reported.
   scene.padding = 100.0;
   write_scene(scene, folder / "b.nrrd");
   const Scene read = read_scene(folder / "b.nrrd");
@@ -166,7 +166,7 @@ TEST(Padding, SurvivesEveryFileFormatThatWeWrite) {
   EXPECT_TRUE(std::any_of(read.audit.begin(), read.audit.end(), [](const Finding& finding) {
     return finding.detail.find("below the padding that the file states") != std::string::npos;
   }));
-  // One that no sample has, of any size, is no padding either.
+  // A padding value that no sample has is no padding either, however large.
   scene.padding = -1e9;
   write_scene(scene, folder / "c.nrrd");
   const Scene whole = read_scene(folder / "c.nrrd");

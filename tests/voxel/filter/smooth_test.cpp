@@ -124,7 +124,7 @@ TEST(Smoothing, IsTheSameOnOneThreadAndOnTwoStopsAndReports) {
                        std::get<FloatSamples>(diffuse(scene, {}).samples)};
   };
   EXPECT_EQ(all_on(1), all_on(2));
-  // Asked to stop half-way, at a report.
+  // The stop is requested half-way, at a report.
   for (int which = 0; which < 3; ++which) {
     std::stop_source stop;
     int reports = 0;

@@ -220,7 +220,7 @@ TEST(ReadDicom, RefusesFramesThatAreProjectionsOrAFilm) {
   write_bytes(folder / "frames.dcm", film(DicomBytes::element(0x00180088, "DS", "2")));
   const Scene scene = read_scene(folder / "frames.dcm");
   expect_ramp(scene, frames);
-  expect(tests::finding(scene, "frame_positions")->detail, "as of a film");
+  expect(tests::finding(scene, "frame_positions")->detail, "as in a film");
 }
 
 TEST(ReadDicom, InflatesWhatIsDeflatedAsAWhole) {

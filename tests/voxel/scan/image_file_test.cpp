@@ -138,7 +138,7 @@ std::vector<double> samples_of(const std::string& bytes) {
   return samples;
 }
 
-/// What a function of the pixel's number gives, of every pixel.
+/// The values of a function of the pixel's number, for every pixel.
 template <typename Sample>
 std::vector<double> every(const Sample& sample) {
   std::vector<double> samples;

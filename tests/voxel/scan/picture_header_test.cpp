@@ -22,14 +22,14 @@ std::string codestream(std::uint32_t width, std::uint32_t height, std::uint32_t 
   return bytes + big_endian(channels).substr(2) + "\x07\x01\x01";
 }
 
-/// A JPEG's segments up to its frame's header, of the kind that the marker tells.
+/// A JPEG's segments up to its frame's header, of the kind that the marker states.
 std::string jpeg(const std::string& marker, std::uint32_t width, std::uint32_t height, char channels) {
   const std::string comment("\xff\xfe\x00\x06\xff\xc2\x00\x01", 8);  // data like a frame's marker
   return "\xff\xd8" + comment + std::string("\xff\xff", 2) + marker + std::string("\x00\x0b\x08", 3) +
          big_endian(height).substr(2) + big_endian(width).substr(2) + channels + std::string(12, '\0');
 }
 
-/// What is told of a picture: its format, or why it is refused.
+/// The result for a picture: its format, or the reason for a refusal.
 std::string told(const std::string& bytes) {
   try {
     return read_picture_header(bytes, most_bytes).format;

@@ -134,7 +134,7 @@ TEST(ReadDicomSeg, OverlappingSegmentsKeepTheirSamplesAndAreNamed) {
     EXPECT_EQ(scene.lattice.dims, glm::ivec3(4, 2, 3));
     EXPECT_EQ(scene.lattice.spacing_mm(), glm::dvec3(0.25, 0.5, 2));
     EXPECT_EQ(scene.lattice.lps_mm({0, 0, 0}), glm::dvec3(1, 2, 2));
-    // 3 stands for both.
+    // The number 3 means both segments.
     const Int16Samples expected{0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 3, 2, 2, 2, 2, 0, 0, 0, 0};
     EXPECT_EQ(std::get<Int16Samples>(scene.samples), expected);
     EXPECT_EQ(scene.audit[0].detail, "1 'Mandible', 2 'Skull'");

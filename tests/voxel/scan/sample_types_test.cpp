@@ -104,7 +104,7 @@ std::vector<double> values_of(const Scene& scene) {
                     scene.samples);
 }
 
-/// The values as a scene can hold them, and whether it must say that they are rounded.
+/// The values in the precision of a scene, and whether the scene must report that they are rounded.
 void expect_values(const Scene& scene, const std::vector<double>& values) {
   bool rounded = false;
   std::vector<double> expected;

@@ -35,7 +35,7 @@ struct SpoiledImage {
 /// the lowest on.
 std::vector<SpoiledImage> sound_series(int count = 12, const std::string& prefix = "a");
 
-/// A kind of doubtful or faulty DICOM folder and what its audit must say.
+/// A kind of doubtful or faulty DICOM folder, and the lines that its audit must contain.
 struct SpoiledKind {
   std::string name;
   std::string check;  ///< the audit's line; "refused": reading throws

@@ -18,7 +18,7 @@ struct DrawnStructure {
   std::string offset = {};  ///< ContourOffsetVector; empty: not stated
 };
 
-/// Whom a structure set states; empty: it does not.
+/// The patient that a structure set states; empty: it states none.
 struct StatedIdentity {
   std::string patient_id, study_uid, frame_uid;
   std::string series_uid = {};  ///< that it was drawn on; beside frame_uid

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using tests::deflated, tests::gzip_window, tests::zlib_window;
 
-/// Bytes of which some repeat and some do not: stored, fixed and dynamic blocks.
+/// Bytes with and without repetitions, which give stored, fixed and dynamic blocks.
 std::string mixed_bytes(std::size_t count, unsigned seed) {
   std::mt19937 random(seed);
   std::string bytes(count, '\0');

@@ -8,7 +8,7 @@ export const turns = ["pitch_deg", "yaw_deg", "roll_deg"] as const;
 export type Direction = typeof directions[number];
 export type Turn = typeof turns[number];
 
-/// LPS directions of the words, for a head that is held as the scan holds it.
+/// LPS directions of the words, for a head in the scan's own orientation.
 export const lps: Record<Direction, Vec3> = {
   forward_mm: [0, -1, 0],
   left_mm: [1, 0, 0],

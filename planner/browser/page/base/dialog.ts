@@ -29,7 +29,7 @@ export function open_dialog(title: string, name: string, closed: () => void = ()
   return {refill: (...children) => fill(body, ...children), close};
 }
 
-/// Asks for one line of text; null where the person leaves.
+/// Shows a field for one line of text. Returns null if the person closes the dialog.
 export function ask_text(title: string, label: string, usual: string): Promise<string|null> {
   return new Promise((resolve) => {
     let answer: string|null = null;

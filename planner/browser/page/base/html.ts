@@ -8,8 +8,8 @@ export interface Attributes {
   [name: string]: Attribute;
 }
 
-/// An element: `class`, `style` and others as attributes, functions as `onclick` and so on, false and null
-/// left out.
+/// Creates an element. Keys that begin with "on" take functions; others, such as `class` and `style`, become
+/// attributes. False and null are left out.
 export function el<Tag extends keyof HTMLElementTagNameMap>(
     tag: Tag, attributes: Attributes = {}, ...children: Child[]): HTMLElementTagNameMap[Tag] {
   const element = document.createElement(tag);
@@ -18,7 +18,7 @@ export function el<Tag extends keyof HTMLElementTagNameMap>(
     if (typeof value === "function")
       element.addEventListener(name.slice(2), value as EventListener);
     else if (name === "style")
-      element.style.cssText = String(value);  // the page's policy refuses the attribute
+      element.style.cssText = String(value);  // because the page's content policy forbids the attribute
     else if (name === "value" && "value" in element)
       (element as HTMLInputElement).value = String(value);
     else
@@ -39,7 +39,8 @@ export function put(element: Element, children: Child[]): void {
   }
 }
 
-// What is pressed stays until it is let go, or its click would be lost and a slider would slip from the hand.
+// The control that is being pressed. Its host is not refilled until it is released; otherwise the click would
+// be lost and a dragged slider would stop.
 let pressed: Node|null = null;
 const put_off = new Map<Element, Child[]>();
 function release(): void {
@@ -51,17 +52,18 @@ function release(): void {
 addEventListener("pointerdown", (event) => {
   pressed = event.target as Node;
 }, true);
-// A click comes right after its pointerup. A list that hangs open tells its end by a change alone.
+// A click event directly follows its pointerup. An open drop-down list sends only a change event when it
+// closes.
 for (const end of ["pointerup", "pointercancel", "change"])
   addEventListener(end, () => window.setTimeout(release), true);
 
-// What a control is found again by when its host is filled anew: its `data-key`, else its words.
+// Identifies a control after its host was refilled: its `data-key`, else its words.
 const mark_of = (control: HTMLElement): string => control.dataset.key ??
     [control.textContent, control.ariaLabel, control.dataset.tip].join(" ").trim();
 const alike = (host: Element, {tagName, mark}: {tagName: string; mark: string}): HTMLElement[] =>
     [...host.querySelectorAll<HTMLElement>(tagName)].filter((control) => mark_of(control) === mark);
 
-// The control in a host that is seen to have the focus, and has a mark.
+// The control in a host that shows the focus and has a mark.
 function focused_in(host: Element):
     {tagName: string; mark: string; place: number; typed: string|null}|null {
   const active = document.activeElement;
@@ -74,9 +76,9 @@ function focused_in(host: Element):
   return {...known, place: alike(host, known).indexOf(active), typed: is_typed ? active.value : null};
 }
 
-/// Fills a host anew; a host in which something is pressed, as soon as that is let go. A control that is seen
-/// to have the focus keeps it if one of the same `data-key`, or else of the same words, comes again; a field
-/// keeps its text, too.
+/// Replaces a host's children. If something in the host is pressed, waits until it is released. A control
+/// that visibly has the focus keeps it if a new one has the same `data-key`, or else the same words; a text
+/// field also keeps its text.
 export function fill(host: Element, ...children: Child[]): void {
   if (pressed && host.contains(pressed)) {
     put_off.set(host, children);
@@ -106,8 +108,8 @@ export function fill_tabs<Name extends string>(
               {role: "tab", "aria-selected": String(name === chosen), class: name === chosen ? "on" : ""})));
 }
 
-/// A button with words or an icon, and its tip. Where it has an icon alone, the tip's first sentence is its
-/// name for screen readers.
+/// A button with words or an icon, and a tip. If it has only an icon, the tip's first sentence is its name
+/// for screen readers.
 export function button(
     label: Child,
     tip: string,

@@ -16,13 +16,13 @@ export const ink = {
   faint: "rgba(255,255,255,.55)",
 };
 
-// Boxes of the words that a pane has so far: names and numbers make room for each other.
+// Boxes of the labels drawn in the pane so far. Later labels avoid them.
 let labelled: {low: Vec2; high: Vec2}[] = [];
 
-// Views stand on white on a light page; words are dark with a light outline there.
+// Views have a white background on a light page. Words are then dark with a light outline.
 let is_on_white = false;
 
-/// Begins a pane's overlay, with no words so far.
+/// Begins a pane's overlay, which has no labels yet.
 export function begin_ink(on_white: boolean): void {
   is_on_white = on_white;
   labelled = [];
@@ -47,7 +47,8 @@ const dark_of: {[colour: string]: string} = {
 const font_of = (look: TextLook, ratio: number): string =>
     `500 ${(look.px ?? 12) * ratio}px system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif`;
 
-/// Words with an outline, so that they are legible on bone and on the ground; they stay within the picture.
+/// Words with an outline, so that they are legible on bone and on the background; they stay within the
+/// picture.
 export function text(
     context: CanvasRenderingContext2D, words: string, at: Vec2, ratio: number, look: TextLook = {}): void {
   context.font = font_of(look, ratio);
@@ -65,7 +66,7 @@ export function text(
   context.fillText(words, x, at[1]);
 }
 
-/// Keeps the labels that are still to come off a line.
+/// Makes later labels avoid a line.
 export function keep_words_off(points: Vec2[], ratio: number): void {
   const half = 2 * ratio;
   points.slice(1).forEach((to, i) => {
@@ -78,7 +79,7 @@ export function keep_words_off(points: Vec2[], ratio: number): void {
   });
 }
 
-/// A sentence in the picture's middle, in as many lines as its width asks for.
+/// A sentence in the picture's middle, on as many lines as the picture's width requires.
 export function sentence(
     context: CanvasRenderingContext2D, words: string, ratio: number, look: TextLook = {}): void {
   const {width, height} = context.canvas;
@@ -98,7 +99,7 @@ export function sentence(
           {...look, align: "center"}));
 }
 
-/// Words beside a point: at its right, or its left, or as far up or down as there is room.
+/// Words beside a point: at its right, at its left, or moved up or down to where there is room.
 export function label(
     context: CanvasRenderingContext2D, words: string, at: Vec2, ratio: number, look: TextLook): void {
   const px = (look.px ?? 12) * ratio;

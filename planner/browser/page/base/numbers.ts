@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Numbers as people read them, as `planner/operation/table/number_format.h` writes them in messages.
 
-/// Decimals as C++ prints them: of two that are equally near, the even one. Sixty decimals are exact.
+/// Rounds as C++ prints: of two equally near decimals, the even one. Sixty decimals represent any such double
+/// exactly.
 function fixed(value: number, digits: number): string {
   const text = value.toFixed(digits);
   const is_tie = /^50*$/.test(value.toFixed(60).split(".")[1]?.slice(digits) ?? "");
@@ -29,6 +30,6 @@ export function round_length(most: number): number {
   return ([5, 2, 1].find((digit) => digit * ten <= most * (1 + 1e-12)) ?? 1) * ten;
 }
 
-/// "mm³" of "mm3".
+/// The unit for people: "mm³" for "mm3".
 export const unit_text = (unit: string): string =>
     unit.replace("mm3", "mm³").replace("mm2", "mm²").replace("deg", "°").replace("per_mm", "per mm");

@@ -5,14 +5,14 @@ import {set, state, watch} from "../state";
 export const is_dark = (): boolean => state.theme === "dark" ||
     (state.theme === "system" && matchMedia("(prefers-color-scheme: dark)").matches);
 
-/// The ground of views on a dark page; on a light one they stand on white, as `octotomy render` draws them.
+/// Background of views on a dark page. On a light page it is white, as in `octotomy render`.
 export const dark_ground = "#0b0f14";
 
 export function change_theme(): void {
   set({theme: is_dark() ? "light" : "dark"});
 }
 
-/// Keeps the page in its theme, and the theme in the browser.
+/// Applies the chosen theme to the page and stores it in the browser.
 export function follow_theme(): void {
   const again = (): void => {
     document.documentElement.dataset.theme = is_dark() ? "dark" : "light";

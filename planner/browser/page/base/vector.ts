@@ -28,6 +28,6 @@ export function angle_deg(a: Vec3, corner: Vec3, b: Vec3): number {
   return (Math.acos(Math.max(-1, Math.min(1, cosine))) * 180) / Math.PI;
 }
 
-/// A number to a hundredth, so that plans hold what a person meant and not what a pixel happened to be.
+/// Rounds to a hundredth, so that plans contain intended numbers, not the position of a pixel.
 export const hundredth = (value: number): number => Math.round(value * 100) / 100;
 export const hundredths = (p: Vec3): Vec3 => [hundredth(p[0]), hundredth(p[1]), hundredth(p[2])];

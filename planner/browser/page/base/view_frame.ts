@@ -30,8 +30,8 @@ const directions: Record<ViewName, [Vec3, Vec3]> = {
 };
 export const view_names = Object.keys(directions) as ViewName[];
 
-/// The view from which a slice's plane is seen; a region drawn on the slice is one of that view. An oblique
-/// plane is seen along its normal, which a view's angles say.
+/// The view along a slice plane's normal. A region drawn on the slice belongs to this view. For an oblique
+/// plane, the view is given by angles.
 export const view_of_plane = (plane: PlaneName, tilt: Turned): View =>
     plane === "oblique" ? tilt : ({axial: "inferior", coronal: "anterior", sagittal: "left"} as const)[plane];
 
@@ -44,7 +44,7 @@ const turned_of: Record<ViewName, Turned> = {
   inferior: {azimuth: 0, elevation: -89.9},
 };
 
-/// A view as angles, from which it can be turned on.
+/// A view as angles, from which it can be rotated further.
 export const turned = (view: View): Turned => (typeof view === "string" ? turned_of[view] : view);
 
 export function directions_of(view: View): {right: Vec3; up: Vec3; look: Vec3} {
@@ -69,11 +69,11 @@ export function turned_towards(look: Vec3): Turned {
   };
 }
 
-/// A view as the plan says it: its name, or AZ,EL.
+/// A view as in a plan: its name, or AZ,EL.
 export const view_text = (view: View): string =>
     typeof view === "string" ? view : `${view.azimuth},${view.elevation}`;
 
-/// Where a point lies in a picture of the size, in pixels from the top left.
+/// The position of a point in a picture of this size, in pixels from the top left.
 export function pixel_of(frame: ViewFrame, size: Vec2, p_mm: Vec3): Vec2 {
   const x = dot(p_mm, frame.right) - dot(frame.centre_mm, frame.right);
   const y = dot(p_mm, frame.up) - dot(frame.centre_mm, frame.up);
@@ -94,7 +94,8 @@ export function point_of(frame: ViewFrame, size: Vec2, at: Vec2, depth_mm: numbe
   return add(add(scaled(frame.right, u), scaled(frame.up, v)), scaled(frame.look, depth_mm));
 }
 
-/// The letters at a picture's left, right, top and bottom edge: R, L, A, P, H, F; two where it is oblique.
+/// The letters at a picture's left, right, top and bottom edge: R, L, A, P, H or F; two letters if the edge's
+/// direction is oblique.
 export function edge_letters(frame: ViewFrame): {left: string; right: string; top: string; bottom: string} {
   const name = (d: Vec3): string =>
       ([[d[0], "L", "R"], [d[1], "P", "A"], [d[2], "H", "F"]] as [number, string, string][])

@@ -12,8 +12,8 @@ interface Entry {
   size?: number;
 }
 
-/// The folder picker: the server shows only folders that were opened with it. What is chosen is opened,
-/// unless it is wanted for something else.
+/// The folder picker. The server lists only folders that were opened with it. The choice is opened, or passed
+/// to `take` if that is given.
 export function open_picker(
     title = "Open a scan or plan", take: (path: string) => void = (path) => void open_found(path)): void {
   const dialog = open_dialog(title, "picker");
@@ -63,7 +63,7 @@ interface Series {
   study_date: string;
 }
 
-/// Opens a plan or a scan; of a folder with several DICOM series the one that the person picks.
+/// Opens a plan or a scan. If a folder has several DICOM series, the person picks one.
 async function open_found(path: string): Promise<void> {
   const key = busy("Looking for series");
   const answer = await try_to<{series: Series[]}>("series", {path});
@@ -118,7 +118,7 @@ const size_words = (bytes: number): string => bytes >= 2 ** 30 ?
     `${+(bytes / 2 ** 30).toFixed(1)} GB` :
     (bytes > 1e6 ? `${(bytes / 1e6).toFixed(1)} MB` : `${Math.ceil(bytes / 1e3)} KB`);
 
-/// A file that a person gives to the page, with the folders in which it lies below what was dropped.
+/// A file that a person sends to the page, with its path below the dropped folder.
 interface Given {
   file: File;
   path: string;  // "series/IM0001"
@@ -136,7 +136,7 @@ export function take_drops(): void {
   addEventListener("drop", (event) => {
     event.preventDefault();
     document.body.classList.remove("dropping");
-    // Both are gone once the event is over.
+    // Both lists are empty once the event has ended.
     const items = [...event.dataTransfer?.items ?? []].filter((item) => item.kind === "file").map((item) => {
       return {entry: item.webkitGetAsEntry(), file: item.getAsFile()};
     });
@@ -157,7 +157,7 @@ async function given_below(entry: FileSystemEntry): Promise<Given[]> {
   }
   const reader = (entry as FileSystemDirectoryEntry).createReader();
   const found: Given[] = [];
-  // A reader gives a part of its entries at a time, and none at the end.
+  // A reader returns its entries in parts; an empty part is the end.
   for (;;) {
     const part = await new Promise<FileSystemEntry[]>((take, fail) => reader.readEntries(take, fail));
     if (!part.length) return found;
@@ -165,7 +165,7 @@ async function given_below(entry: FileSystemEntry): Promise<Given[]> {
   }
 }
 
-/// A button that lets the person choose files, or a folder with all that lies below it.
+/// A button with which the person chooses files, or a folder with everything below it.
 export function file_chooser(label: string, tip: string, is_folder: boolean): Child {
   const picker: HTMLInputElement = el("input", {
     type: "file",
@@ -179,14 +179,14 @@ export function file_chooser(label: string, tip: string, is_folder: boolean): Ch
   return [button(label, tip, () => picker.click()), picker];
 }
 
-/// What a page may send, in words.
+/// The largest size that a page may send, in words.
 export const most_upload_words = (): string => size_words(most_upload_bytes());
 const most_upload_bytes = (): number => state.hello?.most_upload_bytes ?? 4 * 2 ** 30;
 const most_files = 20000;
 const sent_at_once = 4;
 
-/// Sends files to the planner's program, which keeps them in its folder "uploads", and opens what they are: a plan or a
-/// scan of one file, else the folder of a series.
+/// Sends files to the server, which stores them in its folder "uploads". Then opens them: a single file as a
+/// plan or a scan, several files as the folder of a series.
 export async function send(given: Given[]): Promise<void> {
   const files = given.filter(({path}) => !/(^|\/)(\.|DICOMDIR$|Thumbs\.db$)/i.test(path));
   const bytes = files.reduce((sum, {file}) => sum + file.size, 0);
@@ -227,14 +227,14 @@ export async function send(given: Given[]): Promise<void> {
   }
 }
 
-/// The folder in which files are kept together; the time makes it a new one.
+/// The folder for files that are sent together. The time in its name makes it unique.
 function folder_name(files: Given[]): string {
   const top = files[0]!.path.includes("/") ? files[0]!.path.split("/")[0]! : "series";
   const time = new Date().toISOString().slice(0, 19).replace(/[-:]/g, "").replace("T", "-");
   return `${top.replace(/[^\w-]+/g, "_").slice(0, 60)}-${time}`;
 }
 
-/// Names in one folder: a file's own, or with a number before it where two folders have files of the same name.
+/// Names in one folder: a file's own, with a number before it if two folders have files of the same name.
 function sent_names(files: Given[]): string[] {
   const own = files.map(({file}) => file.name);
   return new Set(own).size === own.length ?

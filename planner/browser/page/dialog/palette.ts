@@ -54,7 +54,7 @@ export function open_palette(): void {
         chosen = Math.max(0, chosen - 1);
       else if (event.key !== "Enter")
         return;
-      // Else the key would press a button of the dialog that the command opens.
+      // Otherwise the key would press a button of the dialog that the command opens.
       event.preventDefault();
       if (event.key === "Enter") return run(found[chosen]);
       again();
@@ -101,6 +101,6 @@ export function open_help(): void {
          el("p", {},
             "Two kernels compute every object: one counts voxels, one measures triangles. A green badge says that they agree within what the scan can tell, amber that there is a doubt, red that they disagree. Click a badge to see the place."),
          el("p", {}, "Not a medical device. Nothing leaves this machine."))));
-  // It scrolls, so keys must reach it.
+  // The help scrolls, so it must be able to have the focus.
   document.querySelector<HTMLElement>("dialog.help .dialog-body")!.tabIndex = 0;
 }

@@ -21,7 +21,8 @@ const kinds: [string, string, string][] = [
   ["nrrd", "Label map", "Voxels"],
 ];
 
-/// Export and print: which object, as what, as a file once or as a step that every run writes.
+/// Export and print: chooses the object, the format, and whether to write a file once or to add a step that
+/// writes it in every run.
 export function open_export(): void {
   const dialog = open_dialog("Export and print", "export");
   const objects = object_ids().filter((id) => makes_body(step_of(id)));
@@ -104,8 +105,8 @@ export async function write_report(): Promise<void> {
   if (!answer) return;
   if (answer.left_out.length)
     notify(`The report lacks what failed: ${answer.left_out.join(", ")}. Its findings say why.`, "warning");
-  void evaluate(true);  // the report has certified everything: badges show it
-  // The report's script runs in an origin of its own, which reaches nothing of this page.
+  void evaluate(true);  // the report has certified everything: update the badges
+  // The report's script runs in an origin of its own and cannot access this page.
   const frame = el("iframe", {src: file_url(answer.file), title: "Report", sandbox: "allow-scripts"});
   const follow = (event: MessageEvent): void => {
     if (event.source === frame.contentWindow && event.data === "Escape") dialog.close();
@@ -129,7 +130,7 @@ export function open_audit(): void {
       (state.plan?.scans ?? []).map((scan) => [el("h3", {}, scan.name), audit_rows(scan.audit), scan_facts(scan)]));
 }
 
-/// The panes as they are, in one PNG.
+/// The panes as they are shown, in one PNG.
 export function take_screenshot(): void {
   const shown = all_panes().filter((pane) => pane.canvas.clientWidth);
   const boxes = shown.map((pane) => pane.canvas.getBoundingClientRect());

@@ -16,15 +16,15 @@ const values: {[name: string]: number} = {};
 let pending_procedure: string|null = null;
 on_leaving_plan(() => {
   pending_procedure = null;
-  // A value is this patient's, as a threshold or an advancement.
+  // Values such as a threshold or an advancement belong to one patient.
   for (const name of Object.keys(values)) delete values[name];
 });
 
-/// Chooses a procedure, has its landmarks placed, takes its values and adds its steps.
+/// Shows a procedure's landmarks and values, and adds its steps to the plan.
 export function open_procedure(name?: string): void {
   const dialog = open_dialog("Procedure from landmarks", "procedure");
   const show = async(chosen: ProcedureSays|undefined): Promise<void> => {
-    // The server knows what the plan's steps end with; the page does not guess it.
+    // The server computes which object the plan's procedures end with.
     const before = chosen ? (await try_to<{outcome: string | null}>("acts_on", {name: chosen.name}))?.outcome ?? null : null;
     dialog.refill(
       el("div", {class: "presets"},
@@ -40,7 +40,7 @@ export function open_procedure(name?: string): void {
   void show(state.hello?.procedures.find((one) => one.name === name));
 }
 
-/// `before`: what an earlier procedure of the plan ends with, on which this one acts.
+/// `before` is the object with which an earlier procedure of the plan ends; this one acts on it.
 function procedure_form(dialog: Dialog, chosen: ProcedureSays, before: string|null): Child {
   const placed = new Map((state.plan?.landmarks ?? []).map((mark) => [mark.name, mark.point]));
   const lacks_scan = chosen.scans.some((scan) => !scans()[scan.name]);
@@ -60,7 +60,7 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays, before: string|nu
     const planned: (PlanState&{made?: string[]})|null =
         await change_plan("procedure", {name: chosen.name, landmarks, values: set_values});
     if (!planned) return;
-    // The pieces take the place of what was shown before, until the procedure is undone.
+    // The new pieces replace the objects shown before, until the procedure is undone.
     const made = planned.made ?? [];
     const behind = made[made.length - 1];
     const hidden = shown.filter((id) => behind && !made.includes(id)).map((id) => {
@@ -115,7 +115,7 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays, before: string|nu
 }
 const scans = (): {[name: string]: {path: string}} => state.plan?.plan.scans ?? {};
 
-/// A scan that a procedure takes beside the patient's: the file that it is, or a button to choose one.
+/// A scan that a procedure needs beside the patient's: its file, or a button to choose one.
 function scan_row(scan: {name: string; says: string}, procedure: string, dialog: Dialog): Child {
   const path = scans()[scan.name]?.path;
   const take = async(chosen: string): Promise<void> => {

@@ -23,7 +23,7 @@ export function make_start(host: HTMLElement): void {
   watch(["page", "hello", "plan", "jobs", "hides_patient"], again);
   let looked_at = "";
   watch(["page", "hello"], () => {
-    // Setting the page anew to show them must not ask again.
+    // Refilling the page to show the plans must not request them again.
     const now = `${state.page} ${state.hello !== null}`;
     if (now !== looked_at) void look_for_recent();
     looked_at = now;
@@ -72,7 +72,7 @@ interface RecentPlan {
 }
 let recent: RecentPlan[]|null = null;
 
-/// The plans of the opened folders that were changed last.
+/// The most recently changed plans of the opened folders.
 function recent_plans(): Child {
   if (!recent?.length) return null;
   return el(
@@ -85,7 +85,7 @@ function recent_plans(): Child {
               el("small", {}, new Date(plan.changed_at_ms).toLocaleString()))));
 }
 
-/// Asks for the plans of the opened folders, and shows them where they differ from those known before.
+/// Requests the plans of the opened folders, and refills the page if they have changed.
 async function look_for_recent(): Promise<void> {
   if (state.page !== "start" || !state.hello) return;
   const answer = await try_to<{plans: RecentPlan[]}>("recent");

@@ -14,8 +14,8 @@ interface Stop {
   title: string;
   says: string;
   is_done(): boolean;
-  show?(): void;  // takes the tool in hand
-  do_it(): void;  // for those who only watch
+  show?(): void;  // chooses the tool
+  do_it(): void;  // does the stop's work for the person
 }
 
 const has = (test: (step: Step) => boolean): boolean => steps().some(test);
@@ -123,7 +123,7 @@ const stops: Stop[] = [
 ];
 let window_seen = false;
 
-/// Begins the tour on a fresh phantom.
+/// Begins the tour on a new phantom.
 export async function start_tour(): Promise<void> {
   audit_seen = window_seen = report_written = false;
   await open_plan({phantom: "head"});

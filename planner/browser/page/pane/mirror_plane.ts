@@ -15,7 +15,8 @@ export interface Plane {
 
 const is_point = (value: unknown): value is Vec3 => Array.isArray(value) && value.length === 3;
 
-/// The plane that the server found or took, else the step's own; null where neither is known yet.
+/// The plane that the server fitted or computed from landmarks, else the step's own; null if the server has
+/// not evaluated it yet.
 export function plane_of(step: Step): Plane|null {
   const found = state.plan?.objects.find((one) => one.id === step.id)?.mirror;
   if (found) return found.plane;
@@ -26,13 +27,14 @@ export function plane_of(step: Step): Plane|null {
   };
 }
 
-/// A view shows the plane as a line where it looks along it to within this cosine.
+/// A view shows the plane as a line if the cosine between its direction and the plane's normal is at most
+/// this.
 const most_tilt = 0.2;
 /// The distance of the handles from the middle of the trace, as a share of the pane's shorter side.
 const reach_share = 0.3;
 const near_px = 12;
 
-/// The plane under the hand, until the plan has it.
+/// The plane during a drag, until the plan contains it.
 let held: {id: string, plane: Plane}|null = null;
 
 const shown_plane = (step: Step): Plane|null => held?.id === step.id ? held.plane : plane_of(step);
@@ -57,7 +59,7 @@ function trace_in(pane: Pane, plane: Plane): Trace|null {
   };
 }
 
-/// Where the handles lie: one that moves the plane along its normal, two that turn it.
+/// Positions of the handles: the first moves the plane along its normal, the other two rotate it.
 function handles_of(pane: Pane, {middle, along}: Trace): [Vec2, Vec2, Vec2] {
   const reach = scaled(along, reach_share * Math.min(...pane.size) * pane.frame.pixel_mm);
   return [pane.pixel_at(middle), pane.pixel_at(add(middle, reach)), pane.pixel_at(sub(middle, reach))];
@@ -78,13 +80,12 @@ export function draw_mirror_plane(pane: Pane, context: CanvasRenderingContext2D,
 
 export interface MirrorDrag {
   to(at: Vec2): void;
-  /// Puts the plane into the step: typed, and no longer found or taken through landmarks.
+  /// Writes the plane into the step as a given one, no longer fitted or through landmarks.
   done(): void;
   cancel(): void;
 }
 
-/// What moves or turns the selected mirror's plane as the pointer goes on, where it has taken hold of a
-/// handle.
+/// The drag that moves or rotates the selected mirror's plane, if a handle is under the pointer.
 export function mirror_from(pane: Pane, at: Vec2): MirrorDrag|null {
   const step = step_of(state.selected);
   const plane = step?.do === "mirror" && !is_elsewhere() ? plane_of(step) : null;
@@ -96,7 +97,7 @@ export function mirror_from(pane: Pane, at: Vec2): MirrorDrag|null {
   const {look} = pane.frame;
   const {middle} = trace;
   const centre = pane.pixel_at(middle);
-  // Clockwise on the screen, which is a right-handed turn about the direction that is looked in.
+  // Clockwise on the screen, which is a right-handed rotation about the view direction.
   const angle = (p: Vec2): number => Math.atan2(p[1] - centre[1], p[0] - centre[0]);
   const start = angle(at), from = pane.point_at(at);
   return {

@@ -17,7 +17,7 @@ export function draw_overlay(pane: Pane, context: CanvasRenderingContext2D): voi
   begin_ink(pane.is_on_white);
   const ratio = pane.ratio;
   context.lineJoin = "round";
-  // A curved slice has no one place for a point.
+  // On a curved slice a point has no single position.
   if (pane.setting.mode !== "panoramic") {
     draw_cross(pane, context);
     draw_trace(pane, context);
@@ -49,8 +49,7 @@ function draw_keyed(pane: Pane, context: CanvasRenderingContext2D, [x, y]: Vec2)
   line(context, [[x, y - reach], [x, y + reach]], ink.region, 2 * pane.ratio);
 }
 
-// Each line is the trace of the other panes' planes; a gap in the middle leaves the point itself free to be
-// seen.
+// Draws the traces of the other panes' planes. A gap in the middle leaves the point itself visible.
 function draw_cross(pane: Pane, context: CanvasRenderingContext2D): void {
   const frame = pane.frame;
   const [x, y] = pane.pixel_at(state.cross_mm);
@@ -76,7 +75,8 @@ function draw_cross(pane: Pane, context: CanvasRenderingContext2D): void {
   stroke([x + gap, y], [width, y], horizontal);
 }
 
-/// The name under which a region drawn in the pane is kept: a view, or the view of the slice's plane.
+/// The name of the view under which a region drawn in the pane is stored. For a slice, it is the view along
+/// its normal.
 export const region_view = (pane: Pane): string => pane.is_slice ?
     view_text(view_of_plane(pane.setting.plane, pane.setting.tilt)) :
     view_text(pane.setting.view);
@@ -90,8 +90,8 @@ interface Region {
   view: string;
   polygons_mm: Vec2[][];
 }
-/// Whether a mask's regions are drawn and changed in the panes: not where they are in files, and where the head is
-/// held, a mask of the scan's views has other views.
+/// Whether a mask's regions are drawn and edited in the panes. Not if they are in files, or if the head is
+/// repositioned and the mask belongs to the scan's own views.
 export const is_of_panes = (step: Step|undefined): boolean =>
     step?.do === "mask" && Array.isArray(step.regions) &&
     (step.regions as unknown as Region[]).every((region) => Array.isArray(region.polygons_mm)) &&
@@ -118,12 +118,12 @@ export function mark_mm(mark: Json|undefined): Vec3|null {
   return state.plan?.landmarks.find((one) => one.name === mark)?.point ?? null;
 }
 
-// A slice shows what lies within a few millimetres of it; a view shows everything.
+// A slice shows marks within this distance of it, in mm; a view shows all.
 const near_slice_mm = 6;
 const is_near = (pane: Pane, p_mm: Vec3): boolean => !pane.is_slice ||
     Math.abs(dot(p_mm, pane.frame.look) - dot(state.cross_mm, pane.frame.look)) <= near_slice_mm;
 
-// The handles of a moving piece stand where names and numbers would.
+// The handles of a moving piece occupy the place of names and numbers.
 const is_handled = (): boolean => state.tool === "move";
 
 const measured_words = (found: Measurement): string =>
@@ -155,14 +155,14 @@ function draw_measures(pane: Pane, context: CanvasRenderingContext2D): void {
   }
 }
 
-/// The scan beside the patient's on which procedures place a landmark; empty: the patient's.
+/// The additional scan on which a procedure places a landmark; empty: the patient's scan.
 const scan_of_landmark = (name: string): string => (state.hello?.procedures ?? [])
                                                        .flatMap((one) => one.landmarks)
                                                        .find((mark) => mark.name === name)
                                                        ?.scan ??
     "";
 
-/// Whether a landmark is drawn in a pane: one of the scan that is shown, and near a slice.
+/// Whether a landmark is drawn in a pane: it belongs to the scan that is shown and, in a slice, lies near it.
 export const is_drawn = (pane: Pane, mark: {name: string; point: Vec3}): boolean =>
     scan_of_landmark(mark.name) === (is_elsewhere() ? shown_scan() : "") && is_near(pane, mark.point);
 
@@ -197,7 +197,7 @@ function draw_letters(pane: Pane, context: CanvasRenderingContext2D): void {
   text(context, letters.bottom, [width / 2, height - inset], pane.ratio, look);
 }
 
-// A bar of 1, 2 or 5 times a power of ten, about a fifth of the pane's width.
+// Draws a bar of 1, 2 or 5 times a power of ten, about a fifth of the pane's width.
 function draw_scale(pane: Pane, context: CanvasRenderingContext2D): void {
   const frame = pane.frame;
   const [width, height] = pane.size;

@@ -56,7 +56,7 @@ export function make_panes(host: HTMLElement, acknowledge: (pane: number, frame:
     legend.hidden = true;
   }
   watch(["plan", "compare", "theme"], () => want_all(false));
-  // Sliders: coarse pictures follow them, and one at rest comes soon after the last.
+  // While a slider moves, request coarse pictures; a picture at rest follows soon after the last one.
   watch(["looks", "draft_window", "cut_plane"], () => want_all(true));
   watch(["preview"], follow_preview);
   watch(
@@ -67,8 +67,8 @@ export function make_panes(host: HTMLElement, acknowledge: (pane: number, frame:
   }));
 }
 
-// The pane in hand follows a moving piece at every picture; the others a few times a second, so that it stays
-// smooth.
+// While a piece is dragged, its own pane requests every picture and the other panes one in this time, so that
+// the motion stays smooth.
 const others_every_ms = 300;
 let others_at = 0;
 function follow_preview(): void {
@@ -94,7 +94,7 @@ export function reconnected(): void {
   for (const pane of panes) pane.reconnected();
 }
 
-/// Fits every pane to the scan, once the page has laid them out.
+/// Fits every pane to the scan, once the browser has laid out the panes.
 export function fit_all(): void {
   requestAnimationFrame(() => {
     for (const pane of panes) pane.resized();
@@ -105,12 +105,12 @@ export function fit_all(): void {
 
 const left_at = new Map<string, Pick<State, "panes"|"cross_mm"|"grey">>();
 on_leaving_plan(() => left_at.clear());
-/// Shows a scan of the plan in all panes, as it was looked at last; null: the patient's.
+/// Shows a scan of the plan in all panes, with its last settings; null: the patient's.
 export function show_scan(name: string|null): void {
   const before = shown_scan();
   const next = name ?? first_scan();
   if (next === before || !state.plan) return;
-  // What a tool has begun is of the scan that was shown; landmarks of a procedure lie on several.
+  // A tool's draft belongs to the scan shown before. Landmarks of a procedure may lie on several scans.
   if (state.tool !== "landmark") take_tool("navigate");
   left_at.set(before, {panes: state.panes, cross_mm: state.cross_mm, grey: state.grey});
   const {panes: fits, ...looked} = left_at.get(next) ?? fitted(state.plan, next);

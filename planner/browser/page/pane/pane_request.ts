@@ -30,12 +30,12 @@ export function request_of(pane: Pane, dragging: boolean): PaneRequest {
   else
     add_view(request, setting);
   if (state.preview && !is_elsewhere()) {
-    // What is tried follows a hand in coarse voxels, where the plan's are many.
+    // While a slider is dragged, steps are tried in coarse voxels if the plan has many.
     request.preview = dragging && state.preview.steps ? {...state.preview, coarse: true} : state.preview;
     if (state.preview.move && !state.preview.difference) request.overlap = true;
     request.objects = shown.filter((object) => !object.id || !is_interference(object.id));
   }
-  // What is tried may lie within the objects that stand.
+  // The tried object may lie inside the other objects.
   if (!pane.is_slice && request.preview?.by && request.preview.by !== "step") request.objects = request.objects.map(seen_through);
   if (pane.is_slice) request.objects = request.objects.map(hatched_where_interfering);
   if (!pane.is_slice && !is_elsewhere() && !state.compare && has_interference(request))
@@ -43,8 +43,8 @@ export function request_of(pane: Pane, dragging: boolean): PaneRequest {
   return request;
 }
 
-/// Whether pieces lie in each other in what is drawn: interference lies within bone, where opaque bone would
-/// hide it. A picture that has to follow a drag is not made translucent.
+/// Whether the drawn pieces interpenetrate. Interference lies inside bone, so opaque bone would hide it.
+/// While a piece is dragged, nothing is made translucent, which would be too slow.
 function has_interference({preview, objects, dragging}: PaneRequest): boolean {
   if (preview?.move && preview.difference) return false;
   if (preview) return !dragging && (state.overlap_mm3 ?? 0) > 0;
@@ -52,7 +52,7 @@ function has_interference({preview, objects, dragging}: PaneRequest): boolean {
 }
 const volume_of = (id: string): number => state.plan?.objects.find((one) => one.id === id)?.volume?.value ?? 0;
 
-/// An object through which interference shows. Half opaque surfaces are still picked.
+/// Opacity of objects through which interference is visible. Half opaque surfaces can still be picked.
 const see_through = 0.5;
 const seen_through = (object: DrawnObject): DrawnObject => object.id !== undefined && is_interference(object.id) ?
     object :
@@ -88,21 +88,20 @@ function add_slice(request: PaneRequest, setting: PaneSetting): void {
     request.threshold = [state.draft_window.low, state.draft_window.high ?? most_sample];
 }
 
-/// Whether an object is the overlap of pieces. While a piece is dragged, the one that was evaluated before is
-/// out of date.
+/// Whether an object is the overlap of pieces. While a piece is dragged, the overlap that was evaluated
+/// before is out of date.
 function is_interference(id: string): boolean {
   const step = step_of(id);
   return step !== undefined && is_overlap(step, steps());
 }
 
-/// The steps that make shapes, as a text: what pictures depend on besides their own request.
+/// The steps that make shapes, as a text. Pictures depend on them in addition to their own request.
 export const shapes = (): string => JSON.stringify([
   state.plan?.path, state.evaluations,
   steps().filter((step) => makes_shape(step) || step.do === "head_position")
 ]);
 
-/// Whether an object that is to be drawn is still being evaluated: the picture before stays until it is
-/// there.
+/// Whether an object to be drawn is still being evaluated. The earlier picture stays until then.
 export function is_pending(): boolean {
   const pending = new Set((state.plan?.objects ?? [])
                               .filter((object) => object.evaluated === false && !object.error)

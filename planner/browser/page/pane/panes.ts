@@ -21,14 +21,14 @@ const slow_after_ms = 500;
 interface Picture {
   header: FrameHeader;
   bitmap: ImageBitmap;
-  planes: Planes|null;  // they come a little later, and at rest alone
+  planes: Planes|null;  // only at rest; they arrive after the picture
 }
 
 export class Pane {
   readonly canvas = el("canvas", {tabindex: 0, role: "img"});
   picture: Picture|null = null;
   problem = "";
-  keyed_at: Vec2|null = null;  // the place that arrow keys carry, with a tool in hand that takes places
+  keyed_at: Vec2|null = null;  // the position that arrow keys move, if the tool works on positions
   private is_wanted = false;
   private in_flight = 0;
   private rest_timer = 0;
@@ -38,7 +38,7 @@ export class Pane {
   private last_asked = "";
   private is_dirty = false;
   private readonly sent = new Map<number, number>();
-  private readonly previews = new Map<number, State["preview"]>();  // of requests under way
+  private readonly previews = new Map<number, State["preview"]>();  // of pending requests
 
   constructor(readonly index: number, private readonly acknowledge: (pane: number, frame: number) => void) {
     new ResizeObserver(() => this.resized()).observe(this.canvas);
@@ -47,22 +47,23 @@ export class Pane {
   get setting(): PaneSetting {
     return state.panes[this.index]!;
   }
-  /// Pixels of the canvas a CSS pixel.
+  /// Canvas pixels per CSS pixel.
   get ratio(): number {
     return Math.min(2, window.devicePixelRatio || 1);
   }
   get size(): Vec2 {
     return [this.canvas.width, this.canvas.height];
   }
-  /// Whether a newer picture than the shown one is wanted or under way.
+  /// Whether a picture newer than the shown one is wanted or pending.
   get is_busy(): boolean {
     return this.is_wanted || this.in_flight > 0 || this.lacks_planes;
   }
-  /// Whether a position has a known place: a slice has, and a view at rest once its planes are here.
+  /// Whether positions have known points. Not so in a view whose picture is moving or whose planes have not
+  /// arrived yet.
   get has_places(): boolean {
     return this.is_slice || !this.picture || (this.picture.header.quality === "rest" && !this.lacks_planes);
   }
-  // The planes of a picture at rest come a little after it.
+  // Whether the picture is at rest and its planes have not arrived yet.
   private get lacks_planes(): boolean {
     return this.picture?.header.quality === "rest" && this.picture.planes === null;
   }
@@ -73,7 +74,7 @@ export class Pane {
   get is_slice(): boolean {
     return this.setting.mode !== "view";
   }
-  /// Whether the picture stands on white, as surfaces on a light page do; samples stand on black.
+  /// Whether the background is white, as for surfaces on a light page. Samples have a black one.
   get is_on_white(): boolean {
     return !this.is_slice && !is_dark() && !["radiograph", "mip"].includes(this.setting.shading);
   }
@@ -81,8 +82,8 @@ export class Pane {
     return this.setting.mode === "slice" && this.setting.plane === "oblique";
   }
 
-  /// The frame of what is wanted now; the picture's own directions where it has them, since a held head turns
-  /// them.
+  /// The frame of the present setting. Uses the picture's own directions if it has them, because a
+  /// repositioned head rotates them.
   get frame(): ViewFrame {
     const setting = this.setting;
     const own = this.picture?.header.view_frame;
@@ -100,12 +101,12 @@ export class Pane {
   }
   private is_dragging = false;
 
-  /// Takes the size that the page gives it.
+  /// Adapts the canvas to its size in the page.
   resized(): void {
     const width = Math.round(this.canvas.clientWidth * this.ratio);
     const height = Math.round(this.canvas.clientHeight * this.ratio);
     if (!width || !height || (width === this.canvas.width && height === this.canvas.height)) return;
-    // A pane that grows or shrinks keeps what it shows.
+    // A pane that changes its size keeps showing the same part.
     const before = this.is_sized ? Math.min(this.canvas.width, this.canvas.height) : Math.min(width, height);
     this.is_sized = true;
     const scale = before / Math.min(width, height);
@@ -116,8 +117,8 @@ export class Pane {
     this.redraw_now();
   }
 
-  /// Asks for a picture of the present setting; while dragging a coarse one, and one at rest soon after the
-  /// last.
+  /// Requests a picture of the present setting: while dragging a coarse one, followed by one at rest soon
+  /// after the last.
   want(dragging: boolean): void {
     this.is_wanted = true;
     this.is_dragging = dragging;
@@ -157,7 +158,7 @@ export class Pane {
       this.in_flight = Math.max(0, this.in_flight - 1);
       this.last_asked = "";
       if (error instanceof Refusal && error.code !== "cancelled" && error.code !== "lost") {
-        // What is tried is refused on its panel, and the panes keep what they show.
+        // A refused preview is reported on its panel, and the panes keep their pictures.
         if (preview?.steps && is_same(state.preview, preview))
           set({tried: {mm3: 0, voxels: 0, refusal: refusal_text(error.message)}});
         else
@@ -168,7 +169,7 @@ export class Pane {
     });
   }
 
-  /// Forgets what was under way when the connection broke.
+  /// Discards the requests that were pending when the connection broke.
   reconnected(): void {
     this.in_flight = 0;
     this.last_asked = "";
@@ -208,8 +209,7 @@ export class Pane {
     this.redraw();
   }
 
-  /// What a pixel position of the canvas shows: a point of a surface or of the slice, and the object. Null
-  /// beside all objects.
+  /// The point of the surface or slice at a canvas position, and its object. Null beside all objects.
   pick(at: Vec2): {point: Vec3; object: string | null}|null {
     const frame = this.frame;
     if (this.is_slice)
@@ -224,8 +224,8 @@ export class Pane {
         point_of(header.view_frame, [header.width, header.height], [pixel.x + 0.5, pixel.y + 0.5], depth);
     return {point, object: number ? header.objects?.[number - 1] ?? null : null};
   }
-  /// Whether a position of a picture at rest lies beside all surfaces. A picture without depth, as a
-  /// radiograph, has no such place.
+  /// Whether a position of a picture at rest lies beside all surfaces. Always false in a picture without
+  /// depths, such as a radiograph.
   is_beside(at: Vec2): boolean {
     const {header, planes} = this.picture ?? {};
     if (this.is_slice || !header || header.quality !== "rest" || !planes?.depth) return false;
@@ -244,14 +244,14 @@ export class Pane {
     return value === undefined || Number.isNaN(value) ? null : value;
   }
 
-  /// Lets the picture go, since the pane is to show something else.
+  /// Discards the picture, because the pane is about to show something else.
   forget(): void {
     this.last_asked = "";
     this.picture?.bitmap.close();
     this.picture = null;
   }
 
-  /// The point that a position shows, on the plane through the cross-hair where there is no surface.
+  /// The point at a position; where there is no surface, the point on the plane through the cross-hair.
   point_at(at: Vec2): Vec3 {
     const frame = this.frame;
     return this.pick(at)?.point ?? point_of(frame, this.size, at, dot(state.cross_mm, frame.look));
@@ -280,12 +280,13 @@ export class Pane {
     draw_overlay(this, context);
   }
 
-  // How much larger a picture is drawn that fits in the canvas as a whole.
+  // The scale at which the whole picture fits into the canvas.
   private fit({width, height}: FrameHeader): number {
     return Math.min(this.canvas.width / width, this.canvas.height / height);
   }
 
-  // The newest picture, moved and scaled to the present setting, so that panning and zooming never wait.
+  // Draws the newest picture, moved and scaled to the present setting, so that panning and zooming need not
+  // wait for the server.
   private draw_picture(context: CanvasRenderingContext2D, picture: Picture): void {
     const shown = picture.header.view_frame;
     const frame = this.frame;
@@ -326,10 +327,10 @@ export class Pane {
   }
 }
 
-/// Whether a picture was asked for with the preview that the page still shows.
+/// Whether the preview of a request is still the one that the page shows.
 const is_same = (now: State["preview"], then: State["preview"]|undefined): boolean =>
     now !== null && JSON.stringify(now) === JSON.stringify(then);
-/// A refusal without the name under which a step is tried.
+/// A refusal's message without the temporary name of the tried step.
 export const refusal_text = (message: string): string => message.replace(/^step 'dragged_piece'(\.\w+)?: /, "");
 
 export function change_pane(index: number, change: Partial<PaneSetting>): void {
@@ -337,7 +338,7 @@ export function change_pane(index: number, change: Partial<PaneSetting>): void {
 }
 
 let picture_asker: ((fields: PaneRequest, on_id: (id: number) => void) => Promise<unknown>)|null = null;
-/// The wire's way to ask for pictures, which tells a request's id before the answer.
+/// Sets the function that requests pictures. It passes a request's id to `on_id` before the answer arrives.
 export function use_picture_asker(asker: typeof picture_asker): void {
   picture_asker = asker;
 }

@@ -4,12 +4,12 @@
 import {FrameHeader} from "../protocol";
 
 export interface Planes {
-  depth: Float32Array|null;  // mm along the view's look, NaN beside all objects
-  object: Uint16Array|null;  // from 1 in the header's objects, 0 none
-  value: Float32Array|null;  // samples, NaN beside the scan
+  depth: Float32Array|null;  // mm along the view direction, NaN beside all objects
+  object: Uint16Array|null;  // index, from 1, into the header's objects; 0: none
+  value: Float32Array|null;  // samples, NaN outside the scan
 }
 
-// Browsers have it; the compiler's list of their names does not yet.
+// Browsers have this class, but the compiler's declarations lack it.
 declare class DecompressionStream implements GenericTransformStream {
   constructor(format: "deflate");
   readonly readable: ReadableStream;

@@ -52,12 +52,12 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
     want_slices();
   };
 
-  /// Takes the fingers as they are for where the next motion begins.
+  /// Stores the fingers' present positions as the start of the next motion.
   function hold_fingers(): void {
     last = middle(fingers);
     pinch = spread(fingers);
   }
-  /// Two fingers pan by their middle, and zoom about it by their spread.
+  /// Two fingers pan by the motion of their middle, and zoom about it by their distance.
   function pinch_to(): void {
     const from = last, before = pinch;
     hold_fingers();
@@ -80,7 +80,7 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
     last = start = at_of(event);
     has_moved = false;
     if (fingers.size > 1) {
-      // What the first finger began was the beginning of a pinch.
+      // The first finger's action was the start of a pinch, so it is undone.
       const tool = active_tool();
       if (drag === "tool" && tool?.cancel)
         tool.cancel();
@@ -140,11 +140,11 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
     else
       drag = null;
   };
-  // A dialog that opens in mid-drag takes the pointer away: the drag ends there.
+  // A dialog that opens during a drag captures the pointer, so the drag ends.
   for (const end of ["pointerup", "pointercancel", "lostpointercapture"] as const)
     canvas.addEventListener(end, ended);
 
-  // A click in a view brings the cross-hair to the surface and selects the object's step.
+  // A click in a view moves the cross-hair to the surface and selects the object's step.
   function click(at: Vec2): void {
     const picked = pane.pick(at);
     if (!picked) return;
@@ -170,7 +170,7 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
       {passive: false},
   );
 
-  // With a tool in hand that takes places: arrows carry one over the pane, Space clicks it.
+  // For a tool that works on positions: arrow keys move one over the pane, Space clicks it.
   function point_by_key(event: KeyboardEvent, tool: Tool): boolean {
     const arrow = arrows[event.key];
     const at = pane.keyed_at ?? [pane.size[0] / 2, pane.size[1] / 2];
@@ -228,7 +228,7 @@ function spread(fingers: Map<number, Vec2>): number {
   return a && b ? Math.hypot(a[0] - b[0], a[1] - b[1]) : 0;
 }
 
-/// The middle of the first two fingers, or the place of the only one.
+/// The middle between the first two fingers, or the position of a single one.
 function middle(fingers: Map<number, Vec2>): Vec2 {
   const places = [...fingers.values()];
   const a = places[0] ?? [0, 0];
@@ -239,7 +239,7 @@ function middle(fingers: Map<number, Vec2>): Vec2 {
 const round_about = (azimuth: number): number => ((((azimuth + 180) % 360) + 360) % 360) - 180;
 const within = (elevation: number): number => Math.max(-90, Math.min(90, elevation));
 
-/// Turns a view by CSS pixels of the pointer: the surface follows it.
+/// Rotates a view by CSS pixels of the pointer; the surface follows the pointer.
 export function turn(pane: Pane, by_x: number, by_y: number): void {
   const from = turned(pane.setting.view);
   const azimuth = round_about(from.azimuth - by_x * turn_deg_per_px);
@@ -249,7 +249,7 @@ export function turn(pane: Pane, by_x: number, by_y: number): void {
   pane.want(true);
 }
 
-/// Moves the cross-hair through the slices by their distance.
+/// Moves the cross-hair by a number of slices.
 function step_slice(pane: Pane, by: number, want_slices: () => void): void {
   const spacing = state.plan?.scans.find((scan) => scan.name === shown_scan())?.spacing_mm ?? [1, 1, 1];
   const look = pane.frame.look;

@@ -17,7 +17,8 @@ const marks = {
   FAIL: "✕"
 } as const;
 
-/// Lines that compare identities quote what files state of patients: hidden with the patient.
+/// Lines that compare identities quote what files state about patients. They are hidden when the patient is
+/// hidden.
 function sentence_of(row: AuditRow): string {
   const quotes = /^(identity|patient(?!_position|_orientation).*)$/.test(row.check ?? "");
   return state.hides_patient && quotes && row.verdict !== "PASS" ?
@@ -41,11 +42,11 @@ export function audit_rows(audit: readonly AuditRow[]): Child {
                  sentence_of(row)))));
 }
 
-/// Audits by what was read; null while the answer is on its way, and where the file cannot be read.
+/// Audits by request; null while the answer is pending or if the file cannot be read.
 const audits = new Map<string, AuditRow[]|null>();
 on_leaving_plan(() => audits.clear());
 
-/// The audit of the mesh that a step reads, for steps with a path, a frame and a unit; null for others.
+/// The audit of the mesh file of a step with a path, a frame and a unit; null for other steps.
 export function mesh_audit(step: Step): Child {
   const fields = schema_of(step)?.properties;
   if (!fields?.path || !fields.frame || !fields.unit || typeof step.path !== "string") return null;

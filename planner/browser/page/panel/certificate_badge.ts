@@ -17,12 +17,12 @@ const signs = {
   FAIL: "✕"
 } as const;
 
-/// Whether a number's interval is wider than the number, which then says nothing of its size.
+/// Whether a number's interval is wider than the number, so that its size is unknown.
 export const is_wider_than_its_value = (measured: Measured|null|undefined): boolean =>
     measured !== null && measured !== undefined && measured.value !== null &&
     (measured.half_width ?? 0) > Math.abs(measured.value);
 
-/// What a certificate is worth beside a number: with an interval wider than the value a doubt at best.
+/// The badge for a certificate and its number. If the interval is wider than the value, at best a doubt.
 export function judged(
     certificate: Certificate|null|undefined, measured: Measured|null|undefined): Certificate|null|undefined {
   if (certificate?.verdict !== "PASS" || !is_wider_than_its_value(measured)) return certificate;
@@ -33,7 +33,7 @@ export function judged(
   };
 }
 
-/// The badge of a number. Its tip is the certificate's sentence; a click goes to the certificate's place in all
+/// The badge of a number. Its tip is the certificate's sentence; a click shows the certificate's place in all
 /// panes.
 export function badge(
     id: string, of_kernels: Certificate|null|undefined, measured?: Measured|null): Child {
@@ -65,7 +65,7 @@ export function badge(
       signs[certificate.verdict]);
 }
 
-/// "56 764 ± 310 mm³", grouped and with as many digits as the half-width leaves.
+/// "56 764 ± 310 mm³": digits in groups of three, and only as many decimals as the half-width justifies.
 export function measured_text(measured: Measured|null|undefined): string {
   if (!measured || measured.value === null || !Number.isFinite(measured.value)) return "–";
   const unit = unit_text(measured.unit);

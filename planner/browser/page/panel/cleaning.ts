@@ -22,17 +22,18 @@ interface Tried {
   scans: {id: string; details: {[name: string]: number}; findings: string[]}[];
 }
 
-// A scan's own steps, the newest first, down to the scan that was read.
+// The steps that make a scan, from the last one back to the scan that was read.
 function makers_of(scan: Json|undefined): Step[] {
   const maker = steps().find((step) => step.id === scan && typeof step.scan === "string");
   return maker ? [maker, ...makers_of(maker.scan)] : [];
 }
-// What the proposals depend on.
+// The part of a step on which the proposals depend, as a text.
 const basis = (step: Step): string =>
     JSON.stringify([state.plan?.path, step, makers_of(step.scan), state.plan?.plan.scans]);
 const is_cleaned = (step: Step): boolean => step.do === "window";
 
-// The steps that replace the window for a picture; for a cleaned scan, the window on the cleaned scan.
+// The steps that replace the window in a preview. If the proposal cleans the scan, the window is applied to
+// the cleaned scan.
 function trial_of(step: Step, {made}: Proposal): Step[] {
   return made.scan === undefined ? [made] : [made, {...step, id: free_id(`${step.id}_tried`), scan: made.id}];
 }
@@ -43,7 +44,7 @@ const changed_by = (mm3: number, whole: number): string => Math.abs(mm3) < 0.5 ?
     "The object keeps its volume" :
     `The object ${mm3 < 0 ? "loses" : "gains"} ${cm3(Math.abs(mm3))} (${share(Math.abs(mm3), whole)})`;
 
-/// Looks for what cleans a window's object, and shows it on the object's panel.
+/// Computes proposals to clean a window's object, and shows them on the object's panel.
 export async function look_for_cleaning(id: string): Promise<void> {
   const step = step_of(id);
   if (!step || !is_cleaned(step)) return;
@@ -62,7 +63,7 @@ export async function look_for_cleaning(id: string): Promise<void> {
       if (is_wanted()) offer(await propose(step, part.whole_mm3));
   } catch (error) {
     if (!(error instanceof Refusal)) throw error;
-    // An object that cannot be evaluated states why on its own panel.
+    // An object that cannot be evaluated shows the reason on its own panel.
   }
   if (is_wanted()) change({is_looking: false});
 }
@@ -102,7 +103,7 @@ async function tried(step: Step, whole_mm3: number, operation: string, stem: str
     const mm3 = object.mm3 - whole_mm3;
     return {made, lost: changed_by(mm3, whole_mm3), details: scan.details, findings: scan.findings, mm3};
   } catch (error) {
-    if (error instanceof Refusal && error.code !== "lost") return null;  // the operation does not fit this scan
+    if (error instanceof Refusal && error.code !== "lost") return null;  // the operation is not applicable to this scan
     throw error;
   }
 }

@@ -10,7 +10,7 @@ import {set, state, step_of, watch} from "../state";
 const colour = "#ff9f43";
 const usual_most_mm = 10, step_mm = 0.1;
 
-/// The one length of a step that makes an object of one other object and needs nothing else; null for other steps.
+/// The only length field of a step that needs one object and nothing else; null for other steps.
 export function length_of(step: Step): {field: string; about: Schema}|null {
   const schema = schema_of(step);
   if (schema?.["x-makes"] !== "object" || object_fields(schema).length !== 1) return null;
@@ -23,7 +23,7 @@ export function length_of(step: Step): {field: string; about: Schema}|null {
   return length && lengths.length === 1 && !others.length ? {field: length[0], about: length[1]} : null;
 }
 
-// One element, which stays while its panel is filled anew, so that it follows a slider that is held.
+// A single element that persists while its panel is refilled, so that it follows a slider during a drag.
 const tried_line = el("p", {class: "says", role: "status", "data-key": "tried"});
 let waiting = "";
 function write_tried(): void {
@@ -36,15 +36,16 @@ function write_tried(): void {
                                         (tried.findings ?? []).map((finding) => ` ${finding}.`).join("")}`;
 }
 watch(["tried"], write_tried);
-/// What the server made of the preview, or why it made nothing; `until_then` before its first answer.
+/// The volume that the server computed for the preview, or the reason why there is none; `until_then` before
+/// the first answer.
 export function tried_text(until_then: string): Child {
   waiting = until_then;
   write_tried();
   return tried_line;
 }
 
-/// A slider for the step's length, and what it would make. `take` gets the step while the slider moves, `done` once it
-/// is let go.
+/// A slider for the step's length, and the volume that it would produce. `take` receives the step while the
+/// slider moves, `done` when it is released.
 function slider(step: Step, {field, about}: {field: string; about: Schema}, take: (step: Step) => void, done?: (step: Step) => void): Child {
   const value = Number(step[field] ?? about.default ?? 0);
   const most = Math.max(about.maximum ?? usual_most_mm, Math.abs(value));
@@ -88,7 +89,7 @@ export function live_rows(step: Step): Child {
       });
 }
 
-// The draft is shown as long as its panel is open.
+// The draft is previewed while its panel is open.
 watch(["draft_step", "right_tab", "plan"], () => {
   const draft = state.right_tab === "inspector" ? state.draft_step : null;
   const is_whole = draft !== null && length_of(draft) !== null && step_of(String(draft.object)) !== undefined;
@@ -101,7 +102,7 @@ watch(["draft_step", "right_tab", "plan"], () => {
   if (before?.by !== "draft" || JSON.stringify(before.steps) !== JSON.stringify(steps))
     set({preview: {object: "", steps, colour, by: "draft"}, ...(before?.by === "draft" ? {} : {tried: null})});
 });
-// A step that is changed is shown as long as it is selected.
+// A changed step is previewed while it is selected.
 watch(["selected", "tool"], () => {
   if (state.preview?.by === "step" && state.preview.object !== state.selected) set({preview: null, tried: null});
 });

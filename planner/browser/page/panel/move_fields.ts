@@ -25,7 +25,7 @@ const titles: Record<Direction|Turn, [string, string]> = {
   roll_deg: ["Roll", "the patient's left side goes up"],
 };
 
-/// The fields of a piece's motion in the head's words; null where the selected step is no piece.
+/// Fields for a piece's motion in anatomical directions; null if the selected step moves no piece.
 export function movement_fields(): Child {
   const one = piece();
   if (!one) return null;
@@ -93,7 +93,7 @@ export function movement_fields(): Child {
       state.preview?.move ? state.tried?.findings?.map((finding) => el("p", {class: "sentence warn"}, finding)) : null);
 }
 
-/// Against which object the difference is drawn while the piece moves.
+/// Chooses the object to which the difference is drawn while the piece moves.
 function difference_switch(): Child {
   const to = difference_to();
   return el(
@@ -111,7 +111,7 @@ function difference_switch(): Child {
              (id) => el("option", {value: id, selected: id === to}, id.replace(/_/g, " ")))));
 }
 
-/// The difference of the newest picture: its volumes in the colours of its parts.
+/// The volumes of the newest picture's difference, in the colours of its parts.
 function difference_reading(source: string): Child {
   const {difference, preview} = state;
   if (!preview || !difference) return null;

@@ -5,7 +5,7 @@ import {Child, el} from "../base/html";
 import {moves_object} from "../operations";
 import {on_leaving_plan, set, state, steps} from "../state";
 
-/// How a piece moves, and the landmarks that lie on it.
+/// The motion of a piece and of the landmarks on it.
 interface MovementRow {
   object: string;
   from: string;
@@ -13,7 +13,7 @@ interface MovementRow {
   landmarks?: {name: string; words: string; since_scan?: {words: string}}[];
 }
 const movements = new Map<string, MovementRow[]>();
-let fetched = "";  // of which edit and evaluation
+let fetched = "";  // the edit and evaluation for which the rows were fetched
 on_leaving_plan(() => {
   movements.clear();
   fetched = "";
@@ -21,7 +21,7 @@ on_leaving_plan(() => {
 
 export async function fetch_movement(): Promise<void> {
   const plan = state.plan;
-  // After an edit the pieces move as before until they are evaluated.
+  // After an edit the rows stay until the pieces are evaluated again.
   const present = `${plan?.edit} ${state.evaluations}`;
   if (!plan || state.right_tab !== "movement" || fetched === present) return;
   fetched = present;

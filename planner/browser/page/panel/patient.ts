@@ -8,13 +8,13 @@ import {hide_patient, state} from "../state";
 const hidden = "patient hidden";
 const unstated = "patient not stated";
 
-/// "Doe, Jane · A17 · 1970-01-31": enough to know a patient by.
+/// "Doe, Jane · A17 · 1970-01-31": enough to recognise a patient.
 function short_words(patient: Patient|null|undefined): string {
   if (!patient) return unstated;
   return [patient.name, patient.number, patient.birth_date].filter(Boolean).join(" · ");
 }
 
-/// The patient of the plan's first scan in the bar, as a button that hides or shows it.
+/// A button in the bar that shows the patient of the plan's first scan, and hides or shows the name.
 export function patient_button(): Child {
   const scan = state.plan?.scans[0];
   if (!scan) return null;

@@ -20,7 +20,7 @@ function pair_of(one: Measured): {object: string; reference: string; mutual: boo
     return {object: one.a, reference: one.b, mutual: false, range_mm: Math.max(0.5, Number((one.hausdorff95_mm ?? 5).toFixed(1)))};
   return null;
 }
-/// The place that a measurement is about, and words for it.
+/// The place of a measurement's result, and words for it.
 function place_of(one: Measured): {at_mm: Vec3; says: string}|null {
   if (one.airway) return {at_mm: one.airway.narrowest.at_mm, says: `narrowest section of ${one.object}`};
   const nearest = one.contacts?.reduce<NonNullable<Measured["contacts"]>[number]|null>(
@@ -28,7 +28,7 @@ function place_of(one: Measured): {at_mm: Vec3; says: string}|null {
   return nearest ? {at_mm: nearest.at_mm, says: `nearest contact of ${one.object} with ${one.against}`} : null;
 }
 
-/// Null for steps that measure nothing, and for a result without a table.
+/// Null for steps that do not measure, and for a result without a table.
 export function result_rows(step: Step): Child {
   const found = state.plan?.measurements?.find((one) => one.id === step.id);
   if (!found?.details) return null;

@@ -11,8 +11,8 @@ import {state} from "../state";
 export const label_of = (field: string): string =>
     field.replace(/_(mm|deg|mm2|mm3|mpa)$/, "").replace(/_/g, " ");
 
-/// A form for a step's fields; `changed` gets the whole step anew. `elsewhere` are fields that stand in
-/// another card.
+/// A form for a step's fields; `changed` receives the whole changed step. Fields in `elsewhere` are left out,
+/// because another card shows them.
 export function step_form(
     step: Step, changed: (step: Step) => void, elsewhere: readonly string[] = []): Child {
   const schema = schema_of(step);
@@ -118,8 +118,8 @@ function choice(
       all.map((name) => el("option", {value: name, selected: value === name}, name.replace(/_/g, " "))));
 }
 
-// Points, lists and records: as their JSON, read back when it is whole. A point also takes the cross-hair's
-// place.
+// A field for points, lists and records as JSON, which is read when it is complete. A point can also be set
+// from the cross-hair.
 function structured(
     shared: {[name: string]: string}, value: Json|undefined, about: Schema,
     set_value: (value: Json|undefined) => void): Child {
@@ -161,7 +161,7 @@ function read_value(typed: string): Json {
   return JSON.parse(typed) as Json;
 }
 
-/// A step of an operation to begin with: its example's fields that every plan can take.
+/// A new step of an operation, with those fields of its example that are valid in any plan.
 export function new_step(schema: Schema, id: string): Step {
   const example = schema.examples?.[0];
   const step: Step = {id, do: schema.properties?.do?.const ?? ""};

@@ -38,7 +38,7 @@ export function make_lists(host: HTMLElement): void {
   watch(["plan", "looks", "selected", "left_tab", "scan"], again);
 }
 
-/// Which scan the panes show, where the plan has several.
+/// Chooses the scan that the panes show, if the plan has several.
 function scan_choice(): Child {
   const names = (state.plan?.scans ?? []).map((scan) => scan.name);
   if (names.length < 2) return null;
@@ -167,7 +167,7 @@ function step_rows(): Child {
   ];
 }
 
-// The step whose menu is open: it stays open where the list is filled anew.
+// The step whose menu is open. The menu stays open when the list is refilled.
 let step_of_menu = "";
 
 export function close_menu(): void {

@@ -15,9 +15,9 @@ const usual: Tissue[] = [
   {name: "fat", low: -190, high: -30},
 ];
 const scan_of = (name: string): ScanState|undefined => state.plan?.scans.find((scan) => scan.name === name);
-/// Tissues are known in Hounsfield units alone.
+/// Thresholds of tissues are defined only in Hounsfield units.
 const is_in_hu = (name: string): boolean => (scan_of(name)?.unit ?? "HU") === "HU";
-/// The ends of the sliders: of Hounsfield units those of tissues, else all samples that the scan has.
+/// The ends of the sliders: in Hounsfield units the range of tissues, else the range of the scan's samples.
 function range(scan: string): [number, number] {
   const [low, high] = scan_of(scan)?.range ?? [-1000, 3000];
   if (!is_in_hu(scan)) return [Math.floor(low), Math.ceil(high)];
@@ -61,7 +61,7 @@ async function apply(): Promise<void> {
   if (is_made) void look_for_cleaning(next.id);
   if (state.draft_window === draft)
     take_tool("navigate");
-  else if (state.draft_window)  // it was set further meanwhile
+  else if (state.draft_window)  // the window was changed in the meantime
     set({draft_window: {...state.draft_window, replaces: next.id}});
 }
 

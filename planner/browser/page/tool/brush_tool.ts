@@ -21,7 +21,8 @@ let radius_mm = usual_radius_mm;
 let thickness_mm = usual_thickness_mm;
 const least_mm = 0.5, most_mm = 50;
 
-/// What is drawn and not in the plan yet. A stroke in a view is in parts, where the surface falls away under it.
+/// Strokes that are drawn and not in the plan yet. A stroke in a view has several parts if the surface is
+/// interrupted under it.
 interface Draft {
   pane: Pane;
   normal: Vec3;
@@ -30,14 +31,15 @@ interface Draft {
 }
 let draft: Draft|null = null;
 let pointed: {pane: Pane; at: Vec2}|null = null;
-/// Strokes are added one after the other, since the second belongs to the step that the first makes.
+/// Strokes are added one after the other, because the second one may belong to the step that the first
+/// creates.
 let before: Promise<void> = Promise.resolve();
-/// As many as a step and a stroke may have.
+/// The plan's limits for the strokes of a step and the points of a stroke.
 const most_strokes = 500, most_points = 2000;
 
 const mode_of = (step: Step): Mode => step.mode === "paint" ? "paint" : "erase";
 
-/// The object that a stroke changes, and the brush step to which it is added.
+/// The object that a stroke changes, and whether the stroke is added to an existing brush step.
 function target(as: Mode): {step: Step; going_on: boolean}|null {
   const step = selected_step();
   if (!step || !makes_body(step)) return null;
@@ -45,7 +47,7 @@ function target(as: Mode): {step: Step; going_on: boolean}|null {
   return {step, going_on: step.do === "brush" && mode_of(step) === as && has_room};
 }
 
-/// A line without the points that lie within a fiftieth of the radius beside it (Douglas and Peucker 1973).
+/// A line without points within a fiftieth of the radius of it (Douglas and Peucker 1973).
 function simplified(points: Vec3[], within_mm: number): Vec3[] {
   const first = points[0]!, last = points[points.length - 1]!;
   if (points.length < 3) return points;
@@ -126,7 +128,7 @@ function begin(pane: Pane, at: Vec2, by_keys: boolean): boolean {
   return true;
 }
 
-/// Carries the stroke on. Beside the surfaces of a view it has no depth, so that it pauses there.
+/// Extends the stroke. Beside the surfaces of a view there is no depth, so the stroke pauses there.
 function go_on(pane: Pane, at: Vec2): void {
   if (!draft || draft.pane !== pane || pane.is_beside(at)) return;
   const part = draft.parts[draft.parts.length - 1]!;
@@ -134,7 +136,7 @@ function go_on(pane: Pane, at: Vec2): void {
   const point = hundredths(pane.point_at(at));
   const by = sub(point, last);
   if (length(by) < Math.max(0.05, radius_mm / 10)) return;
-  // The surface falls away: the brush does not pass through what lies between.
+  // At a step in depth the stroke is interrupted, so that it does not cut through what lies between.
   if (!pane.is_slice && Math.abs(dot(by, draft.normal)) > 2 * radius_mm)
     draft.parts.push([point]);
   else
@@ -223,7 +225,7 @@ function draw(pane: Pane, context: CanvasRenderingContext2D): void {
   }
   const at = pane.keyed_at ?? (pointed?.pane === pane ? pointed.at : null);
   if (!at) return;
-  // The ball or disc seen along the view: a polygon of the brush's own corners would be no truer to the eye.
+  // Draws the ball or disc seen along the view as a polygon of 48 corners, which looks round.
   const corners = Array.from({length: 48}, (_, i): Vec2 => [
     at[0] + radius_px * Math.cos((i * Math.PI) / 24), at[1] + radius_px * Math.sin((i * Math.PI) / 24)
   ]);

@@ -9,13 +9,13 @@ export const gap = (a: Vec2, b: Vec2): number => Math.hypot(a[0] - b[0], a[1] - 
 const between = (a: Vec2, b: Vec2, share: number): Vec2 => [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
 const to_hundredths = (p: Vec2): Vec2 => [Math.round(p[0] * 100) / 100, Math.round(p[1] * 100) / 100];
 
-/// Counter-clockwise is positive.
+/// Signed area; positive if counter-clockwise.
 export const area_mm2 = (line: Polygon): number => line.reduce((sum, a, i) => {
   const b = line[(i + 1) % line.length]!;
   return sum + (a[0] * b[1] - a[1] * b[0]) / 2;
 }, 0);
 
-/// By the even-odd rule.
+/// Whether a closed line encloses a point, by the even-odd rule.
 export function contains(line: Polygon, p: Vec2): boolean {
   let inside = false;
   line.forEach((a, i) => {
@@ -25,7 +25,8 @@ export function contains(line: Polygon, p: Vec2): boolean {
   return inside;
 }
 
-/// The place of a closed line that is nearest to a point: the piece's number, the place, and how far it is.
+/// The point of a closed line that is nearest to a given one: the number of its piece, the point, and the
+/// distance.
 export function nearest_on(line: Polygon, p: Vec2): {piece: number; at: Vec2; mm: number} {
   let best = {piece: 0, at: line[0]!, mm: Infinity};
   line.forEach((a, piece) => {
@@ -38,7 +39,7 @@ export function nearest_on(line: Polygon, p: Vec2): {piece: number; at: Vec2; mm
   return best;
 }
 
-/// An open line without the points that lie within a distance beside it (Douglas and Peucker 1973).
+/// An open line without points within a distance of it (Douglas and Peucker 1973).
 export function simplified(line: Polygon, within_mm: number): Polygon {
   if (line.length < 3) return line;
   const first = line[0]!, last = line[line.length - 1]!;
@@ -50,26 +51,27 @@ export function simplified(line: Polygon, within_mm: number): Polygon {
   return [...simplified(line.slice(0, farthest + 1), within_mm).slice(0, -1), ...simplified(line.slice(farthest), within_mm)];
 }
 
-/// The closed line that a hand drew, to hundredths of a millimetre; none where it encloses next to nothing.
+/// A drawn line, closed, thinned and rounded to hundredths of a millimetre; none if it encloses almost no
+/// area.
 export function closed_line(drawn: Polygon, within_mm: number): Polygon|null {
   if (drawn.length < 3) return null;
-  // Halved at the point farthest from the first one, as a closed line has no ends.
+  // Split at the point farthest from the first one, because a closed line has no ends.
   const far = drawn.reduce((best, p, i) => (gap(p, drawn[0]!) > gap(drawn[best]!, drawn[0]!) ? i : best), 0);
   const halves = [simplified(drawn.slice(0, far + 1), within_mm), simplified([...drawn.slice(far), drawn[0]!], within_mm)];
   const line = tidy([...halves[0]!.slice(0, -1), ...halves[1]!.slice(0, -1)]);
   return line.length > 2 && Math.abs(area_mm2(line)) >= 0.5 ? line : null;
 }
 
-/// To hundredths of a millimetre, and no point twice in a row.
+/// Rounds to hundredths of a millimetre and drops points equal to the one before.
 export function tidy(line: Polygon): Polygon {
   const all = line.map(to_hundredths);
   return all.filter((p, i) => gap(p, all[(i + all.length - 1) % all.length]!) > 0);
 }
 
-/// The line with a stretch of it drawn anew: the stroke begins and ends on it, and the longer part stays.
+/// Replaces a part of the line by a stroke that begins and ends on it. The longer part of the line stays.
 export function spliced(line: Polygon, stroke: Polygon, within_mm: number): Polygon|null {
   const from = nearest_on(line, stroke[0]!), to = nearest_on(line, stroke[stroke.length - 1]!);
-  // From the stroke's end on along the line to its beginning.
+  // The points along the line from one place on to another.
   const onward = (start: {piece: number}, end: {piece: number}): Polygon => {
     const part: Polygon = [];
     for (let i = (start.piece + 1) % line.length, left = line.length; left > 0; i = (i + 1) % line.length, --left) {
@@ -85,7 +87,7 @@ export function spliced(line: Polygon, stroke: Polygon, within_mm: number): Poly
   return made.length > 2 && Math.abs(area_mm2(made)) >= 0.5 ? made : null;
 }
 
-/// The line with pieces no longer than this near a place.
+/// The line with pieces of at most this length near a position.
 export function refined(line: Polygon, at: Vec2, reach_mm: number, most_mm: number): Polygon {
   return line.flatMap((a, i) => {
     const b = line[(i + 1) % line.length]!;
@@ -94,7 +96,7 @@ export function refined(line: Polygon, at: Vec2, reach_mm: number, most_mm: numb
   });
 }
 
-/// A point moved, and those near it with it, by less the farther they are: none at the reach.
+/// Moves a point and, with it, those nearby: the farther, the less, and not at all beyond the reach.
 export function dragged(line: Polygon, point: number, to: Vec2, reach_mm: number): Polygon {
   const from = line[point]!, by = sub(to, from);
   return line.map((p, i) => {
@@ -103,8 +105,8 @@ export function dragged(line: Polygon, point: number, to: Vec2, reach_mm: number
   });
 }
 
-/// Points near a place moved towards the middle of their neighbours, and out again by a little less, so that the line
-/// becomes smooth and does not shrink (Taubin 1995).
+/// Moves points near a position towards the middle of their neighbours, and out again by slightly less, so
+/// that the line becomes smooth without shrinking (Taubin 1995).
 export function smoothed(line: Polygon, at: Vec2, reach_mm: number): Polygon {
   const step = (all: Polygon, share: number): Polygon => all.map((p, i) => {
     if (gap(p, at) >= reach_mm) return p;
@@ -114,7 +116,7 @@ export function smoothed(line: Polygon, at: Vec2, reach_mm: number): Polygon {
   return step(step(line, 0.5), -0.52);
 }
 
-/// Whether two closed lines have a part of the plane in common, without one being a hole in the other.
+/// Whether the areas of two closed lines overlap and neither lies as a hole in the other.
 export const overlap = (a: Polygon, b: Polygon): boolean => {
   const inside = a.filter((p) => contains(b, p)).length, around = b.filter((p) => contains(a, p)).length;
   return inside > 0 || around > 0;

@@ -24,7 +24,7 @@ interface Slice {
   position_mm: number;
   polygons_mm: Polygon[];
 }
-/// A slice of the scan as it lies, in the frame of the view that its contours are drawn in.
+/// A slice of the scan in its own orientation, in the frame of the view in which its contours are drawn.
 interface Place {
   view: string;
   right: Vec3;
@@ -33,25 +33,26 @@ interface Place {
   position_mm: number;
 }
 
-/// What the hand does and is not in the plan yet: a line that is drawn, or contours that are dragged or smoothed.
+/// The unfinished edit, which is not in the plan yet: a line that is drawn, or contours that are dragged or
+/// smoothed.
 let drawn: {pane: Pane; points: Polygon; is_by_corners: boolean}|null = null;
 let held: {pane: Pane; step: Step; slices: Slice[]; contour: Polygon; index: number; before: Polygon; point: number}|null = null;
 let pointed: {pane: Pane; at: Vec2}|null = null;
 let last_pane: Pane|null = null;
-/// Changes are made one after the other, since each is of the step that the one before left.
+/// Changes run one after the other, because each starts from the step that the one before has made.
 let queue: Promise<unknown> = Promise.resolve();
 
 const slices_of = (step: Step): Slice[] => structuredClone((step.contours ?? []) as unknown as Slice[]);
 const is_ours = (step: Step|undefined): step is Step => step?.do === "tile" && Array.isArray(step.contours);
 
-/// The frame of a view as a plan has it: its name, or AZ,EL.
+/// The frame of a view as a plan names it: a name, or AZ,EL.
 function frame_of(view: string): {right: Vec3; up: Vec3; look: Vec3} {
   if ((view_names as string[]).includes(view)) return directions_of(view as ViewName);
   const [azimuth = 0, elevation = 0] = view.split(",").map(Number);
   return directions_of(turned({azimuth, elevation} as View));
 }
 
-/// The slice that a pane shows; a word to the person where contours cannot be drawn in it.
+/// The slice that a pane shows; a message if contours cannot be drawn in it.
 function place_of(pane: Pane|null): Place|string {
   if (!pane || pane.setting.mode !== "slice") return "Contours are drawn in slices: choose a slice.";
   if (is_elsewhere()) return "This scan has no objects of the plan: show the patient's scan.";
@@ -68,7 +69,7 @@ const needed_place = (pane: Pane|null): Place|null => {
   return null;
 };
 
-/// The step that contours of a place belong to: the selected one, where it has that view.
+/// The step with the contours of a place: the selected one, if it has the place's view.
 function target(place: Place): Step|null {
   const step = selected_step();
   return is_ours(step) && (step.view ?? "inferior") === place.view ? step : null;
@@ -90,13 +91,14 @@ const pixel_of = (pane: Pane, place: Place, uv: Vec2): Vec2 =>
     pane.pixel_at(add(add(scaled(place.right, uv[0]), scaled(place.up, uv[1])), scaled(place.look, place.position_mm)));
 const near_mm = (pane: Pane): number => near_px * pane.ratio * pane.frame.pixel_mm;
 
-/// The distance of the scan's slices along a view.
+/// The distance between the scan's slices along a view.
 function slice_mm(place: Place): number {
   const spacing = state.plan?.scans.find((scan) => scan.name === shown_scan())?.spacing_mm ?? [1, 1, 1];
   return Math.max(0.2, hundredth(Math.abs(dot(spacing as Vec3, place.look.map(Math.abs) as Vec3))));
 }
 
-/// One change: the contours of a slice become others. A new step where there is none, and none where none is left.
+/// Replaces the contours of a slice, as one change of the plan. Adds a step if there is none; removes the
+/// step if no contour is left.
 async function change(place: Place, what: string, take: (now: Polygon[]) => Polygon[]|null): Promise<boolean> {
   const step = target(place);
   const slices = step ? slices_of(step) : [];
@@ -123,7 +125,7 @@ function then(place: Place, what: string, take: (now: Polygon[]) => Polygon[]|nu
 }
 const at_mm = (place: Place): string => `${place.position_mm} mm`;
 
-/// The contour under the pointer: the nearest within reach of a click; otherwise the smallest around it.
+/// The contour under the pointer: the nearest within reach of a click; otherwise the smallest one around it.
 function contour_at(pane: Pane, uv: Vec2, may_be_inside: boolean): number|null {
   const all = contours_here(pane);
   const on = all.map((contour, i) => ({i, mm: nearest_on(contour, uv).mm})).sort((a, b) => a.mm - b.mm)[0];
@@ -161,7 +163,7 @@ function take_hold(pane: Pane, at: Vec2): boolean {
   }
   const slices = slices_of(step);
   const here = slices.find((slice) => is_here(slice, place))!;
-  // A piece that is taken between its ends gets a point there.
+  // If a piece is grabbed between its ends, it gets a point there.
   let contour = mode === "drag" && reach_mm > 0 ? refined(here.polygons_mm[index]!, uv, reach_mm, reach_mm / 6) : here.polygons_mm[index]!;
   if (mode === "smooth") contour = refined(contour, uv, reach_mm, Math.max(0.3, reach_mm / 10));
   const on = nearest_on(contour, uv);
@@ -204,7 +206,7 @@ function erase(pane: Pane, at: Vec2): void {
   then(place, `a contour erased at ${at_mm(place)}`, (now) => now.filter((_, i) => i !== index));
 }
 
-/// Asks the server for contours, which take the place of those that they overlap.
+/// Requests contours from the server. They replace those that they overlap.
 function trace(place: Place, asked: object, what: string): void {
   const path = state.plan?.path;
   queue = queue.then(async () => {
@@ -219,7 +221,7 @@ function seed(pane: Pane, at: Vec2): void {
   if (place) trace(place, {seed_mm: hundredths(pane.point_at(at)), scan: shown_scan(), tolerance}, `a region found at ${at_mm(place)}`);
 }
 
-/// The object whose contours the slice may take over: the last shown one before the step.
+/// The object whose contours the slice may copy: the last visible one before the step.
 function other_object(): string|undefined {
   const own = selected_step();
   const all = steps().filter((step) => makes_body(step) && step !== own && (!is_ours(own) || steps().indexOf(step) < steps().indexOf(own)));
@@ -232,10 +234,10 @@ function take_over(): void {
   trace(place, {object}, `contours of ${object} at ${at_mm(place)}`);
 }
 
-/// The pane that was worked in last, or the first one that shows a slice.
+/// The pane that was used last, or the first one that shows a slice.
 const slice_pane = (): Pane|null => last_pane;
 
-/// Copies the slice's contours to the next slice, which is shown then.
+/// Copies the slice's contours to the next slice and shows that slice.
 export function copy_contours(by: number): void {
   const pane = slice_pane(), place = needed_place(pane);
   if (!place || !pane) return;
@@ -300,7 +302,7 @@ export const contour_tool: Tool = {
   up() {
     let_go();
     if (!drawn || drawn.is_by_corners) return;
-    // A click is a corner; Enter or the first corner closes the line.
+    // A click sets a corner; Enter or a click on the first corner closes the line.
     if (drawn.points.length === 1)
       drawn.is_by_corners = true;
     else
@@ -348,7 +350,7 @@ function draw(pane: Pane, context: CanvasRenderingContext2D): void {
   const slices = held?.pane === pane ? held.slices : step ? slices_of(step) : [];
   const outline = (contour: Polygon, colour: string, width: number): void =>
       line(context, contour.map((uv) => pixel_of(pane, place, uv)), colour, width * pane.ratio, true);
-  // The nearest contours on either side, so that the next ones fit them.
+  // Draws the nearest contours on either side, so that new ones can be fitted to them.
   const below = slices.filter((slice) => slice.position_mm < place.position_mm - same_slice_mm).pop();
   const above = slices.find((slice) => slice.position_mm > place.position_mm + same_slice_mm);
   context.save();

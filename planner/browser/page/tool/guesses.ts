@@ -10,7 +10,7 @@ import type {Pane} from "../pane/panes";
 import {LandmarkGuess, Step} from "../protocol";
 import {notify, selected_step, set, state, steps} from "../state";
 
-/// Those that are neither kept nor placed.
+/// Guesses that are neither kept nor placed.
 export const open_guesses = (): LandmarkGuess[] =>
     state.guesses.filter((guess) => !state.plan?.landmarks.some((mark) => mark.name === guess.name));
 
@@ -20,8 +20,8 @@ interface Found {
   findings: string[];
 }
 
-/// Asks for a guess on the selected object, or on the first one, that is made of no other; true where there
-/// is one.
+/// Requests guesses of landmarks on the selected object, or on the first one made directly from a scan.
+/// Returns whether there are any.
 export async function ask_guesses(): Promise<boolean> {
   const is_whole = (step: Step): boolean => makes_body(step) && !operands(step).length;
   const object = [selected_step(), ...steps()].find((step) => step && is_whole(step))?.id;
@@ -50,7 +50,7 @@ export function pass_over(guess: LandmarkGuess): void {
 const radius_px = (pane: Pane, guess: LandmarkGuess): number =>
     Math.max(7 * pane.ratio, guess.uncertainty_mm / pane.frame.pixel_mm);
 
-/// A guess as wide as it is in doubt.
+/// Draws a guess as a circle of its uncertainty.
 export function draw_guesses(pane: Pane, context: CanvasRenderingContext2D, current: string): void {
   for (const guess of open_guesses()) {
     if (!is_drawn(pane, {name: guess.name, point: guess.point_mm})) continue;
@@ -69,7 +69,7 @@ export function draw_guesses(pane: Pane, context: CanvasRenderingContext2D, curr
   }
 }
 
-/// What is asked of one guess.
+/// A card with a guess and the buttons to keep it or pass over it.
 export function guess_card(guess: LandmarkGuess, keep: () => void, pass: () => void): Child {
   return [
     el("p", {class: "says"}, el("b", {}, `${open_guesses().length} to look at: ${guess.name.replace(/_/g, " ")}, within ${

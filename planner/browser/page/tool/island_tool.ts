@@ -14,7 +14,7 @@ import {Tool} from "./tool";
 
 let keeps = false;
 
-/// A step that this tool has made, to which a click adds a part: `chosen` has its points, `source` is the object.
+/// A step of this tool to which a click adds a part: `chosen` contains its points, `source` is the object.
 interface Begun {
   chosen: Step;
   source: string;
@@ -27,7 +27,7 @@ function begun(step: Step): Begun|null {
 }
 const is_rest = (step: Step): boolean => step.do === "combine";
 
-// The object whose parts are clicked: of a step of this tool that goes on, the object that it was made of.
+// The selected body, and the step of this tool that the next click extends, if there is one.
 function target(): {step: Step; going_on: Begun|null}|null {
   const step = selected_step();
   if (!step || !makes_body(step)) return null;

@@ -14,13 +14,13 @@ import {point_of} from "../base/view_frame";
 type End = "at"|"to";
 type Pair = NonNullable<Motion["points"]>[number];
 let pairs: Pair[] = [];
-let open: Vec3|null = null;  // a point of the piece whose target is not set yet
+let open: Vec3|null = null;  // a point of the piece that has no target yet
 let held: {pair: number; end: End}|null = null;
 const near_px = 11;
 const most_pairs = 8;
 
-/// The point of a pane's position as deep as another point: in this view it goes there, and keeps what the
-/// view does not show.
+/// The point at a pane's position with the depth of another point: the point moves within this view and keeps
+/// its depth.
 const as_deep_as = (pane: Pane, at: Vec2, p_mm: Vec3): Vec3 =>
     hundredths(point_of(pane.frame, pane.size, at, dot(p_mm, pane.frame.look)));
 
@@ -62,7 +62,7 @@ export const marks_tool: Tool = {
   taken() {
     pairs = (current().points ?? []).map((pair) => ({...pair}));
     open = held = null;
-    // The marks are of the piece where it was cut.
+    // The marks lie on the piece at its original position.
     if (piece()) show();
   },
   left() {

@@ -19,7 +19,8 @@ interface Held {
 }
 let held: Held|null = null;
 
-/// The ring's radius and the arrows' length in CSS pixels: less in a small pane, so that they can be reached.
+/// The ring's radius and the arrows' length in CSS pixels; smaller in a small pane, so that they stay
+/// reachable.
 const ring_px = (pane: Pane): number => Math.min(84, (0.25 * Math.min(...pane.size)) / pane.ratio);
 const arrow_px = (pane: Pane): number => 0.74 * ring_px(pane);
 const turn_axes: Record<Turn, [Vec3, Vec3]> = {
@@ -34,7 +35,7 @@ const arrow_end = (pane: Pane, word: Direction): Vec2|null => {
   const y = -dot(lps[word], frame.up);
   return Math.hypot(x, y) < 0.35 ? null : [x, y];
 };
-/// The turn about the direction that a pane looks in, and whether it goes counter-clockwise on the screen.
+/// The rotation about the pane's view direction, and whether it goes counter-clockwise on the screen.
 function turn_in(pane: Pane): {turn: Turn; sign: number} {
   const frame = pane.frame;
   const size = (turn: Turn): number => {

@@ -9,7 +9,7 @@ import {Json, Motion, Step} from "../protocol";
 import {selected_step, set, state, steps, watch} from "../state";
 import {add, scaled, Vec3} from "../base/vector";
 
-/// The piece that the tool moves: the selected move's, or the selected object itself.
+/// The piece that the tool moves: that of the selected move, or the selected object itself.
 export function piece(): {source: string; step: Step | undefined}|null {
   const step = selected_step();
   if (!step || !makes_body(step)) return null;
@@ -25,7 +25,7 @@ const motion_of = (step: Step|undefined): Motion =>
     });
 export const current = (): Motion => state.preview?.move ?? motion_of(piece()?.step);
 
-/// Where a piece's handles stand: its pivot, moved along.
+/// The position of a piece's handles: its pivot after the motion.
 export function pivot_mm(source: string, move: Motion): Vec3 {
   const about = mark_mm(move.turn?.about_mm as Json | undefined) ?? centre_of(source);
   return directions.reduce<Vec3>((p, word) => add(p, scaled(lps[word], move.by?.[word] ?? 0)), about);
@@ -35,7 +35,7 @@ export function centre_of(id: string): Vec3 {
   return bounds ? scaled(add(bounds[0], bounds[1]), 0.5) : state.cross_mm;
 }
 
-/// What a piece must not run into: the shown objects that stay.
+/// Objects with which a piece must not overlap: the visible ones that stay.
 function others(source: string, moved: string|undefined): string[] {
   return steps()
       .filter((step) => makes_body(step) && step.id !== source && step.id !== moved)
@@ -60,18 +60,19 @@ export function preview_motion(move: Motion): void {
   });
 }
 
-/// What a piece's difference can be drawn to: the plan's other bodies, and the piece before it moved.
+/// Objects to which a piece's difference can be drawn: the plan's other bodies, and the piece before the
+/// motion.
 export function difference_choices(): string[] {
   const one = piece();
   return steps()
       .filter((step) => makes_body(step) && step.id !== one?.step?.id && !is_overlap(step, steps()))
       .map((step) => step.id);
 }
-/// The chosen one; null if there is none, or if the plan has lost it.
+/// The chosen object; null if there is none, or if the plan no longer contains it.
 export const difference_to = (): string|null =>
     difference_choices().find((id) => id === state.difference_to) ?? null;
 
-// A difference that is shown at rest is of the plan and the piece of then.
+// The plan and the piece for which a difference at rest was drawn.
 let shown_at = "";
 const place_in_plan = (): string => `${state.plan?.edit} ${state.selected}`;
 watch(["plan", "selected"], () => {
@@ -79,7 +80,7 @@ watch(["plan", "selected"], () => {
     set({preview: null, difference: null});
 });
 
-/// Chooses the object of the difference, and shows it where the piece is now.
+/// Chooses the object of the difference, and shows the difference at the piece's present position.
 export function show_difference(to: string|null): void {
   set({difference_to: to, difference: null, overlap_mm3: null});
   if (to) preview_motion(current());
@@ -101,7 +102,7 @@ export async function commit_motion(move: Motion): Promise<void> {
     const id = free_id(`${one.source}_moved`);
     const stays = others(one.source, id);
     const more: Step[] = [{id, do: "move", object: one.source, ...fields} as Step];
-    // What both have in common, and last the operation's outcome, which the report shows.
+    // The overlap of both, and last the operation's outcome, which the report shows.
     if (stays.length)
       more.push(
           {

@@ -28,7 +28,7 @@ let is_snapping = true;
 const named = (p: Vec3): Json =>
     state.plan?.landmarks.find((mark) => distance(mark.point, p) < 0.005)?.name ?? [...p];
 
-/// A landmark that is nearer than this on the screen is meant when its place is clicked.
+/// A click within this distance on the screen selects an existing landmark.
 const near_px = 10;
 
 function landmark_at(pane: Pane, at: Vec2): {name: string; point: Vec3}|undefined {
@@ -38,8 +38,8 @@ function landmark_at(pane: Pane, at: Vec2): {name: string; point: Vec3}|undefine
     return Math.hypot(p[0] - at[0], p[1] - at[1]) < near_px * pane.ratio;
   });
 }
-/// The place under the pointer. A view shows no depth beside its surfaces: nothing is placed there, and the
-/// page shows a message.
+/// The point under the pointer. Beside the surfaces of a view there is no depth: the page shows a message and
+/// nothing is placed.
 export function place_at(pane: Pane, at: Vec2): Vec3|null {
   if (!pane.has_places) {
     notify("The picture is still being drawn: click again once it is at rest.", "warning");
@@ -49,7 +49,8 @@ export function place_at(pane: Pane, at: Vec2): Vec3|null {
   notify("No surface lies there, so the point has no depth: click on an object, or in a slice.", "warning");
   return null;
 }
-/// Points of slices stay where they are clicked; a donor's surface is no object of the plan.
+/// Points in slices stay where they are clicked. A donor's surface is not an object of the plan, so nothing
+/// snaps to it.
 const snaps = (pane: Pane): boolean => is_snapping && !pane.is_slice && !is_elsewhere();
 
 function point_tool(
@@ -126,13 +127,13 @@ export const surface_tool = point_tool(
     "surface_distance", 2, "Way along a surface", "Select an object, then click two points of its surface.",
     "");
 
-/// Landmarks that a procedure waits for: clicked one after the other.
+/// Starts placing the landmarks that a procedure needs, one click after the other.
 export function ask_for_landmarks(wanted: Wanted[]): void {
   procedure_wants = wanted;
   next_wanted();
   take_tool("landmark");
 }
-// `placed` may not have come back in the plan's state yet.
+// The next landmark to place. `placed` may not be in the plan's state yet.
 function next_wanted(placed = ""): void {
   const missing = procedure_wants.find(
       (one) => one.name !== placed && !state.plan?.landmarks.some((mark) => mark.name === one.name));
@@ -147,7 +148,7 @@ function next_wanted(placed = ""): void {
   }
 }
 
-/// The guess that is looked at: the one of the name that is asked for.
+/// The guess for the landmark that is placed next.
 const current_guess = (): LandmarkGuess|undefined =>
     open_guesses().find((guess) => guess.name === landmark_name);
 
@@ -161,14 +162,15 @@ export async function guess_landmarks(): Promise<void> {
     next_guess();
 }
 
-/// Asks for the next guess, and shows its place in all panes. `placed` may still be open in the plan's state.
+/// Continues with the next guess, and shows its place in all panes. `placed` may still be open in the plan's
+/// state.
 function next_guess(placed = ""): void {
   const next = open_guesses().find((guess) => guess.name !== placed);
   landmark_name = next?.name ?? "";
   show_guess();
 }
 
-/// The panel asks for the landmark, and all panes show where it is guessed.
+/// Selects the guess's landmark in the panel, and shows its place in all panes.
 function show_guess(): void {
   const guess = current_guess();
   set(guess ? {tool: state.tool, cross_mm: hundredths(guess.point_mm)} : {tool: state.tool});
@@ -179,7 +181,7 @@ async function place(name: string, point: Vec3, snap: boolean): Promise<void> {
   const at = await put_landmark(name, point, snap);
   if (!at) return;
   set({cross_mm: hundredths(at)});
-  if (landmark_name !== asked) return;  // the next one's name was typed meanwhile
+  if (landmark_name !== asked) return;  // another name was typed in the meantime
   if (procedure_wants.length)
     next_wanted(name);
   else if (open_guesses().length)

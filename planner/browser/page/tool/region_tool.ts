@@ -124,7 +124,7 @@ export const region_tool: Tool = {
   },
 };
 
-/// The object that a mask would cut: the last shown one before it that is no mask.
+/// The object that a mask would cut: the last visible one before it that is not a mask.
 function cut_target(mask: Step|undefined): string|undefined {
   if (!mask) return undefined;
   const before = steps().slice(0, steps().findIndex((step) => step.id === mask.id));

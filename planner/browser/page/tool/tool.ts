@@ -8,25 +8,25 @@ import {Vec2} from "../base/vector";
 
 export interface Pointer {
   pane: Pane;
-  at: Vec2;  // pixels of the canvas
+  at: Vec2;  // canvas pixels
 }
 
 export interface Tool {
   name: string;
   title: string;
-  says: string;  // one sentence that teaches it
-  key: string;   // the key that takes it in hand
+  says: string;  // one sentence that explains the tool
+  key: string;   // the key that chooses the tool
   cursor: string;
-  is_pointed?: boolean;  // it takes clicks on places: arrow keys carry a place in the pane, and Space clicks it
-  down?(pointer: Pointer): boolean;  // true: the tool takes the drag
+  is_pointed?: boolean;  // it works on positions: arrow keys move a position in the pane, and Space clicks it
+  down?(pointer: Pointer): boolean;  // returns true to capture the drag
   move?(pointer: Pointer): void;
   up?(pointer: Pointer): void;
-  cancel?(): void;  // a second finger came: what `down` did is undone; without it, `up` is called
+  cancel?(): void;  // a second finger came down: undoes what `down` did; without it, `up` is called
   hover?(pointer: Pointer): void;
   double?(pointer: Pointer): boolean;
   press?(event: KeyboardEvent, pane: Pane): boolean;
   draw?(pane: Pane, context: CanvasRenderingContext2D): void;
-  panel?(): Child;  // what the inspector shows above the step
+  panel?(): Child;  // rows that the inspector shows above the step
   taken?(): void;
   left?(): void;
 }
@@ -45,7 +45,7 @@ export function take_tool(name: string): void {
   active_tool()?.taken?.();
 }
 
-// A tool's draft belongs to the plan that it was begun on.
+// A tool's draft belongs to the plan on which it was begun.
 on_leaving_plan(() => {
   active_tool()?.left?.();
   set({tool: "navigate"});

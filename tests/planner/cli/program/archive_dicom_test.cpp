@@ -32,7 +32,7 @@ class ArchiveDicom : public testing::Test {
     return command("/usr/bin/python3 " OCTOTOMY_SOURCE_DIR "/tests/planner/cli/program/other_readers.py " +
                    arguments);
   }
-  /// dciodvfy's lines that say Error, apart from a type of contour that its tables lack: CLOSEDPLANAR_XOR
+  /// dciodvfy's lines with "Error", except those on CLOSEDPLANAR_XOR, a type of contour that its tables lack
   /// (PS3.3, C.8.8.6.3).
   std::string errors_of(const std::string& file) const {
     const tests::CommandAnswer answer = command("dciodvfy " + file);
@@ -128,7 +128,7 @@ TEST_F(ArchiveDicom, ASurfaceKeepsItsSizePatientAndFrame) {
   EXPECT_NE(after["audit"].dump().find("STL in DICOM"), std::string::npos);
   EXPECT_EQ(octotomy("measure ball.dcm")["volume_mm3"], octotomy("measure ball.stl")["volume_mm3"]);
   EXPECT_LT(octotomy("compare ball.stl ball.dcm")["hausdorff_mm"].get<double>(), 1e-9);
-  // As OBJ, its coordinates keep their digits.
+  // OBJ keeps the digits of coordinates.
   octotomy("convert ball.stl -o obj.dcm --as obj");
   EXPECT_EQ(octotomy("info obj.dcm")["vertices"], before["vertices"]);
   const tests::CommandAnswer theirs = python("model ball.dcm");
@@ -155,7 +155,7 @@ TEST_F(ArchiveDicom, SharesOfVoxelsKeepTheVolumeOfASurface) {
   EXPECT_LE(std::abs(written["volume_mm3"].get<double>() - written["exact_volume_mm3"].get<double>()),
             written["rounding_mm3"].get<double>());
   EXPECT_GT(written["partial_voxels"], 500);
-  // Read as samples and written again, nothing is lost.
+  // Reading as samples and writing again loses nothing.
   octotomy("convert share.dcm -o share.nrrd --series Ball");
   const SortedJson again = octotomy("convert share.nrrd -o again.dcm --as fractions")["segments"][0];
   EXPECT_LE(again["partial_voxels"], written["partial_voxels"]) << "some round to none or all of a voxel";

@@ -101,7 +101,7 @@ TEST_F(BadSurfaces, ABooleanThinnerThanRoundingIsMadeExactly) {
   const CommandAnswer thin =
       run("boolean " + off("thick.off", thick) + " difference " +
           off("cube.off", box({0, 0, 0}, {10, 10, 10})) + " -o " + at("film.off") + " --json");
-  // Either a film, or the proof that there is none.
+  // The answer is a film, or the proof that there is none.
   EXPECT_TRUE(thin.status == 0 || thin.errors.find("exact numbers") != std::string::npos) << thin.errors;
 }
 

@@ -228,7 +228,7 @@ TEST_F(CommandLine, TheAnswerIsTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(measured("1"), measured("2"));
 }
 
-// Of samples of 16 bits the octree is built while they are read, of others afterwards.
+// For 16-bit samples the octree is built during reading; for other samples it is built afterwards.
 TEST_F(CommandLine, MeasuresAlikeWhetherTheOctreeIsBuiltBesideTheReadingOrAfterIt) {
   voxel::Scene scene = tests::ball_scene(40.0, 160);
   voxel::write_scene(scene, folder_ / "shorts.nrrd");
@@ -273,7 +273,7 @@ TEST_F(CommandLine, MeasuresAScansWindowAndAMesh) {
   ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.ply")).status, 0);
   const SortedJson mesh = SortedJson::parse(run("measure " + at("ball.ply") + " --json").out);
   EXPECT_NEAR(mesh["volume_mm3"].get<double>(), scan["volume_isosurface_mm3"].get<double>(), 1e-6);
-  // The voxels' own partial volume is another estimate of the same, from the same samples.
+  // The partial volume of voxels is another estimate of the same volume, from the same samples.
   EXPECT_NEAR(mesh["volume_mm3"].get<double>() / scan["volume_partial_mm3"].get<double>(), 1.0, 0.003);
   EXPECT_NE(mesh["volume_mm3"], scan["volume_partial_mm3"]);
   EXPECT_TRUE(mesh["volume_partial_mm3"].is_null());
@@ -512,7 +512,7 @@ TEST_F(CommandLine, GreyResultsKeepTheirSamplesAndAreMeasured) {
       SortedJson::parse(run("eval g" + ask + "--grey --json -o " + at("kept.octree")).out);
   EXPECT_EQ(kept["fields"], "grey");
   EXPECT_GE(kept["range"][1], 900);
-  // The object that keeps its samples has the samples' surface still, and so does not when moved by halves.
+  // The object that keeps its samples still has the samples' surface, even when it is moved by half voxels.
   const SortedJson measured =
       SortedJson::parse(run("measure " + at("grey.octree") + " --window 0: --json").out);
   EXPECT_NEAR(measured["volume_partial_mm3"].get<double>() / tests::ball_mm3(12.0), 1.0, 0.005);

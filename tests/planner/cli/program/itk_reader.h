@@ -7,7 +7,7 @@
 
 namespace octotomy::tests {
 
-/// A scan as ITK reads it: NRRD, MetaImage or NIfTI by the file's extension, of a folder the DICOM series.
+/// A scan as ITK reads it: NRRD, MetaImage or NIfTI by the file's extension; for a folder, its DICOM series.
 struct ItkVolume {
   glm::ivec3 dims{0};
   glm::dvec3 spacing_mm{0.0};

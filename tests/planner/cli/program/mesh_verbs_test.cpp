@@ -458,7 +458,7 @@ TEST_F(MeshVerbs, SeveralMeshesBecomeALabelMapAndTellWhereTheyOverlap) {
   EXPECT_NEAR(json["labels"][1]["volume_mm3"].get<double>(), 512, 1e-9);
   EXPECT_EQ(json["overlaps"], 64);
   EXPECT_NE(json["findings"][0].get<std::string>().find("64 voxels lie in several"), std::string::npos);
-  // Each comes back where it was, less what the first has of the second.
+  // Each part comes back to its place, without the part that the first one shares with the second.
   const SortedJson back =
       SortedJson::parse(run("segment " + at("ab.nrrd") + " --label 2 -o " + at("b.octree") + " --json").out);
   const SortedJson measured = SortedJson::parse(run("measure " + at("b.octree") + " --json").out);
@@ -491,7 +491,7 @@ TEST_F(MeshVerbs, WhatAMeshFileSaysOfItselfIsShownAndOverriddenByOptions) {
   const CommandAnswer turned = run("measure " + at("ras.obj") + " --json --frame LPS --unit cm");
   EXPECT_EQ(SortedJson::parse(turned.out)["centroid_mm"], SortedJson::parse("[-150.0, -400.0, 100.0]"));
   EXPECT_NE(turned.errors.find("WARN, frame"), std::string::npos) << turned.errors;
-  // Of two files one.
+  // One result of two files.
   const CommandAnswer both = run("boolean " + at("ras.obj") + " union " + at("ras.obj") + " -o " +
                                  at("u.stl") + " --json --unit ras.obj=cm");
   EXPECT_NEAR(SortedJson::parse(both.out)["volume_mm3"].get<double>(), 6e6, 1.0) << both.errors;

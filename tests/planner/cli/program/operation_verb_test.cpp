@@ -37,7 +37,8 @@ TEST_F(OperationVerbs, EveryKernelAnswersOnFilesAndNoCertificateFails) {
       const CommandAnswer answer = run(command + " --json");
       ASSERT_EQ(answer.status, 0) << command << answer.errors;
       const SortedJson certificate = SortedJson::parse(answer.out).at("certificate");
-      // Voxels centred on a ball count it worse than the bound's ball in any place: a WARN is no FAIL.
+      // Voxels centred on a ball count it worse than the bound, which holds for a ball in any position. A
+      // WARN is no FAIL.
       EXPECT_NE(certificate["verdict"], "FAIL") << command << certificate.dump(1);
       EXPECT_EQ(certificate["tier"], "bounded");
       const double mm3 = certificate["voxel"]["volume_mm3"];
@@ -132,7 +133,8 @@ TEST_F(OperationVerbs, EachKernelOffsetsItsOwnOperand) {
   const double ball = volume_mm3("measure " + at("ball.off"));
   const double margin = volume_mm3("offset " + at("ball.off") + " --by 3 -o " + at("margin.ply"));
   ASSERT_GT(margin, 1.2 * ball);
-  // Of whole voxels an offset takes those that stick out farthest, by up to a quarter of a millimetre here.
+  // For whole voxels, an offset reaches those that stick out farthest, by up to a quarter of a millimetre
+  // here.
   EXPECT_NEAR(volume_mm3("offset " + at("ball.off") + " --by 3 --voxel 0.5 -o " + at("margin.octree")),
               margin, 0.04 * margin);
   EXPECT_EQ(run("offset " + at("ball.octree") + " --by 3 -o " + at("x.octree")).status, 0);

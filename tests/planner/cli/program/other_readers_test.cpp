@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using tests::quoted;
 using tests::run_command;
 
-// A scan of the reference data, and what it takes to read it.
+// A scan of the reference data, and the options to read it.
 struct Subject {
   const char* name;
   const char* kind = "";  ///< of tests/planner/cli/program/other_readers.py
@@ -119,7 +119,7 @@ TEST_P(ItksReaders, SayTheSame) {
   const tests::CommandAnswer info = octotomy("info --json " + quoted(path));
   ASSERT_EQ(info.status, 0) << info.errors;
   const SortedJson ours = SortedJson::parse(info.out);
-  // ITK knows no padding.
+  // ITK ignores padding.
   std::vector<double> measured = theirs.samples;
   if (ours["padding"].is_number())
     std::erase_if(measured, [&](double sample) { return sample == ours["padding"]; });

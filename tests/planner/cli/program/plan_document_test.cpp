@@ -8,7 +8,7 @@ namespace {
 
 class PlanDocument : public tests::CommandLine {
  protected:
-  /// In the test's folder, so that files are named without it.
+  /// Runs the program in the test's folder, so that files are named without it.
   tests::CommandAnswer run(const std::string& arguments) const {
     return tests::run_command(
         "cd '" + folder_.path().string() + "' && " OCTOTOMY_BINARY_DIR "/octotomy " + arguments,
@@ -92,7 +92,7 @@ TEST_F(PlanDocument, ASignatureHoldsUntilThePlanOrItsScanChanges) {
   ASSERT_EQ(run("run my.plan.json -o report --no-certificates").status, 0);
   auto result = tests::SortedJson::parse(tests::bytes_of(folder_ / "report/result.json"));
   EXPECT_TRUE(result.at("signatures")[0].at("changed_since").empty());
-  // Layout is no change, a number is.
+  // A changed layout is no change of the plan; a changed number is one.
   write("my.plan.json", tests::SortedJson::parse(text).dump());
   EXPECT_NE(run("plan sign my.plan.json").out.find(": holds"), std::string::npos);
   auto changed = tests::SortedJson::parse(text);
@@ -179,7 +179,7 @@ TEST_F(PlanDocument, PreviewDrawsOneStepAndTellsAMaskThatCutsNothing) {
   EXPECT_EQ(drawn.status, 0) << drawn.errors;
   EXPECT_EQ(tests::bytes_of(folder_ / "cup.png").substr(1, 3), "PNG");
   EXPECT_NE(drawn.errors.find("the mask 'cut' holds nothing of 'ball'"), std::string::npos) << drawn.errors;
-  // As every verb that draws numbers from a scan, it carries the scan's audit.
+  // Like every verb that draws numbers from a scan, its answer contains the scan's audit.
   EXPECT_TRUE(tests::SortedJson::parse(drawn.out)["scans"][0].contains("audit")) << drawn.out;
   const auto ran = run("run my.plan.json -o out --no-certificates");
   EXPECT_EQ(ran.status, 0);
@@ -248,7 +248,7 @@ TEST_F(PlanDocument, AProcedurePlansAndReportsInOneCommand) {
               2.0, 1e-9);
   EXPECT_TRUE(tests::SortedJson::parse(made.out).at("certificates").empty());
   EXPECT_TRUE(std::filesystem::exists(folder_ / "out/report.html"));
-  // The same as the plan that it wrote, replayed.
+  // The result equals that of the written plan, replayed.
   ASSERT_EQ(run("run p.plan.json -o again --certify never").status, 0);
   EXPECT_EQ(tests::bytes_of(folder_ / "out/views/after_left.png"),
             tests::bytes_of(folder_ / "again/views/after_left.png"));

@@ -113,7 +113,8 @@ TEST_F(ScanVerbs, ATissueIsAWindowOfHounsfieldUnitsEverywhere) {
   EXPECT_EQ(named["tissues"]["skin"]["low"], -300.0);
   EXPECT_FALSE(json("measure " + at("ball.nrrd") + " --window=-300:").contains("tissues"));
   ASSERT_EQ(run("octree " + at("ball.nrrd") + " --grey -o " + at("grey.octree")).status, 0);
-  // Bone is the same in every verb, said or by default, and its numbers stand beside each use.
+  // Bone is the same window in every verb, requested or by default, and its numbers are reported with each
+  // use.
   EXPECT_EQ(json("measure " + at("ball.nrrd") + " --window bone")["window"], SortedJson({300.0, nullptr}));
   EXPECT_NE(run("mesh " + at("ball.nrrd") + " -o " + at("d.stl")).errors.find("bone (from 300 HU)"),
             std::string::npos);
@@ -240,7 +241,7 @@ TEST_F(Segments, LabelMapsHoldSeveralObjectsAndGiveThemBack) {
     const SortedJson back = json("segment " + at(name) + " --label 2 -o " + at("back.nrrd"));
     EXPECT_EQ(back["labels"][0]["samples"], 20 * 8 * 8) << name;
   }
-  // Octrees become a label map on the scan's lattice, and overlap is told.
+  // Octrees become a label map on the scan's lattice, and overlap is reported.
   ASSERT_EQ(run(segment("a.octree") + "--window 600:").status, 0);
   ASSERT_EQ(run(segment("b.octree") + "--window 200:").status, 0);
   const SortedJson again =
@@ -250,7 +251,7 @@ TEST_F(Segments, LabelMapsHoldSeveralObjectsAndGiveThemBack) {
   ASSERT_EQ(again["findings"].size(), 2u);
   EXPECT_NE(again["findings"][1].dump().find("again.tsv"), std::string::npos) << again["findings"];
   EXPECT_EQ(tests::bytes_of(folder_ / "again.tsv"), "index\tname\n1\ta\n2\tb\n");
-  // Made again of others the map has their names; a table that somebody else wrote refuses it.
+  // Made again from other objects, the map has their names; it is refused if somebody else wrote the table.
   EXPECT_EQ(run(segment("again.nrrd") + "--object " + at("b.octree")).status, 0);
   EXPECT_EQ(tests::bytes_of(folder_ / "again.tsv"), "index\tname\n1\tb\n");
   EXPECT_EQ(json("segment " + at("again.nrrd") + " --named b -o " + at("back.nrrd"))["labels"][0]["samples"],
@@ -366,7 +367,7 @@ TEST_F(Segments, NamesOfLabelsStayBesideALabelMapThatIsConverted) {
   expect_refused(run("convert " + at("named.dcm") + " -o " + at("mine.nrrd")), "mine.tsv");
   EXPECT_EQ(tests::bytes_of(folder_ / "mine.tsv"), "index\tname\n1\tCube\n2\tBalls\n");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "mine.nrrd"));
-  // A map beside the table that it was named by needs no other, and one without names makes none.
+  // A map with its own table of names needs no other one, and one without names makes none.
   EXPECT_EQ(json("convert " + at("map.nrrd") + " -o " + at("map.mha"))["findings"], SortedJson::array());
   EXPECT_FALSE(std::filesystem::exists(folder_ / "map.tsv"));
   EXPECT_EQ(run("convert " + at("scan.nrrd") + " -o " + at("plain.mha")).status, 0);

@@ -31,7 +31,7 @@ class SpoiledScan : public tests::CommandLine {
       if (line["check"] == check) return &line;
     return nullptr;
   }
-  /// The audit in an answer: its own, or that of the one scan which it lists.
+  /// The audit in an answer: its own, or that of the only scan that it lists.
   static SortedJson audit_of(const SortedJson& answer) {
     if (answer.contains("audit")) return answer["audit"];
     if (!answer.contains("scans") || answer["scans"].empty()) return nullptr;

@@ -31,7 +31,7 @@ class WrittenDicom : public testing::Test {
     return command("/usr/bin/python3 " OCTOTOMY_SOURCE_DIR "/tests/planner/cli/program/other_readers.py " +
                    arguments);
   }
-  /// dciodvfy's lines that say Error; the file is held to the standard's tables.
+  /// dciodvfy's lines with "Error": it compares the file with the standard's tables.
   std::string errors_of(const fs::path& file) const {
     const tests::CommandAnswer answer = command("dciodvfy " + quoted(file));
     std::istringstream lines(answer.out + answer.errors);
@@ -98,7 +98,7 @@ TEST_F(WrittenDicom, IsHeldToTheStandard) {
   for (const fs::path& file : {source / "slice_0003.dcm", folder_ / "derived/slice_0003.dcm",
                                folder_ / "alone.dcm", folder_ / "ball.dcm"})
     EXPECT_EQ(errors_of(file), "") << file;
-  // The checker sees what is wrong: a type of segmentation that the standard does not know.
+  // The checker detects an error: a type of segmentation that the standard does not define.
   std::string bytes = tests::bytes_of(folder_ / "ball.dcm");
   const std::size_t at = bytes.find("BINARY");
   ASSERT_NE(at, std::string::npos);

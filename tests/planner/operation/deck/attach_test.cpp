@@ -122,7 +122,8 @@ TEST_F(Attach, BoneNodesEndWhereThePlanPutThemAndTissueBetween) {
     EXPECT_LT(glm::distance(displacements[node], glm::dvec3(0, 0, 1.5)), 1e-5);
   for (const std::uint32_t node : set_of(face, "FIXED_rest").nodes)
     EXPECT_LT(glm::length(displacements[node]), 1e-9);
-  // Tissue pressed aside may rise a little beyond what raises it; the skin above rises more than that below.
+  // Tissue that is pressed aside may rise slightly more than the piece that raises it; the skin above rises
+  // more than that below.
   double above_mm = 0.0, below_mm = 0.0;
   for (std::size_t node = 0; node < displacements.size(); ++node) {
     EXPECT_LT(displacements[node].z, 1.05 * 1.5);

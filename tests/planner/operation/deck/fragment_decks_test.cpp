@@ -16,7 +16,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// As many as the long run asks for, or a few.
+/// The number of fragments that the long run requests, or a few.
 int wanted_fragments() {
   const char* asked = std::getenv("OCTOTOMY_FRAGMENTS");
   return asked == nullptr ? 2 : std::atoi(asked);
@@ -162,7 +162,7 @@ TEST(FragmentDecks, AStopEndsAFillingOfEveryKindAndLeavesNoDeck) {
 
 TEST(FragmentDecks, BegunAheadAreTheSameFilesAndReasons) {
   const BallFolder folder;
-  // Of several regions nothing is made ahead.
+  // For several regions, nothing is prepared in advance.
   for (const char* keys : {R"("path": "ball.inp")", R"("path": "ball.vtu", "fallback": true)",
                            R"("path": "ball.inp", "regions": ["lower"])"}) {
     const Plan plan = folder.plan_of_half(keys);

@@ -71,7 +71,7 @@ TEST_F(NodeSets, AColumnThatIsPressedByItsEndsMovesByHalfInTheMiddleInCalculix) 
         tests::run_command("cd " + quoted(folder_ / "") + " && ccx -i column", folder_ / "");
     ASSERT_EQ(ccx.status, 0) << ccx.out;
     EXPECT_EQ(ccx.out.find("*ERROR"), std::string::npos) << ccx.out;
-    // The deck's nodes, by their lines.
+    // The deck's nodes, read from its lines.
     std::istringstream lines(deck.substr(deck.find("*NODE")));
     std::string line;
     std::getline(lines, line);

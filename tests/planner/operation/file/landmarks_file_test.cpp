@@ -15,7 +15,7 @@ class LandmarksFile : public testing::Test {
     std::ofstream(folder_ / "marks.json") << text;
     return read_landmarks(folder_ / "marks.json");
   }
-  /// What it says where it refuses.
+  /// The message of the refusal.
   std::string refusal(const std::string& text) const {
     try {
       read(text);

@@ -28,7 +28,7 @@ class VerbOutputs : public tests::CommandLine {
     brep::write_mesh(brep::shapes::sphere({0, 0, 0}, 10.0, 2), folder_ / "a.stl");
     brep::write_mesh(brep::shapes::sphere({0, 0, 0}, 11.0, 2), folder_ / "b.stl");
   }
-  /// A shell's line in the folder; what it says is kept elsewhere.
+  /// Runs a shell's command in the folder; its output is stored elsewhere.
   tests::CommandAnswer shell(const std::string& line) const {
     return tests::run_command("{ cd " + at("") + " && " + line + "; }", said_ / "");
   }
@@ -43,14 +43,14 @@ class VerbOutputs : public tests::CommandLine {
                  " ] && break; sleep 0.01; done; kill -STOP $!; " + meanwhile + "; kill -CONT $!; wait $!");
   }
   std::string bytes(const std::string& name) const { return tests::bytes_of(folder_ / name); }
-  /// What is in the folder, with each file's bytes.
+  /// The files in the folder, with their bytes.
   std::map<std::string, std::string> all() const {
     std::map<std::string, std::string> files;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_.path()))
       files[entry.path().string()] = entry.is_regular_file() ? tests::bytes_of(entry.path()) : "";
     return files;
   }
-  /// Refused, and every file is what it was.
+  /// Expects a refusal that leaves every file unchanged.
   void expect_untouched(const std::string& arguments, const std::string& word) const {
     SCOPED_TRACE(arguments);
     const auto before = all();

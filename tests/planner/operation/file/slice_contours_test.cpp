@@ -15,7 +15,7 @@ using tests::CommandAnswer;
 using tests::CommandLine;
 using tests::SortedJson;
 
-/// Of circles of a ball's slices 1 mm apart.
+/// The areas of the circles in a ball's slices 1 mm apart.
 double circles_mm2(double radius_mm) {
   double sum = 0.0;
   for (double z = -15.5; z < 16.0; z += 1.0) sum += M_PI * std::max(0.0, radius_mm * radius_mm - z * z);
@@ -125,11 +125,11 @@ TEST_F(CommandLine, ContoursAreEditedByHandAndRefusedWhereTheyCross) {
   // A gate from the right side of the first to the left side of the second.
   EXPECT_EQ(areas(R"({"slice":0,"contour":0,"do":"join","piece":1,"with":1,"its_piece":3})"), Pair(300, 2));
   EXPECT_EQ(areas(R"({"slice":0,"do":"add","points_mm":[[0,20],[4,20],[0,24]]})"), Pair(208, 4));
-  // Numbers are counted as the edits before have left them.
+  // Numbers refer to the contours after the earlier edits.
   EXPECT_EQ(areas(R"({"slice":0,"contour":0,"do":"remove"},{"slice":0,"contour":0,"do":"delete","point":0})"),
             Pair(50, 2));
 
-  // Each edit after another of the same contour.
+  // Each edit follows another edit of the same contour.
   const std::string moved = R"({"slice":0,"contour":0,"do":"move","point":2,"to_mm":[10,20]},)";
   EXPECT_EQ(areas(moved + R"({"slice":0,"contour":0,"do":"insert","piece":3,"at_mm":[-4,5]})"), Pair(270, 3));
   EXPECT_EQ(areas(moved + R"({"slice":0,"contour":0,"do":"delete","point":0})"), Pair(200, 3));
@@ -147,7 +147,8 @@ TEST_F(CommandLine, ContoursAreEditedByHandAndRefusedWhereTheyCross) {
             "edits[1]: a contour crosses itself between its pieces 1 and 3"},
            {moved + R"({"slice":0,"contour":0,"do":"insert","piece":3,"at_mm":[14,5]})",
             "edits[1]: a contour crosses itself between its pieces 1 and 3"},
-           // One that crosses itself from the first is refused with the first edit, wherever that is.
+           // A contour that crosses itself from the beginning is refused at the first edit of it, wherever
+           // that edit is.
            {moved + R"({"slice":0,"contour":2,"do":"move","point":4,"to_mm":[60,6]})",
             "edits[1]: a contour crosses itself between its pieces 1 and 4"},
            {R"({"slice":7,"contour":0,"do":"remove"})", "edits[0].slice: there are 2"},

@@ -15,7 +15,7 @@
 
 namespace octotomy::tests {
 
-/// What is special about a random head besides its proportions, its scan and how it is held.
+/// The special property of a random head, in addition to its proportions, its scan and its position.
 enum class HeadKind {
   Plain,
   Tilted,       ///< to 20 degrees about any axis
@@ -44,27 +44,27 @@ struct Knots {
 /// in millimetres of its own frame, is looked up in verify::head_solids() at canonical_mm().
 class RandomHead {
  public:
-  /// The same head for the same kind and seed.
+  /// Equal kinds and seeds make equal heads.
   RandomHead(HeadKind kind, std::uint64_t seed);
 
-  /// A CT of it. Voxels are means of sub-samples near surfaces; then blur and noise. Parallel; same bits on
-  /// any thread count.
+  /// A CT of the head. Voxels are means of sub-samples near surfaces; then blur and noise are added.
+  /// Parallel; same bits on any thread count.
   voxel::Scene scan(const voxel::Progress& progress = {}) const;
   /// HU half way between its bone and its soft tissue.
   double half_level_hu() const { return 0.5 * (bone_hu_ + soft_hu); }
 
   /// Landmarks of the closed form by names of find_landmarks, LPS. A landmark whose bone or tooth the head
-  /// lacks is absent. midline_... are no single points and absent, too.
+  /// lacks is absent. midline_... are no single points and therefore absent.
   const std::map<std::string, glm::dvec3>& truths_mm() const { return truths_mm_; }
-  /// How far a point is from what its name means; infinite where the head has no such landmark, and for a
-  /// midline_... point that lies on no bone.
+  /// The distance of a point from the landmark of a name; infinite if the head has no such landmark, and for
+  /// a midline_... point that lies on no bone.
   double error_mm(const std::string& name, const glm::dvec3& p_mm) const;
 
   glm::dvec3 canonical_mm(const glm::dvec3& head_mm) const;
   glm::dvec3 head_mm(const glm::dvec3& canonical_mm) const;
   bool has_upper_teeth() const { return has_upper_teeth_; }
   bool has_lower_teeth() const { return has_lower_teeth_; }
-  /// Whether bone or a tooth of this head is there.
+  /// Whether this head has bone or a tooth at a point.
   bool is_bone(const glm::dvec3& head_mm) const;
 
  private:

@@ -25,7 +25,7 @@ namespace {
 constexpr double air_hu = -1000.0;
 /// A warp's largest stretch, canonical over head lengths.
 constexpr double most_stretch = 1.45;
-/// Between skin and mask.
+/// The gap between skin and mask.
 constexpr double mask_gap_mm = 0.4;
 
 double distance_to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
@@ -177,7 +177,7 @@ class HeadScan {
     return holds(HeadBricks::ToothCore) ? head_.tooth_hu_ : head_.bone_hu_;
   }
 
-  /// Lays a capsule over what is there.
+  /// Draws a capsule over the present samples.
   void lay(const glm::dvec3& from, const glm::dvec3& to, double radius_mm, double hu) {
     const glm::dvec3 reach = glm::dvec3(radius_mm) + step_mm_;
     const glm::dvec3 first_mm(lattice_.lps_from_voxel[3]);

@@ -197,7 +197,7 @@ class Truth {
 
 void RandomHead::find_truths() {
   const std::map<std::string, glm::dvec3> found = Truth(*this).find();
-  // What a defect cut or moved is no landmark any more.
+  // A part that a defect has cut or moved has no landmarks.
   RandomHead whole = *this;
   whole.defects_.clear();
   const std::map<std::string, glm::dvec3> before = defects_.empty() ? found : Truth(whole).find();

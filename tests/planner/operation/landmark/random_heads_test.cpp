@@ -29,13 +29,13 @@ using tests::RandomHead;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// As many as the long run asks for, or a few.
+/// The number of heads that the long run requests, or a few.
 int wanted_heads() {
   const char* asked = std::getenv("OCTOTOMY_HEADS");
   return asked == nullptr ? 8 : std::atoi(asked);
 }
 
-/// What each name leaves open, in millimetres.
+/// The uncertainty that each name allows, in millimetres.
 std::map<std::string, double> least_by_name() {
   std::map<std::string, double> all;
   const Json definitions = read_json(std::filesystem::path(OCTOTOMY_SOURCE_DIR) /
@@ -55,7 +55,7 @@ SkullGuess guess_on(const RandomHead& head) {
   return guess_landmarks(bone, brep::mesh_of(convert::isosurface(grey, level, infinite)));
 }
 
-/// A landmark of one head: whether the head has it, and what the guess says of it.
+/// A landmark of one head: whether the head has it, and the guess of it.
 struct Outcome {
   bool is_there = false, is_found = false;
   double error_mm = 0.0, told_mm = 0.0;
@@ -131,8 +131,8 @@ void print_head(const Subject& subject, bool has_reasons) {
   }
 }
 
-/// The most of `count` points that lie beyond what is told in 999 of 1000 samples, where one in a hundred
-/// does: a few heads cannot show the share itself, which the long run prints.
+/// The largest number of `count` points beyond their stated interval in 999 of 1000 samples, if one in a
+/// hundred is beyond it. A few heads cannot show the share itself; the long run prints it.
 int most_by_chance(int count) {
   constexpr double share = 0.01;
   double term = std::pow(1.0 - share, count), sum = term;

@@ -88,7 +88,7 @@ TEST(VolumeHalfWidth, IsWhatVoxelsMissOfAnObjectThatTheyPassOver) {
   EXPECT_EQ(missed.value, 320.0);
   EXPECT_EQ(missed.terms.back().name, "mesh");
   EXPECT_TRUE(missed.is_too_coarse);
-  // Of less than a voxel nothing need be told, and two empty answers are sure.
+  // For less than a voxel no half-width is needed, and two empty answers are certain.
   const HalfWidth sliver = volume_half_width(none, digitised, SeenSize{"mesh", 0.25});
   EXPECT_EQ(sliver.value, 0.25);
   EXPECT_FALSE(sliver.is_too_coarse);

@@ -21,7 +21,7 @@ namespace {
 
 using namespace tests;
 
-/// What a plan of one step measures of "scan.nrrd", and of the same moved.
+/// The measurements of "scan.nrrd", and of the same object moved, in a plan of one step.
 std::vector<Json> measured(const ScratchFolder& folder, const std::string& step, double voxel_mm) {
   const Plan plan = parse_plan(R"({"octotomy_plan": 1, "name": "one", "scans": {"ct": {"path": "scan.nrrd"}},
       "universe": {"voxel_mm": )" + std::to_string(voxel_mm) +
@@ -90,7 +90,7 @@ TEST(SizesInPlans, LabelsInThickSlicesHoldTheSolidTheyWereDrawnOf) {
   }
 }
 
-/// What the verb prints of a scan.
+/// The sizes that the verb prints for a scan.
 verify::SizeIntervals measured_by_the_verb(const voxel::Scene& scan, double low) {
   Measure asked;
   asked.object = ObjectName{"scan.nrrd"};
@@ -105,7 +105,7 @@ verify::SizeIntervals measured_by_the_verb(const voxel::Scene& scan, double low)
   return {interval("volume"), interval("area"), {}};
 }
 
-// Classes of which no constant was calibrated, and the others.
+// Solids of the classes that were not used for calibration, and of the others.
 TEST(SizesByTheVerb, HoldSolidsDrawnByChance) {
   verify::IntervalSuiteOptions options;
   options.solids = 81;

@@ -14,7 +14,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// Every `step`-th slice along z, or the mean of so many.
+/// Every `step`-th slice along z, or the mean of that number of slices.
 voxel::Scene with_fewer_slices(const voxel::Scene& full, int step, bool is_mean) {
   voxel::Scene made = full;
   made.holes.clear();

@@ -19,7 +19,7 @@ class MoveStep : public testing::Test {
  protected:
   Evaluation moved(const std::string& move) const { return evaluate(ball_plan(folder_, marks + move)); }
   std::string refusal(const std::string& move) const { return ball_refusal(folder_, marks + move); }
-  /// Where the last object's motion takes a point of the ball.
+  /// The position to which the last object's motion moves a point of the ball.
   static glm::dvec3 comes(const Evaluation& evaluation, const glm::dvec3& p_mm) {
     return glm::dvec3(evaluation.objects.back().moved->motion * glm::dvec4(p_mm, 1.0));
   }

@@ -15,7 +15,7 @@ namespace {
 
 using namespace tests;
 
-/// Motions at random; the environment's OCTOTOMY_MOTIONS asks for more, as 500.
+/// The number of random motions; OCTOTOMY_MOTIONS in the environment sets a larger one, such as 500.
 int motion_count() {
   const char* asked = std::getenv("OCTOTOMY_MOTIONS");
   return asked == nullptr ? 24 : std::max(1, std::atoi(asked));
@@ -137,7 +137,8 @@ TEST(MovedSize, OfALabelIsTheStillOnesThroughMotionsAndMirrors) {
   for (std::size_t i = 1; i < all.size(); ++i) {
     for (const char* key : {"volume", "area"})
       EXPECT_EQ(all[i].at(key), all[0].at(key)) << all[i].at("id") << " " << key;
-    // What was counted after the motion is told as it is: the centre moved, and some voxels came or went.
+    // The centroid that was counted after the motion is reported: the centre moved, and some voxels were
+    // gained or lost.
     EXPECT_NE(all[i].at("centroid_mm"), all[0].at("centroid_mm")) << all[i].at("id");
   }
   EXPECT_NE(all[1].at("volume_mm3"), all[0].at("volume_mm3")) << "the motion moved whole voxels";

@@ -47,7 +47,7 @@ const std::string two_largest = R"(
     {"id": "segmented", "do": "segment", "scan": "ct", "window": "0:", "components": 2},
     {"id": "part", "do": "parts", "object": "all", "largest": 2})";
 
-/// Whether the mesh has its parts where the voxels have theirs.
+/// Expects that the mesh has its parts at the places of the voxels' parts.
 void expect_same_parts(const Object& object) {
   ASSERT_TRUE(object.certificate);
   SCOPED_TRACE(object.id + testing::PrintToString(object.certificate->reasons));

@@ -211,7 +211,7 @@ TEST(PartsStep, AKernelThatKeepsTheSmallerPartOrSpoilsOneIsNotFollowed) {
   // The smaller part of caps that differ by far, by voxels and by the mesh.
   EXPECT_FALSE(is_high(settled("far", evaluation.object("high_far").voxel.octree, "low")));
   EXPECT_TRUE(is_high(settled("far", evaluation.object("low_far").voxel.octree, "high")));
-  // The other one of caps that are nearly as large is followed one way at least.
+  // If the caps are nearly equal, the other cap is followed in at least one direction.
   const auto followed = [&](const voxel::Octree& high, const voxel::Octree& low) {
     return int{is_high(settled("near", high, "low"))} + int{!is_high(settled("near", low, "high"))};
   };

@@ -19,7 +19,7 @@ Plan two_balls(const ScratchFolder& folder, const std::string& steps) {
     for (int y = 0; y < 64; ++y)
       for (int x = 0; x < 64; ++x, ++at) {
         const glm::dvec3 p = scene.lattice.lps_mm({x, y, z});
-        // Partial volumes as ball_scene() has them.
+        // Partial volumes like those of ball_scene().
         const auto ball = [&](const glm::dvec3& centre, double radius) {
           return std::clamp(radius - glm::distance(p, centre), -0.5, 0.5) * 2000.0;
         };
@@ -181,7 +181,7 @@ TEST(SegmentStep, ClassesAndRegionsByARunningMeanHaveAWitnessOfTheirOwn) {
   for (const char* id : {"class", "largest", "mean"}) {
     const Object& object = evaluation.object(id);
     const Witnessed count = witnessed(object);
-    // Of chosen parts the witness is certain of the outside alone.
+    // For chosen parts, the witness is certain only outside of them.
     EXPECT_GT(count.certain, 200000u) << id;
     EXPECT_EQ(count.wrong, 0u) << id;
     EXPECT_FALSE(object.mesh.whole) << id;

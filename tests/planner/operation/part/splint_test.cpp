@@ -15,14 +15,14 @@ namespace {
 using namespace tests;
 
 const std::string arch_within = R"("arch": [[-10, 2, 5], [0, -8, 5], [10, 2, 5]])";
-/// Beside the rim, where the ball narrows above its face.
+/// The arch lies beside the rim, where the ball narrows above its face.
 const std::string arch_at_rim = R"("arch": [[-17, -6, 5], [0, -18, 5], [17, -6, 5]])";
 
 std::string splint_step(const std::string& fields) {
   return ball_caps(R"({"id": "wafer", "do": "splint", "upper": "upper", "lower": "lower", )" + fields + "}");
 }
 
-/// What a plan with a splint is refused for, when it is read or evaluated.
+/// The refusal of a plan with a splint, when it is read or evaluated.
 std::string splint_refusal(const ScratchFolder& folder, const std::string& fields) {
   try {
     EvaluateOptions options;

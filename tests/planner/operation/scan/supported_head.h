@@ -16,7 +16,7 @@
 // The head phantom on a table, with the truth of every sample.
 namespace octotomy::tests {
 
-/// What a sample's centre lies in.
+/// The material at a sample's centre.
 enum class Truth : std::uint8_t { Air, Soft, Bone, Support, Foam, Front };
 
 struct SupportOptions {
@@ -255,7 +255,7 @@ inline SupportedHead head_on_supports(const SupportOptions& options) {
   return head;
 }
 
-/// What a removal did to it.
+/// The effect of a removal on the supported head.
 struct RemovalTally {
   double support_l = 0.0, left_l = 0.0, foam_l = 0.0, foam_left_l = 0.0;
   double soft_mm3 = 0.0, bone_mm3 = 0.0, front_mm3 = 0.0;  ///< the patient's that is gone; any in front

@@ -24,7 +24,7 @@ std::vector<Field> fields() {
           field("list", &Drawn::list, "A list.").read_if<Drawn>(is_curved, "is of curves")};
 }
 
-/// The refusal's words; empty where there is none.
+/// The text of the refusal; empty if there is none.
 std::string refusal(const nlohmann::json& given) {
   Drawn drawn;
   read_fields(fields(), given, &drawn, {"step 'a'"});

@@ -47,7 +47,7 @@ class Chain : public testing::Test {
     made.folder = folder_.path();
     return made;
   }
-  /// The landmarks that a procedure takes, of the jaw and the chin.
+  /// The landmarks of the jaw and the chin that a procedure needs.
   std::vector<brep::Landmark> of(const Procedure& procedure) const {
     std::vector<brep::Landmark> taken;
     for (const ProcedureLandmark& wanted : procedure.landmarks)

@@ -171,7 +171,7 @@ TEST(Procedure, TheThesissThreeOperationsComeOutOfAFewTypedValues) {
     EXPECT_TRUE(has(mandible, "mandible", taken)) << taken;
   for (const char* left : {"incisor", "molar_left", "zygoma_left", "brow"})
     EXPECT_FALSE(has(mandible, "mandible", left)) << left;
-  // Of this head no neck bone lies in the jaw's space, and none of the jaw is taken for it.
+  // In this head no neck bone lies in the jaw's space, and no part of the jaw counts as neck bone.
   EXPECT_TRUE(mandible.object("neck_bone").voxel.octree.is_empty());
   EXPECT_EQ(mandible.object("mandible").voxel.octree, mandible.object("jaw_space").voxel.octree);
   const auto parts = voxel::components(mandible.object("mandible").voxel.octree).voxel_counts;

@@ -9,7 +9,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// What a run with one certified object and one size tells.
+/// The results of a run with one certified object and one size.
 Json run() {
   return Json::parse(R"({"octotomy": "1", "plan": {"name": "p <q>"}, "universe": {"voxel_mm": [1, 1, 1]},
     "scans": [{"name": "ct", "modality": "CT", "sha256": "ab", "spacing_mm": [1, 1, 1],
