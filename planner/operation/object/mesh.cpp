@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "brep/io/write_mesh.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/health.h"
 #include "brep/mesh/measure.h"
 #include "brep/shape/decimate.h"
@@ -104,7 +105,14 @@ Made of_contours(const FileBench& bench, const Meshed& asked, std::vector<std::s
     throw std::runtime_error(file + ": holds contours, which are tiled: leave --surface out");
   const voxel::SliceMask mask = read_slices(file, {}, findings);
   const Stopwatch watch(bench.timings, "tile");
-  TiledSlices tiled = tiled_slices(mask, cost_of(asked), bench.stop);
+  TiledSlices tiled = [&] {
+    try {
+      return tiled_slices(mask, cost_of(asked), bench.stop);
+    } catch (const brep::Error& error) {
+      if (error.code() != brep::ErrorCode::Geometry) throw;
+      throw brep::Error(error.code(), file + ": " + error.what());
+    }
+  }();
   findings.push_back("contours: " + std::to_string(mask.slices.size()) + " slices tiled by " +
                      std::to_string(tiled.sections) + " sections, those between them interpolated");
   return tiled.solid.triangles();

@@ -98,6 +98,13 @@ void check(const Tile& tile, const FieldLocation& place) {
   const auto has_none = [](const Tile::Slice& slice) { return slice.polygons_mm.empty(); };
   if (std::all_of(tile.contours.begin(), tile.contours.end(), has_none))
     place.at("contours").refuse("have no polygon: draw one");
+  for (std::size_t i = 0; i < tile.contours.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (tile.contours[i].position_mm == tile.contours[j].position_mm)
+        place.at("contours[" + std::to_string(i) + "]")
+            .at("position_mm")
+            .refuse("is that of contours[" + std::to_string(j) +
+                    "] too: draw all polygons of a slice in one record");
   try {
     voxel::check(mask_of(tile));
   } catch (const std::invalid_argument& error) {

@@ -9,8 +9,11 @@
 
 #include "brep/contour/sections_between.h"
 #include "brep/mesh/error.h"
+#include "planner/operation/file/contour_findings.h"
 #include "planner/operation/object/provenance.h"
+#include "planner/operation/table/number_format.h"
 #include "verify/witness/slice_witness.h"
+#include "voxel/solid/polygon_overlaps.h"
 
 namespace octotomy::planner {
 namespace {
@@ -36,10 +39,25 @@ std::vector<brep::Section> sections_of(const voxel::SliceMask& mask) {
   return sections;
 }
 
+/// The tiles' own check sees crossings in the sections at the ends and between first, whose positions nobody drew.
+void need_uncrossed_slices(const voxel::SliceMask& mask) {
+  for (const voxel::SliceMask::Slice& slice : mask.slices) {
+    const voxel::CrossingPolygons crossing = voxel::crossing_polygons(slice.polygons_mm, off_plane_mm());
+    if (crossing.all.empty()) continue;
+    const auto& first = crossing.all.front();
+    throw brep::Error(brep::ErrorCode::Geometry, "the slice at " + plain(slice.position_mm) +
+                                                     " mm: polygon " + std::to_string(first.polygon + 1) +
+                                                     " crosses itself or another one near [" +
+                                                     plain(first.at_mm.x) + ", " + plain(first.at_mm.y) +
+                                                     "] mm: draw one outline around both");
+  }
+}
+
 }  // namespace
 
 TiledSlices tiled_slices(const voxel::SliceMask& mask, std::optional<brep::TileCost> cost,
                          std::stop_token stop) {
+  need_uncrossed_slices(mask);
   brep::SectionsBetweenOptions between;
   between.between = is_interpolated(mask) ? brep::Between::shape_based : brep::Between::nearest;
   between.step_mm = tile_step_mm();

@@ -94,6 +94,15 @@ TEST_F(MeshVerbs, AScansContoursAreTiledToASolidByAnyCost) {
                  "ball.octree");
 }
 
+TEST_F(MeshVerbs, ContoursThatCrossAreRefusedByFileAndDrawnSlice) {
+  std::ofstream(folder_ / "bow.json")
+      << R"({"view": "inferior", "slices": [{"position_mm": 0, "polygons_mm": [[[0, 0], [9, 0], [9, 9]]]},)"
+      << R"( {"position_mm": 4, "polygons_mm": [[[0, 0], [9, 9], [9, 0], [0, 9]]]}]})";
+  const CommandAnswer bow = run("mesh " + at("bow.json") + " -o " + at("bow.off"));
+  expect_refused(bow, "bow.json: the slice at 4 mm: polygon 1 crosses itself");
+  EXPECT_NE(bow.errors.find("near [4.5, 4.5] mm: draw one outline"), std::string::npos) << bow.errors;
+}
+
 TEST_F(MeshVerbs, AMeshIsAskedForSectionsWaysAnglesWallsAndCurvature) {
   ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off")).status, 0);
   const SortedJson ball = SortedJson::parse(run("measure " + at("ball.off") + " --json").out);
