@@ -11,16 +11,40 @@
 namespace octotomy::brep {
 namespace {
 
-/// The sides of triangles, each once, the lower end first.
+/// The sides of triangles in ascending order, each once, the lower end first.
 std::vector<std::array<std::uint32_t, 2>> sides_of(const Triangles& surface) {
+  // Ends are counted by the lower end of their side. So only the few sides of a point are sorted.
+  std::vector<std::size_t> starts(surface.points_mm.size() + 1, 0);
+  const auto for_sides = [&surface](const auto& visit) {
+    for (const auto& [a, b, c] : surface.faces)
+      for (const auto& [from, to] : {std::array{a, b}, std::array{b, c}, std::array{c, a}})
+        visit(std::min(from, to), std::max(from, to));
+  };
+  for_sides([&](std::uint32_t low, std::uint32_t) { ++starts[low + 1]; });
+  for (std::size_t v = 1; v < starts.size(); ++v) starts[v] += starts[v - 1];
+  std::vector<std::uint32_t> ends(starts.back());
+  std::vector<std::size_t> next(starts.begin(), starts.end() - 1);
+  for_sides([&](std::uint32_t low, std::uint32_t high) { ends[next[low]++] = high; });
   std::vector<std::array<std::uint32_t, 2>> sides;
-  sides.reserve(3 * surface.faces.size());
-  for (const auto& [a, b, c] : surface.faces)
-    for (const auto& [from, to] : {std::array{a, b}, std::array{b, c}, std::array{c, a}})
-      sides.push_back({std::min(from, to), std::max(from, to)});
-  std::sort(sides.begin(), sides.end());
-  sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+  sides.reserve(ends.size() / 2 + 1);
+  const auto at = [&ends](std::size_t i) { return ends.begin() + static_cast<std::ptrdiff_t>(i); };
+  for (std::size_t v = 0; v + 1 < starts.size(); ++v) {
+    std::sort(at(starts[v]), at(starts[v + 1]));
+    for (std::size_t i = starts[v]; i < starts[v + 1]; ++i)
+      if (i == starts[v] || ends[i] != ends[i - 1]) sides.push_back({static_cast<std::uint32_t>(v), ends[i]});
+  }
   return sides;
+}
+
+/// The points that are corners of triangles, in ascending order.
+std::vector<std::uint32_t> corners_of(const Triangles& surface) {
+  std::vector<std::uint8_t> is_corner(surface.points_mm.size(), 0);
+  for (const auto& face : surface.faces)
+    for (const std::uint32_t v : face) is_corner[v] = 1;
+  std::vector<std::uint32_t> corners;
+  for (std::size_t v = 0; v < is_corner.size(); ++v)
+    if (is_corner[v] != 0) corners.push_back(static_cast<std::uint32_t>(v));
+  return corners;
 }
 
 /// Points spread over a face, at most `spacing_mm` apart along its sides; corners left out, as they are
@@ -104,21 +128,23 @@ FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Tria
                      const std::vector<std::uint32_t>& given_of_coarse, double limit_mm, NearFaces& near) {
   assert(given_of_coarse.size() == coarse.points_mm.size());
   FarPlaces far;
-  const Triples now(coarse.faces, &given_of_coarse), before(given.faces, nullptr);
-  const std::vector<std::array<std::uint32_t, 2>> sides = sides_of(given);
-  const double spacing_mm = mean_side_mm(given, sides);
+  const Triples now(coarse.faces, &given_of_coarse);
+  if (near.given_sides.empty()) {
+    near.given_corners = corners_of(given);
+    near.given_sides = sides_of(given);
+    near.given_faces = Triples(given.faces, nullptr).sorted;
+    near.given_side_mm = mean_side_mm(given, near.given_sides);
+  }
+  const std::vector<std::uint32_t>& used = near.given_corners;
+  const std::vector<std::array<std::uint32_t, 2>>& sides = near.given_sides;
 
   // Measures from the given surface to the coarse one, except points and sides that the coarse one still
   // has.
   std::vector<std::uint8_t> is_point_of_coarse(given.points_mm.size(), 0);
   for (const Triple& triple : now.of_face)
     for (const std::uint32_t v : triple) is_point_of_coarse[v] = 1;
-  Triangles numbered = given;
-  numbered.faces = now.of_face;
-  const std::vector<std::array<std::uint32_t, 2>> coarse_sides = sides_of(numbered);
-  std::vector<std::uint32_t> used;
-  for (const auto& face : given.faces) used.insert(used.end(), face.begin(), face.end());
-  sort_once(used);
+  const std::vector<std::array<std::uint32_t, 2>> coarse_sides =
+      sides_of({.points_mm = given.points_mm, .faces = now.of_face});
   near.of_sample.resize(used.size() + sides.size(), no_triple);
   std::vector<glm::dvec3> points;
   std::vector<std::size_t> samples;
@@ -152,8 +178,8 @@ FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Tria
   points.clear();
   std::vector<std::uint32_t> face_of;
   for (std::uint32_t f = 0; f < coarse.faces.size(); ++f)
-    if (!has(before.sorted, now.of_face[f]) && !has(near.coarse, now.of_face[f]))
-      spread(coarse, f, spacing_mm, points, face_of);
+    if (!has(near.given_faces, now.of_face[f]) && !has(near.coarse, now.of_face[f]))
+      spread(coarse, f, near.given_side_mm, points, face_of);
   const std::vector<Nearest> to_given = nearest_of(tree, points, limit_mm);
   std::vector<std::uint32_t> far_faces;
   for (std::size_t i = 0; i < to_given.size(); ++i) {
@@ -182,9 +208,7 @@ FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Tria
   const double spacing_mm = mean_side_mm(given, sides);
 
   // Measures from the given surface to the coarse one.
-  std::vector<std::uint32_t> used;
-  for (const auto& face : given.faces) used.insert(used.end(), face.begin(), face.end());
-  sort_once(used);
+  const std::vector<std::uint32_t> used = corners_of(given);
   std::vector<glm::dvec3> points;
   points.reserve(used.size() + sides.size());
   for (const std::uint32_t v : used) points.push_back(given.points_mm[v]);

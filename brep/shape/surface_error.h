@@ -31,6 +31,12 @@ FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Tria
 struct NearFaces {
   std::vector<std::array<std::uint32_t, 3>> coarse;     ///< sorted; all of their samples are near
   std::vector<std::array<std::uint32_t, 3>> of_sample;  ///< near each sample of the given surface
+  /// Of the given surface, computed by the first call: its corners in ascending order, its sides, its triangles
+  /// sorted, and the mean length of its sides.
+  std::vector<std::uint32_t> given_corners = {};
+  std::vector<std::array<std::uint32_t, 2>> given_sides = {};
+  std::vector<std::array<std::uint32_t, 3>> given_faces = {};
+  double given_side_mm = 0.0;
 };
 
 /// As above, if the points of the coarse surface are points of the given one, `given_of_coarse`: measures

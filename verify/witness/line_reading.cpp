@@ -1,30 +1,27 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Windows: a line is followed through the scan in steps of an eighth of a sample. The interpolant counts as
-// linear within a step. So the ends of a span have an error of a few thousandths of a sample, and layers thinner
-// than an eighth of a sample may be missed where the interpolant bends. The errors have one sign where a scan is
-// noise: steps of half a sample lose 2 % of the volume of its peaks, these a tenth of that. Bricks of 4 cells a
-// side whose samples all lie inside or all outside the window are passed in one step. Steps lie at multiples of
-// their length from the line's start. So the ends of a span do not depend on which part of the line is read, and
-// an object minus itself is empty. Expressions: two stacks put operators and names into postfix order (Dijkstra's
-// shunting yard); then the readings are joined.
+// Windows: a line is followed through the scan from cell to cell. In a cell the interpolant along the line is a
+// cubic, whose crossings of the window's bounds are computed to rounding. So no layer is too thin to be found.
+// Bricks of 4 cells a side whose samples all lie inside or all outside the window are passed in one step. Where a
+// line crosses the planes between cells is computed from the line and the plane alone, and each cubic spans the
+// line's whole way through its cell. So the ends of a span do not depend on which part of the line is read, and
+// an object minus itself is empty.
 #include "verify/witness/line_reading.h"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <optional>
 #include <stdexcept>
 #include <tbb/parallel_for.h>
 #include <type_traits>
 #include <utility>
 #include <variant>
 
-#include "voxel/space/error.h"
+#include "verify/witness/cell_cubic.h"
+#include "verify/witness/postfix.h"
 
 namespace octotomy::verify {
 namespace {
@@ -143,9 +140,9 @@ class WindowAlong {
     const glm::dvec3 du = glm::dmat3(scan_from_lps_) * line.along;
     std::array<HalfSpace, 6> ends = sides_of({glm::dvec3(-0.5), glm::dvec3(dims_) - 0.5});
     const auto [low_mm, high_mm] = between({u0, du}, ends);
-    const double step_mm = 0.125 / std::max({std::abs(du.x), std::abs(du.y), std::abs(du.z)});
     Spans inside;
-    for (const Span& span : clipped(within, low_mm, high_mm)) follow(u0, du, step_mm, span, inside);
+    for (const Span& span : clipped(within, low_mm, high_mm))
+      follow({u0, du, {low_mm, high_mm}}, span, inside);
     return inside;
   }
 
@@ -233,105 +230,155 @@ class WindowAlong {
     return b;
   }
 
+  /// A line in samples: u0 + at_mm * du.
+  struct Course {
+    glm::dvec3 u0, du;
+    Span ends_mm;  ///< beyond half a sample from the outermost ones a line is not read
+
+    /// The position at which the line crosses a plane across an axis.
+    double crosses_mm(int axis, int plane) const { return (plane - u0[axis]) / du[axis]; }
+  };
+
+  /// The number of the cell along an axis at a position, -1 before the first sample and dims - 1 behind the last.
+  /// A plane between two cells belongs to the cell that the line enters there.
+  int cell_at(const Course& course, int axis, double at_mm) const {
+    const int most = dims_[axis] - 1;
+    const double u = std::clamp(course.u0[axis] + at_mm * course.du[axis], -1.0, most + 0.5);
+    int cell = static_cast<int>(std::floor(u));
+    // The sum above is rounded otherwise than the crossings, which decide.
+    if (course.du[axis] > 0.0) {
+      while (cell < most && course.crosses_mm(axis, cell + 1) <= at_mm) ++cell;
+      while (cell >= 0 && course.crosses_mm(axis, cell) > at_mm) --cell;
+    } else if (course.du[axis] < 0.0) {
+      while (cell >= 0 && course.crosses_mm(axis, cell) <= at_mm) --cell;
+      while (cell < most && course.crosses_mm(axis, cell + 1) > at_mm) ++cell;
+    }
+    return cell;
+  }
+
+  /// Where the line enters and leaves the cells of a number along an axis. The first and the last extend beyond the
+  /// samples without end.
+  Span passes_mm(const Course& course, int axis, int cell) const {
+    if (course.du[axis] == 0.0) return {-infinity, infinity};
+    Span passed{cell < 0 ? -infinity : course.crosses_mm(axis, cell),
+                cell + 1 >= dims_[axis] ? infinity : course.crosses_mm(axis, cell + 1)};
+    if (course.du[axis] < 0.0)
+      passed = {cell + 1 >= dims_[axis] ? -infinity : passed.high_mm, cell < 0 ? infinity : passed.low_mm};
+    return passed;
+  }
+
+  glm::ivec3 brick_of(const glm::ivec3& cell) const {
+    return glm::clamp(glm::max(cell, 0) / brick, glm::ivec3(0), bricks_ - 1);
+  }
+
   /// The position at which a line leaves a brick. The outermost bricks extend beyond the samples without end.
-  double leaves_mm(const glm::dvec3& u0, const glm::dvec3& du, const glm::ivec3& b) const {
+  double leaves_mm(const Course& course, const glm::ivec3& b) const {
     double at_mm = infinity;
     for (int axis = 0; axis < 3; ++axis) {
-      if (du[axis] > 0.0 && b[axis] + 1 < bricks_[axis])
-        at_mm = std::min(at_mm, ((b[axis] + 1.0) * brick - u0[axis]) / du[axis]);
-      if (du[axis] < 0.0 && b[axis] > 0)
-        at_mm = std::min(at_mm, (b[axis] * brick * 1.0 - u0[axis]) / du[axis]);
+      if (course.du[axis] > 0.0 && b[axis] + 1 < bricks_[axis])
+        at_mm = std::min(at_mm, course.crosses_mm(axis, (b[axis] + 1) * brick));
+      if (course.du[axis] < 0.0 && b[axis] > 0)
+        at_mm = std::min(at_mm, course.crosses_mm(axis, b[axis] * brick));
     }
     return at_mm;
   }
 
-  double value(const glm::dvec3& u) const {
-    glm::ivec3 first;
-    glm::dvec3 part;
+  bool is_padding(double value) const { return scan_->padding && value == *scan_->padding; }
+
+  /// A line's way through a cell: its ends on the line, and in shares of the cell's edges.
+  struct Way {
+    Span ends_mm;
+    glm::dvec3 from, to;
+
+    void add(const Share& share, const Span& part, Spans& inside) const {
+      const auto at_mm = [this](double s) {
+        return s == 1.0 ? ends_mm.high_mm : ends_mm.low_mm + s * (ends_mm.high_mm - ends_mm.low_mm);
+      };
+      append(inside, std::max(at_mm(share.low), part.low_mm), std::min(at_mm(share.high), part.high_mm));
+    }
+  };
+
+  /// Beside padding there is no interpolation, and the nearest sample's value counts; padding is outside.
+  void add_nearest(const CellCorners& corners, const Way& way, const Span& part, Spans& inside) const {
+    std::array<double, 5> ends{0.0, 1.0, 1.0, 1.0, 1.0};
     for (int axis = 0; axis < 3; ++axis) {
-      const double at = std::clamp(u[axis], 0.0, dims_[axis] - 1.0);
-      first[axis] = std::min(static_cast<int>(at), std::max(dims_[axis] - 2, 0));
-      part[axis] = at - first[axis];
+      const double middle = (0.5 - way.from[axis]) / (way.to[axis] - way.from[axis]);
+      if (middle > 0.0 && middle < 1.0) ends[static_cast<std::size_t>(axis) + 1] = middle;
     }
-    const glm::ivec3 next = glm::min(first + 1, dims_ - 1);
-    if (scan_->padding && has_padding(first, next)) return nearest(first, part, next);
-    const auto row = [&](int y, int z) {
-      const auto a = static_cast<double>(*sample(first.x, y, z)),
-                 b = static_cast<double>(*sample(next.x, y, z));
-      return a + part.x * (b - a);
-    };
-    const auto slice = [&](int z) {
-      const double a = row(first.y, z), b = row(next.y, z);
-      return a + part.y * (b - a);
-    };
-    const double a = slice(first.z), b = slice(next.z);
-    return a + part.z * (b - a);
+    std::sort(ends.begin(), ends.end());
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+      const glm::dvec3 at = glm::mix(way.from, way.to, 0.5 * (ends[i] + ends[i + 1]));
+      const double value = corners[(at.x < 0.5 ? 0U : 1U) + (at.y < 0.5 ? 0U : 2U) + (at.z < 0.5 ? 0U : 4U)];
+      if (std::isfinite(value) && !is_padding(value) && value >= low_ && value <= high_)
+        way.add({ends[i], ends[i + 1]}, part, inside);
+    }
   }
 
-  bool has_padding(const glm::ivec3& first, const glm::ivec3& next) const {
+  /// Adds the part of a line's way through a cell that lies within `part` and in the window.
+  void add_cell(const Course& course, const glm::ivec3& cell, const Span& ends_mm, const Span& part,
+                Spans& inside) const {
+    const glm::ivec3 first = glm::clamp(cell, glm::ivec3(0), glm::max(dims_ - 2, 0)),
+                     next = glm::min(first + 1, dims_ - 1);
+    CellCorners corners;
+    const auto x = static_cast<std::size_t>(next.x - first.x);
+    std::size_t i = 0;
     for (const int z : {first.z, next.z})
-      for (const int y : {first.y, next.y})
-        for (const int x : {first.x, next.x})
-          if (static_cast<double>(*sample(x, y, z)) == *scan_->padding) return true;
-    return false;
-  }
-
-  /// The value of the nearest sample, because there is no interpolation between a sample and padding. NaN if
-  /// the nearest sample is padding.
-  double nearest(const glm::ivec3& first, const glm::dvec3& part, const glm::ivec3& next) const {
-    const auto value = static_cast<double>(*sample(
-        part.x < 0.5 ? first.x : next.x, part.y < 0.5 ? first.y : next.y, part.z < 0.5 ? first.z : next.z));
-    return value == *scan_->padding ? std::numeric_limits<double>::quiet_NaN() : value;
-  }
-
-  /// A step of a line: its start and end, and the interpolant's values there.
-  struct Step {
-    double low_mm, high_mm, f0, f1;
-  };
-
-  /// Adds the part of a step that lies within `part` and in the window.
-  void add_step(const Step& step, const Span& part, Spans& inside) const {
-    const auto [low_mm, high_mm, f0, f1] = step;
-    if (!std::isfinite(f0) || !std::isfinite(f1)) return;
-    double from = 0.0, to = 1.0;
-    if (f0 == f1) {
-      if (f0 < low_ || f0 > high_) return;
-    } else {
-      const double a = (low_ - f0) / (f1 - f0), b = (high_ - f0) / (f1 - f0);
-      from = std::clamp(std::min(a, b), 0.0, 1.0);
-      to = std::clamp(std::max(a, b), 0.0, 1.0);
+      for (const int y : {first.y, next.y}) {
+        const Sample* at = sample(first.x, y, z);
+        corners[i++] = static_cast<double>(at[0]);
+        corners[i++] = static_cast<double>(at[x]);
+      }
+    const auto [least, most] = std::minmax_element(corners.begin(), corners.end());
+    const bool has_padding =
+        scan_->padding && std::find(corners.begin(), corners.end(), *scan_->padding) != corners.end();
+    if (!has_padding) {
+      if constexpr (std::is_floating_point_v<Sample>)
+        if (!std::all_of(corners.begin(), corners.end(), [](double c) { return std::isfinite(c); })) return;
+      if (*most < low_ || *least > high_) return;
+      if (*least >= low_ && *most <= high_) {
+        append(inside, std::max(ends_mm.low_mm, part.low_mm), std::min(ends_mm.high_mm, part.high_mm));
+        return;
+      }
     }
-    append(inside, std::max(low_mm + from * (high_mm - low_mm), part.low_mm),
-           std::min(low_mm + to * (high_mm - low_mm), part.high_mm));
+    // Beyond the outermost samples the clamped values go on.
+    const glm::dvec3 origin(first);
+    const Way way{ends_mm, glm::clamp(course.u0 + ends_mm.low_mm * course.du - origin, 0.0, 1.0),
+                  glm::clamp(course.u0 + ends_mm.high_mm * course.du - origin, 0.0, 1.0)};
+    if (has_padding) return add_nearest(corners, way, part, inside);
+    for (const Share& share : shares_within(cubic_along(corners, way.from, way.to), low_, high_))
+      way.add(share, part, inside);
   }
 
-  /// The interpolant's value after a number of steps from the line's start.
-  struct Known {
-    double number, value;
-  };
-
-  /// Reads a part of a line step by step. `last` holds the last position and its value, if there is one.
-  void follow_steps(const glm::dvec3& u0, const glm::dvec3& du, double step_mm, const Span& part,
-                    std::optional<Known>& last, Spans& inside) const {
-    for (double number = std::floor(part.low_mm / step_mm); number * step_mm < part.high_mm; ++number) {
-      const double low_mm = number * step_mm, high_mm = (number + 1.0) * step_mm;
-      const double f0 = last && last->number == number ? last->value : value(u0 + low_mm * du);
-      last = {number + 1.0, value(u0 + high_mm * du)};
-      add_step({low_mm, high_mm, f0, last->value}, part, inside);
+  /// Reads a part of a line that lies in one brick, cell by cell.
+  void follow_cells(const Course& course, glm::ivec3 cell, const Span& part, Spans& inside) const {
+    std::array<Span, 3> passed;
+    for (int axis = 0; axis < 3; ++axis)
+      passed[static_cast<std::size_t>(axis)] = passes_mm(course, axis, cell[axis]);
+    for (;;) {
+      const Span ends_mm{
+          std::max({passed[0].low_mm, passed[1].low_mm, passed[2].low_mm, course.ends_mm.low_mm}),
+          std::min({passed[0].high_mm, passed[1].high_mm, passed[2].high_mm, course.ends_mm.high_mm})};
+      add_cell(course, cell, ends_mm, part, inside);
+      if (ends_mm.high_mm >= part.high_mm) return;
+      for (int axis = 0; axis < 3; ++axis) {
+        Span& along = passed[static_cast<std::size_t>(axis)];
+        while (along.high_mm <= ends_mm.high_mm) {
+          cell[axis] += course.du[axis] > 0.0 ? 1 : -1;
+          along = passes_mm(course, axis, cell[axis]);
+        }
+      }
     }
   }
 
-  void follow(const glm::dvec3& u0, const glm::dvec3& du, double step_mm, const Span& span,
-              Spans& inside) const {
-    std::optional<Known> last;
+  void follow(const Course& course, const Span& span, Spans& inside) const {
     for (double at_mm = span.low_mm; at_mm < span.high_mm;) {
-      // The position is moved a little forward, so that a boundary between two bricks belongs to the next
-      // one.
-      const glm::ivec3 b = brick_of(u0 + (at_mm + 1e-6 * step_mm) * du);
-      const double out_mm = std::min(std::max(leaves_mm(u0, du, b), at_mm + 1e-3 * step_mm), span.high_mm);
+      glm::ivec3 cell;
+      for (int axis = 0; axis < 3; ++axis) cell[axis] = cell_at(course, axis, at_mm);
+      const glm::ivec3 b = brick_of(cell);
+      const double out_mm = std::min(leaves_mm(course, b), span.high_mm);
       const State state = states_[index_of(b)];
       if (state == State::In) append(inside, at_mm, out_mm);
-      if (state == State::Mixed) follow_steps(u0, du, step_mm, {at_mm, out_mm}, last, inside);
+      if (state == State::Mixed) follow_cells(course, cell, {at_mm, out_mm}, inside);
       at_mm = out_mm;
     }
   }
@@ -381,57 +428,6 @@ LineReading complement(LineReading a) {
             return less(within, a(line, within));
           },
           [](const voxel::Box&) { return true; }, everywhere, a.cost + 10.0};
-}
-
-/// Names and operators of an expression in postfix order.
-std::vector<std::string> postfix(std::string_view text) {
-  const auto refuse = [&](std::size_t at, const char* wanted) {
-    throw voxel::InvalidInput("expression, position " + std::to_string(at + 1) + ": " + wanted + " expected");
-  };
-  const auto strength = [](char symbol) { return std::string_view("|^&-~").find(symbol); };
-  std::vector<std::string> out;
-  std::vector<char> waiting;
-  bool wants_operand = true;
-  for (std::size_t at = 0; at < text.size();) {
-    const char c = text[at];
-    if (std::isspace(static_cast<unsigned char>(c))) {
-      ++at;
-    } else if (std::isalnum(static_cast<unsigned char>(c)) || c == '_') {
-      if (!wants_operand) refuse(at, "an operator");
-      const std::size_t first = at;
-      while (at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) || text[at] == '_'))
-        ++at;
-      out.emplace_back(text.substr(first, at - first));
-      wants_operand = false;
-    } else if (c == '(' || c == '~') {
-      if (!wants_operand) refuse(at, "an operator");
-      waiting.push_back(c);
-      ++at;
-    } else if (c == ')' || strength(c) != std::string_view::npos) {
-      if (wants_operand) refuse(at, "a name");
-      while (!waiting.empty() && waiting.back() != '(' &&
-             (c == ')' || strength(waiting.back()) >= strength(c))) {
-        out.emplace_back(1, waiting.back());
-        waiting.pop_back();
-      }
-      if (c == ')') {
-        if (waiting.empty()) refuse(at, "an operator");
-        waiting.pop_back();
-      } else {
-        waiting.push_back(c);
-        wants_operand = true;
-      }
-      ++at;
-    } else {
-      refuse(at, "a name or an operator");
-    }
-  }
-  if (wants_operand) refuse(text.size(), "a name");
-  for (; !waiting.empty(); waiting.pop_back()) {
-    if (waiting.back() == '(') refuse(text.size(), "')'");
-    out.emplace_back(1, waiting.back());
-  }
-  return out;
 }
 
 }  // namespace
