@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 #include <tbb/parallel_for.h>
 #include <utility>
@@ -144,6 +145,38 @@ class Measurement {
     return found;
   }
 
+  /// Samples in order of their own balls: a sample's thickness is at least that, so that the search ends at
+  /// the first one whose own ball is larger than the thinnest wall. Blocks are fixed, for any number of threads.
+  ThinnestWall run_thinnest() {
+    ThinnestWall found;
+    std::vector<LocalThicknessAt> surface = surface_points(solid_, options_.samples, found.reach_mm);
+    report(0.1);
+    touch(surface);
+    report(0.7);
+    std::vector<std::size_t> order(surface.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return std::pair(balls_[a].radius_mm, a) < std::pair(balls_[b].radius_mm, b);
+    });
+    const LargestBall all(balls_);
+    constexpr std::size_t block = 512;
+    std::size_t thinnest = surface.size();
+    const auto thickness = [&](std::size_t i) { return std::pair(surface[i].thickness_mm, i); };
+    for (std::size_t begin = 0; begin < order.size(); begin += block) {
+      if (thinnest < surface.size() && 2.0 * balls_[order[begin]].radius_mm > surface[thinnest].thickness_mm)
+        break;
+      const std::size_t count = std::min(block, order.size() - begin);
+      each(count, [&](std::size_t k) { measure(surface[order[begin + k]], balls_[order[begin + k]], all); });
+      for (std::size_t k = begin; k < begin + count; ++k)
+        if (surface[order[k]].is_wall &&
+            (thinnest == surface.size() || thickness(order[k]) < thickness(thinnest)))
+          thinnest = order[k];
+    }
+    if (thinnest < surface.size()) found.at = surface[thinnest];
+    report(1.0);
+    return found;
+  }
+
  private:
   template <typename Do>
   void each(std::size_t count, const Do& task) const {
@@ -189,6 +222,13 @@ class Measurement {
     });
   }
 
+  void measure(LocalThicknessAt& at, const Ball& own, const LargestBall& all) const {
+    const Ball ball = all.about(at.point.p_mm, own);
+    at.thickness_mm = 2.0 * ball.radius_mm;
+    at.is_wall = ball.radius_mm > 0.0 &&
+                 inscribed_.touches_opposite(ball, at.point.p_mm, rad(options_.wall_angle_deg));
+  }
+
   void summarise(LocalThickness& found) const {
     const LargestBall all(balls_);
     std::vector<Ball> some;
@@ -197,13 +237,7 @@ class Measurement {
     for (std::size_t i = 0; i < balls_.size(); ++i)
       if ((static_cast<std::uint32_t>(i) * 2654435769U) >> 30 == 0) some.push_back(balls_[i]);
     const LargestBall fewer(std::move(some));
-    each(on_surface_, [&](std::size_t i) {
-      LocalThicknessAt& at = found.surface[i];
-      const Ball ball = all.about(at.point.p_mm, balls_[i]);
-      at.thickness_mm = 2.0 * ball.radius_mm;
-      at.is_wall = ball.radius_mm > 0.0 &&
-                   inscribed_.touches_opposite(ball, at.point.p_mm, rad(options_.wall_angle_deg));
-    });
+    each(on_surface_, [&](std::size_t i) { measure(found.surface[i], balls_[i], all); });
     std::vector<std::pair<double, double>> of_all(points_.size());
     std::vector<double> of_fewer(points_.size());
     each(points_.size(), [&](std::size_t i) {
@@ -264,6 +298,11 @@ void check(const Solid& solid, const LocalThicknessOptions& options) {
 LocalThickness local_thickness(const Solid& solid, const LocalThicknessOptions& options) {
   check(solid, options);
   return Measurement(solid, options).run();
+}
+
+ThinnestWall thinnest_wall(const Solid& solid, const LocalThicknessOptions& options) {
+  check(solid, options);
+  return Measurement(solid, options).run_thinnest();
 }
 
 }  // namespace octotomy::brep

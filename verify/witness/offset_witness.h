@@ -19,7 +19,7 @@ struct OffsetOperand {
 /// The distance by which the surface moves, and the resolution of the mesh kernel's search for it.
 struct WitnessedOffset {
   double by_mm = 1.0;    ///< outward; below 0 inward; not 0
-  double cell_mm = 1.0;  ///< edge of the mesh kernel's cells, above 0
+  double cell_mm = 1.0;  ///< edge of the mesh kernel's cells; 0 if it makes no triangles at this distance
 };
 
 /// The points within by_mm of the operand, or deeper than that within it. Where the operand's surface lies is

@@ -188,15 +188,17 @@ void fill(const Depths& depths, const glm::ivec3& block, int side, GreyBrick& br
   }
 }
 
-}  // namespace
-
-Window offset(const Octree& octree, const Expression& solid, double by_mm, const Progress& progress) {
+/// `region` may be null.
+Window offset_in(const Octree& octree, const Expression& solid, double by_mm, const Octree* region,
+                 const Progress& progress) {
   if (!std::isfinite(by_mm) || by_mm == 0.0)
     throw InvalidInput("an offset is by a finite length other than 0 mm");
   const Universe& universe = octree.universe();
   const Depths depths(octree, solid, by_mm);
   progress.at(0.4);
-  const std::vector<glm::ivec3> tried = blocks_about(octree, by_mm);
+  std::vector<glm::ivec3> tried = blocks_about(octree, by_mm);
+  if (region != nullptr)
+    std::erase_if(tried, [&](const glm::ivec3& block) { return region->leaf_block(block).is_empty(); });
   std::vector<std::uint8_t> is_out(tried.size(), 0);
   tbb::parallel_for(std::size_t{0}, tried.size(), [&](std::size_t i) {
     is_out[i] = universe.side() >= 16 && depths.of_block(16 * tried[i], 16) < 0.0 ? 1 : 0;
@@ -213,6 +215,17 @@ Window offset(const Octree& octree, const Expression& solid, double by_mm, const
       Octree::full(universe), depths.step_mm());
   progress.at(1.0);
   return {std::move(grey), 0.0, most_steps};
+}
+
+}  // namespace
+
+Window offset(const Octree& octree, const Expression& solid, double by_mm, const Progress& progress) {
+  return offset_in(octree, solid, by_mm, nullptr, progress);
+}
+
+Window offset_near(const Octree& octree, const Expression& solid, double by_mm, const Octree& region,
+                   const Progress& progress) {
+  return offset_in(octree, solid, by_mm, &region, progress);
 }
 
 }  // namespace octotomy::voxel

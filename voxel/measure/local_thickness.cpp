@@ -254,6 +254,50 @@ class Balls {
       : pyramid_(pyramid), most_cosine_(most_cosine), progress_(progress) {}
 
   std::vector<LatticeBall> about(const std::vector<glm::ivec3>& voxels, double shorter_mm) const {
+    const std::vector<Run> runs = runs_about(voxels, shorter_mm);
+    std::vector<LatticeBall> balls(voxels.size());
+    each(runs.size(), [&](std::size_t r) {
+      const LatticeBall ball = ball_about(runs[r].centre, pyramid_, most_cosine_);
+      for (const std::size_t i : runs[r].voxels) balls[i] = ball;
+    });
+    return balls;
+  }
+
+  /// The voxel of the thinnest wall, and its ball. Balls are examined in order of their distances, of which
+  /// a radius is at most half a voxel short. Blocks are fixed, for any number of threads.
+  std::optional<std::pair<std::size_t, LatticeBall>> thinnest(const std::vector<glm::ivec3>& voxels) const {
+    std::vector<Run> runs = runs_about(voxels, 0.0);
+    const auto distance = [&](const Run& run) { return pyramid_.distance_mm(run.centre); };
+    std::sort(runs.begin(), runs.end(), [&](const Run& a, const Run& b) {
+      return std::pair(distance(a), a.voxels.front()) < std::pair(distance(b), b.voxels.front());
+    });
+    const glm::dvec3& step_mm = pyramid_.step_mm();
+    const double short_mm = 0.5 * pyramid_.finer() * std::max({step_mm.x, step_mm.y, step_mm.z});
+    constexpr std::size_t block = 256;
+    std::optional<std::pair<std::size_t, LatticeBall>> found;
+    for (std::size_t begin = 0; begin < runs.size(); begin += block) {
+      if (found && distance(runs[begin]) - short_mm > found->second.radius_mm) break;
+      std::vector<LatticeBall> balls(std::min(block, runs.size() - begin));
+      each(balls.size(),
+           [&](std::size_t k) { balls[k] = ball_about(runs[begin + k].centre, pyramid_, most_cosine_); });
+      for (std::size_t k = 0; k < balls.size(); ++k) {
+        const std::size_t voxel = runs[begin + k].voxels.front();
+        if (balls[k].is_of_wall && (!found || std::pair(balls[k].radius_mm, voxel) <
+                                                  std::pair(found->second.radius_mm, found->first)))
+          found.emplace(voxel, balls[k]);
+      }
+    }
+    return found;
+  }
+
+ private:
+  /// The voxels whose largest ball has one centre, in their order.
+  struct Run {
+    glm::ivec3 centre{0};
+    std::vector<std::size_t> voxels;
+  };
+
+  std::vector<Run> runs_about(const std::vector<glm::ivec3>& voxels, double shorter_mm) const {
     std::vector<glm::ivec3> centres(voxels.size());
     each(voxels.size(), [&](std::size_t i) {
       centres[i] = pyramid_.largest_about(pyramid_.place_of(voxels[i]), shorter_mm);
@@ -263,19 +307,14 @@ class Balls {
     const auto key = [&](std::size_t i) { return index_in(pyramid_.dims(), centres[i]); };
     std::sort(order.begin(), order.end(),
               [&](std::size_t a, std::size_t b) { return std::pair(key(a), a) < std::pair(key(b), b); });
-    std::vector<std::size_t> firsts;  // of the runs of one centre
-    for (std::size_t i = 0; i < order.size(); ++i)
-      if (i == 0 || key(order[i]) != key(order[i - 1])) firsts.push_back(i);
-    firsts.push_back(order.size());
-    std::vector<LatticeBall> balls(voxels.size());
-    each(firsts.size() - 1, [&](std::size_t run) {
-      const LatticeBall ball = ball_about(centres[order[firsts[run]]], pyramid_, most_cosine_);
-      for (std::size_t i = firsts[run]; i < firsts[run + 1]; ++i) balls[order[i]] = ball;
-    });
-    return balls;
+    std::vector<Run> runs;
+    for (const std::size_t i : order) {
+      if (runs.empty() || runs.back().centre != centres[i]) runs.push_back({centres[i], {}});
+      runs.back().voxels.push_back(i);
+    }
+    return runs;
   }
 
- private:
   template <typename Do>
   void each(std::size_t count, const Do& task) const {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 16), [&](const auto& part) {
@@ -309,6 +348,19 @@ void check(const LocalThicknessOptions& options) {
     throw InvalidInput("local thickness: a wall's angle is from 91 to 179 degrees");
 }
 
+/// The pyramid of an octree that is not empty.
+Pyramid pyramid_of(const Octree& octree) {
+  const VoxelRange range = grown(range_of(octree), 1);
+  constexpr std::size_t most_fine = std::size_t{1} << 26, most = std::size_t{1} << 28;
+  if (count_of(range.dims()) > most)
+    throw TooLarge("local thickness: the object's extent has more than 2^28 voxels: take larger ones");
+  return Pyramid(octree, range, count_of(2 * range.dims()) <= most_fine ? 2 : 1);
+}
+
+double most_cosine_of(const LocalThicknessOptions& options) {
+  return std::cos(options.wall_angle_deg * std::numbers::pi / 180.0);
+}
+
 }  // namespace
 
 VoxelThickness local_thickness(const Octree& octree, const LocalThicknessOptions& options) {
@@ -316,15 +368,10 @@ VoxelThickness local_thickness(const Octree& octree, const LocalThicknessOptions
   VoxelThickness found;
   const VoxelRange own = range_of(octree);
   if (own.is_empty()) return found;
-  const VoxelRange range = grown(own, 1);
-  constexpr std::size_t most_fine = std::size_t{1} << 26, most = std::size_t{1} << 28;
-  if (count_of(range.dims()) > most)
-    throw TooLarge("local thickness: the object's extent has more than 2^28 voxels: take larger ones");
-  const int finer = count_of(2 * range.dims()) <= most_fine ? 2 : 1;
   options.progress.at(0.0);
-  const Pyramid pyramid(octree, range, finer);
+  const Pyramid pyramid = pyramid_of(octree);
   options.progress.at(0.4);
-  const Balls balls(pyramid, std::cos(options.wall_angle_deg * std::numbers::pi / 180.0), options.progress);
+  const Balls balls(pyramid, most_cosine_of(options), options.progress);
   const glm::dvec3 voxel_mm = octree.universe().lattice().spacing_mm();
   // The surface lies between 0 and half a voxel before the nearest place outside.
   const double shorter_mm = 0.25 * std::min({voxel_mm.x, voxel_mm.y, voxel_mm.z});
@@ -345,6 +392,19 @@ VoxelThickness local_thickness(const Octree& octree, const LocalThicknessOptions
   }
   options.progress.at(1.0);
   return found;
+}
+
+std::optional<ThicknessAtVoxel> thinnest_wall(const Octree& octree, const LocalThicknessOptions& options) {
+  check(options);
+  if (octree.is_empty()) return std::nullopt;
+  options.progress.at(0.0);
+  const Pyramid pyramid = pyramid_of(octree);
+  options.progress.at(0.5);
+  const std::vector<glm::ivec3> surface = some_of(surface_of(octree), options.samples);
+  const auto thinnest = Balls(pyramid, most_cosine_of(options), options.progress).thinnest(surface);
+  options.progress.at(1.0);
+  if (!thinnest) return std::nullopt;
+  return ThicknessAtVoxel{surface[thinnest->first], 2.0 * thinnest->second.radius_mm, true};
 }
 
 }  // namespace octotomy::voxel

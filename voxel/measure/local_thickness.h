@@ -52,4 +52,9 @@ struct VoxelThickness {
 /// searched at sampled voxels, where the source paints a ball at each point of the distance ridge.
 VoxelThickness local_thickness(const Octree& octree, const LocalThicknessOptions& options = {});
 
+/// The thinnest wall alone, the same as local_thickness() has it; none where no sampled voxel is of a wall.
+/// Throws as local_thickness(). Cost: most balls' sides are not looked at.
+std::optional<ThicknessAtVoxel> thinnest_wall(const Octree& octree,
+                                              const LocalThicknessOptions& options = {});
+
 }  // namespace octotomy::voxel

@@ -302,13 +302,14 @@ void bound(const Guide& guide, const BoundBench& bench, Object& made) {
   inherit(object, made);
   if (object.mesh.whole && made.mesh.whole && !made.mesh.whole->empty()) {
     const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
-    double apart_mm = verify::offset_allowance_mm(
-                          {object.witness,
-                           voxel::combine(bench.universe, voxel::Expression(object.voxel.octree) &
-                                                              guide.site.near.expression()),
-                           guide.site.bone.solid, is_whole_voxels(object.voxel)},
-                          {guide.clearance_mm, guide_cell_mm}, made.mesh.whole->measures().area_mm2) +
-                      thick_part_allowance_mm({guide.least_wall_mm, guide_cell_mm});
+    // The mesh kernel keeps exact distances up to the last surface, which is thick_part()'s.
+    double apart_mm =
+        verify::offset_allowance_mm({object.witness,
+                                     voxel::combine(bench.universe, voxel::Expression(object.voxel.octree) &
+                                                                        guide.site.near.expression()),
+                                     guide.site.bone.solid, is_whole_voxels(object.voxel)},
+                                    {guide.clearance_mm, 0.0}, made.mesh.whole->measures().area_mm2) +
+        thick_part_allowance_mm({guide.least_wall_mm, guide_cell_mm});
     if (is_whole_voxels(object.voxel)) apart_mm += 0.5 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
     made.bound.measured_apart_mm += apart_mm;
     made.bound.reshaped.push_back(object.id);

@@ -231,6 +231,35 @@ double through_mm(const Plate& plate) {
   return plate.clearance_mm + plate.thickness_mm + plate.bend_radius_mm + plate_room_mm;
 }
 
+/// What lies behind the bone, grown by bending radius and clearance and shrunk by the radius: right within the
+/// plate's thickness about its band, and nothing beyond. To shrink reaches as far as the radius about that, and
+/// beyond all counts as grown, so that only the surface before the band is measured to.
+voxel::Expression closed_about(const Plate& plate, const voxel::Expression& behind, const VoxelBench& bench) {
+  const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
+  const double voxel_mm = std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+  const auto about_band = [&](double by_mm) {
+    Slab about = plate.site.base;
+    about.outline_mm = band_outline(longer_by(about.frame.points_mm, 0.5 * plate.width_mm + by_mm),
+                                    plate.width_mm + 2.0 * by_mm);
+    about.low_mm -= by_mm;
+    about.high_mm += by_mm;
+    return about.expression();
+  };
+  // Voxels between a region's border and its next neighbours are interpolated.
+  const double wanted_mm = plate.thickness_mm + 2.0 * voxel_mm, reach_mm = wanted_mm + plate.bend_radius_mm;
+  const voxel::Octree wanted = bench.combined(about_band(wanted_mm + 2.0 * voxel_mm)),
+                      reached = bench.combined(about_band(reach_mm + 2.0 * voxel_mm));
+  const voxel::Octree behind_voxels = bench.combined(behind);
+  if (behind_voxels.is_empty()) return voxel::Expression(behind_voxels);
+  const voxel::Expression big(voxel::offset_near(behind_voxels, bench.within_universe(behind),
+                                                 plate.bend_radius_mm + plate.clearance_mm, reached,
+                                                 bench.progress));
+  const voxel::Expression all = big | ~about_band(reach_mm);
+  return about_band(wanted_mm) &
+         voxel::Expression(
+             voxel::offset_near(bench.combined(all), all, -plate.bend_radius_mm, wanted, bench.progress));
+}
+
 void voxels(const Plate& plate, const VoxelBench& bench, VoxelSide& made) {
   made.lineage = "distances to columns of the octree of the bone";
   const VoxelSide& object = bench.object(plate.object.name);
@@ -251,8 +280,7 @@ void voxels(const Plate& plate, const VoxelBench& bench, VoxelSide& made) {
   const voxel::Expression behind(voxel::shadow(bone, bench.within_universe(*object.symbol & near),
                                                {plate.site.along, plate.site.end_mm, bench.progress})
                                      .window);
-  const voxel::Expression closed =
-      grown(grown(behind, plate.bend_radius_mm + plate.clearance_mm), -plate.bend_radius_mm);
+  const voxel::Expression closed = closed_about(plate, behind, bench);
   const voxel::Expression ridge = grown(closed, plate.flat_mm()) & plate.ridge.expression();
   voxel::Expression whole = grown(ridge, plate.rounding_mm) - closed;
   for (const ScrewAxis& axis : plate.axes) {
@@ -425,12 +453,23 @@ void bound(const Plate& plate, const BoundBench& bench, Object& made) {
   inherit(bone, made);
   if (bone.mesh.whole && made.mesh.whole && !made.mesh.whole->empty()) {
     const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
-    double apart_mm = verify::offset_allowance_mm(
-        {bone.witness,
-         voxel::combine(bench.universe, voxel::Expression(bone.voxel.octree) & plate.site.near.expression()),
-         plate.site.bone.solid, is_whole_voxels(bone.voxel)},
-        {plate.bend_radius_mm + plate.clearance_mm, grown_cell_mm(plate)},
-        made.mesh.whole->measures().area_mm2);
+    // What is hidden behind other bone does not count: the shadow is what is grown. To shrink it again by the
+    // radius moves no point of the surface farther than the grown surface is off.
+    const voxel::Octree near =
+        voxel::combine(bench.universe, voxel::Expression(bone.voxel.octree) & plate.site.near.expression());
+    const voxel::Octree behind =
+        near.is_empty()
+            ? near
+            : voxel::combine(bench.universe,
+                             voxel::Expression(voxel::shadow(near, voxel::Expression(near),
+                                                             {plate.site.along, plate.site.end_mm, {}})
+                                                   .window));
+    const brep::Solid mesh_behind =
+        brep::shadow(plate.site.bone.solid, {plate.site.along, plate.site.end_mm, {}}).solid;
+    double apart_mm =
+        verify::offset_allowance_mm({bone.witness, behind, mesh_behind, is_whole_voxels(bone.voxel)},
+                                    {plate.bend_radius_mm + plate.clearance_mm, grown_cell_mm(plate)},
+                                    made.mesh.whole->measures().area_mm2);
     // Later offsets start from smooth surfaces, where triangles are off by a third of the tolerance on
     // average.
     apart_mm += brep::offset_tolerance_mm({plate.rounding_mm, plate_outer_cell_mm, {}}) / 3.0 +

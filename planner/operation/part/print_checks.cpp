@@ -316,21 +316,17 @@ Thinnest thinnest_of(const brep::Solid& solid, const voxel::Octree* voxels, doub
   brep::LocalThicknessOptions options;
   options.progress = progress.report;
   options.stop = progress.stop;
-  const brep::LocalThickness by_mesh = brep::local_thickness(solid, options);
+  const brep::ThinnestWall by_mesh = brep::thinnest_wall(solid, options);
   found.reach_mm = by_mesh.reach_mm;
-  if (by_mesh.thinnest_wall)
-    if (const brep::LocalThicknessAt& at = by_mesh.surface[*by_mesh.thinnest_wall];
-        at.thickness_mm < up_to_mm) {
-      found.mesh_mm = at.thickness_mm;
-      found.at_mm = at.point.p_mm;
-    }
+  if (by_mesh.at && by_mesh.at->thickness_mm < up_to_mm) {
+    found.mesh_mm = by_mesh.at->thickness_mm;
+    found.at_mm = by_mesh.at->point.p_mm;
+  }
   if (voxels == nullptr || voxels->is_empty()) return found;
   voxel::LocalThicknessOptions by_octree;
   by_octree.progress = progress;
-  const voxel::VoxelThickness by_voxels = voxel::local_thickness(*voxels, by_octree);
-  if (by_voxels.thinnest_wall)
-    if (const double mm = by_voxels.surface[*by_voxels.thinnest_wall].thickness_mm; mm < up_to_mm)
-      found.voxel_mm = mm;
+  const std::optional<voxel::ThicknessAtVoxel> by_voxels = voxel::thinnest_wall(*voxels, by_octree);
+  if (by_voxels && by_voxels->thickness_mm < up_to_mm) found.voxel_mm = by_voxels->thickness_mm;
   return found;
 }
 

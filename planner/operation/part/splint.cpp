@@ -295,10 +295,12 @@ void bound(const Splint& splint, const BoundBench& bench, Object& made) {
     const Object& object = bench.objects.at(name_of(splint, jaw).name);
     inherit(object, made);
     if (!object.mesh.whole || !made.mesh.whole || made.mesh.whole->empty()) continue;
+    // The mesh kernel keeps exact distances up to the last surface, but of shrunk teeth, which cast a shadow.
+    const double cell_mm = shadow_by_mm(splint) < 0.0 ? fit_cell_mm : 0.0;
     double of_mm =
         verify::offset_allowance_mm(
             {object.witness, object.voxel.octree, *object.mesh.whole, is_whole_voxels(object.voxel)},
-            {splint.offset_mm, fit_cell_mm}, made.mesh.whole->measures().area_mm2) +
+            {splint.offset_mm, cell_mm}, made.mesh.whole->measures().area_mm2) +
         thick_part_allowance_mm({splint.thickness_mm, fit_cell_mm});
     if (is_whole_voxels(object.voxel)) of_mm += 0.5 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
     apart_mm = std::max(apart_mm, of_mm);

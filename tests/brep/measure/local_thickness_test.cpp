@@ -136,6 +136,29 @@ TEST(LocalThickness, TheThinWallOfTwoIsFound) {
   EXPECT_GE(thinnest.point.p_mm.z, 19.0 - 1e-9);
 }
 
+TEST(LocalThickness, TheThinnestWallAloneIsThatOfAllBalls) {
+  Triangles two = shapes::box({0, 0, 0}, {20, 30, 2});
+  const auto shift = static_cast<std::uint32_t>(two.points_mm.size());
+  const Triangles block = shapes::box({0, 0, 10}, {20, 30, 16});
+  two.points_mm.insert(two.points_mm.end(), block.points_mm.begin(), block.points_mm.end());
+  for (const auto& face : block.faces)
+    two.faces.push_back({face[0] + shift, face[1] + shift, face[2] + shift});
+  for (const Triangles& shape : {two, shapes::box({0, 0, 0}, {20, 30, 40})}) {
+    const Solid solid = solid_of(shape);
+    const LocalThickness all = local_thickness(solid);
+    const ThinnestWall alone = thinnest_wall(solid);
+    ASSERT_TRUE(all.thinnest_wall);
+    ASSERT_TRUE(alone.at);
+    EXPECT_TRUE(alone.at->is_wall);
+    EXPECT_EQ(alone.reach_mm, all.reach_mm);
+    EXPECT_LE(alone.at->thickness_mm, all.surface[*all.thinnest_wall].thickness_mm);
+    EXPECT_NEAR(alone.at->thickness_mm / all.surface[*all.thinnest_wall].thickness_mm, 1.0, 0.01);
+  }
+  // A ball's second place lies opposite everywhere; a thin prism's tip is no wall.
+  EXPECT_NEAR(thinnest_wall(solid_of(shapes::sphere({0, 0, 0}, 5.0, 4))).at->thickness_mm, 10.0, 0.3);
+  EXPECT_THROW(thinnest_wall(Solid()), std::invalid_argument);
+}
+
 TEST(LocalThickness, IsTheSameOnOneThread) {
   const Solid ball = solid_of(shapes::sphere({0, 0, 0}, 10, 3));
   const LocalThickness many = local_thickness(ball, {.samples = 2000});

@@ -80,6 +80,38 @@ TEST(LevelBody, ASliverWhereASlotRunsOutAtAnEdgeIsCutOff) {
   EXPECT_NEAR(found.size().high_mm.y, 4.0, 0.06);
 }
 
+TEST(LevelBody, WhereCoarseCellsBoundDistancesItsSurfaceIsThatOfAllLevels) {
+  // Two parts that overlap, one of two levels, less two: each point of the surface is as far from 0 as the
+  // lattice allows by a plain reading of all levels.
+  const Solid block = box({0, 0, 0}, {9, 3, 3}), tall = box({-9, -9, -9}, {9, 9, 1.3}),
+              slot = box({2, -9, 1}, {3, 9, 9});
+  const LevelBody body{{{{ball(5.0), 1.0}, {tall, 0.0}}, {{block, 0.0}}}, {{slot, 0.2}, {ball(2.0), 0.7}}};
+  const Solid found = core_of(body, {-0.4, 0.4});
+  const std::vector<glm::dvec3>& points_mm = found.triangles().points_mm;
+  ASSERT_GT(points_mm.size(), 1000u);
+  const auto distances = [&](const Level& level) {
+    std::vector<std::uint32_t> nearest(points_mm.size(), SurfaceTree::unknown_triangle);
+    std::vector<double> mm = level.solid.tree().signed_distances_mm(points_mm, nearest);
+    for (double& each : mm) each -= level.by_mm;
+    return mm;
+  };
+  std::vector<double> value(points_mm.size(), 1e9);
+  for (const std::vector<Level>& levels : body.parts) {
+    std::vector<double> part(points_mm.size(), -1e9);
+    for (const Level& level : levels) {
+      const std::vector<double> mm = distances(level);
+      for (std::size_t i = 0; i < mm.size(); ++i) part[i] = std::max(part[i], mm[i]);
+    }
+    for (std::size_t i = 0; i < part.size(); ++i) value[i] = std::min(value[i], part[i]);
+  }
+  for (const Level& level : body.without) {
+    const std::vector<double> mm = distances(level);
+    for (std::size_t i = 0; i < mm.size(); ++i) value[i] = std::max(value[i], -mm[i]);
+  }
+  // Points that the lattice keeps off its corners, by 1/16 of a step of 0.1 mm's diagonal, stand off most.
+  for (std::size_t i = 0; i < value.size(); ++i) EXPECT_NEAR(value[i], -0.4, 0.02) << i;
+}
+
 TEST(LevelBody, IsTheSameOnAnyNumberOfThreads) {
   const LevelBody body{{{{ball(5.0), 1.0}}, {{box({0, 0, 0}, {9, 3, 3}), 0.0}}},
                        {{box({2, -9, 1}, {3, 9, 9}), 0.2}}};

@@ -87,6 +87,23 @@ TEST(Offset, ASolidThatGoesOnBeyondTheUniverseHasNoSurfaceAtItsBorder) {
   EXPECT_EQ(combine(universe, Expression(offset_of(universe, cut, -3.0))).voxel_count(), 11U * 26U * 26U);
 }
 
+TEST(Offset, NearARegionItIsTheSameThereAndNothingElsewhere) {
+  const Universe universe = tests::spaced_universe(6);
+  const glm::dvec3 middle_mm = universe.lattice().lps_mm(glm::dvec3(32.0));
+  const Expression ball(Sphere{middle_mm + 0.21, 12.0});
+  const Octree octree = combine(universe, ball);
+  const Octree region = combine(universe, Expression(Box{middle_mm + 1.0, middle_mm + 9.0}));
+  for (const double by_mm : {3.0, -3.0}) {
+    const Octree all = combine(universe, Expression(offset(octree, ball, by_mm))),
+                 near = combine(universe, Expression(offset_near(octree, ball, by_mm, region)));
+    EXPECT_LT(near.voxel_count(), all.voxel_count());
+    EXPECT_GT(near.voxel_count(), 0u);
+    EXPECT_EQ(combine(universe, Expression(near) & Expression(region)),
+              combine(universe, Expression(all) & Expression(region)));
+    EXPECT_TRUE(combine(universe, Expression(near) - Expression(all)).is_empty());
+  }
+}
+
 TEST(Offset, IsTheSameOnAnyNumberOfThreads) {
   const Universe universe = tests::spaced_universe(6, glm::dvec3(0.7, 1.1, 1.6));
   const Expression torus(

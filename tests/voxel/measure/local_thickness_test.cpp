@@ -88,6 +88,25 @@ TEST(VoxelThickness, OfAnObliquePlateConvergesWithTheVoxel) {
   EXPECT_NEAR(plate(half_millimetres(6)), 4.0, 0.3);
 }
 
+TEST(VoxelThickness, TheThinnestWallAloneIsTheSame) {
+  const Universe universe = tests::unit_universe(6);
+  const Expression blocks = Expression(Box{{3.5, 3.5, 9.5}, {40.5, 49.5, 20.5}}) |
+                            Expression(Box{{50.5, 3.5, 9.5}, {53.5, 49.5, 50.5}}) |
+                            Expression(Sphere{{20.0, 20.0, 45.0}, 9.3});
+  for (const Expression& solid : {blocks, blocks - Expression(Sphere{{20.0, 20.0, 45.0}, 5.2}),
+                                  Expression(Sphere{{30, 31, 32}, 12.4})}) {
+    const Octree octree = combine(universe, solid);
+    const VoxelThickness all = local_thickness(octree);
+    const std::optional<ThicknessAtVoxel> alone = thinnest_wall(octree);
+    ASSERT_TRUE(all.thinnest_wall);
+    ASSERT_TRUE(alone);
+    EXPECT_EQ(alone->voxel, all.surface[*all.thinnest_wall].voxel);
+    EXPECT_EQ(alone->thickness_mm, all.surface[*all.thinnest_wall].thickness_mm);
+    EXPECT_TRUE(alone->is_wall);
+  }
+  EXPECT_FALSE(thinnest_wall(Octree::empty(universe)));
+}
+
 TEST(VoxelThickness, IsTheSameOnOneThread) {
   const Octree ball = combine(tests::unit_universe(5), Sphere{{15.2, 15.3, 15.4}, 9.0});
   const VoxelThickness many = local_thickness(ball);
