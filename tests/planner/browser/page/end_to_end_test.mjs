@@ -124,7 +124,7 @@ test('two landmarks and a distance that the command line finds, too', async () =
   for (const mark of marks) await one.click_at(0, [mark.point_mm[0], mark.point_mm[2]]);
   await has('distance');
   assert.deepEqual(step('distance').points_mm, ['upper', 'lower']);
-  const row = one.page.locator('.numbers tr', { hasText: 'distance' });
+  const row = one.page.locator('.numbers', { hasText: 'Measurements' }).locator('tr', { hasText: 'distance' });
   await row.getByText(/mm/).waitFor();
   const shown = Number((await row.locator('td').first().innerText()).match(/[\d.]+/)[0]);
   const told = JSON.parse(execFileSync(program, ['run', plan_path, '-o', path.join(folder, 'replayed'), '--no-certificates', '--json'], { maxBuffer: 1 << 28, stdio: ['ignore', 'pipe', 'ignore'] }));
