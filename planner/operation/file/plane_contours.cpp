@@ -10,6 +10,7 @@
 
 #include "brep/contour/contour.h"
 #include "brep/contour/cross_section.h"
+#include "voxel/solid/region_mask.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner {
@@ -49,16 +50,17 @@ PlaneSamples samples_of(const voxel::Scene& scene, const ViewPlane& plane) {
 /// The depth of a point within the window, negative outside of it or of the scan.
 float depth_at(const voxel::Scene& scene, const glm::dvec3& p_mm, double low, double high) {
   constexpr double most = 1e30;
+  constexpr float infinity = std::numeric_limits<float>::infinity();
   const glm::dvec3 at = scene.lattice.voxel(p_mm), last = glm::dvec3(scene.lattice.dims) - 1.0;
   const double sample = voxel::interpolate(scene, glm::clamp(at, glm::dvec3(0.0), last));
   if (std::isnan(sample)) return static_cast<float>(-most);
   const auto depth = static_cast<float>(std::clamp(std::min(sample - low, high - sample), -most, most));
   // The outermost samples represent another half voxel beyond them. Beyond that the depth is reversed, so that an
-  // object ends half way to the next point. A depth of 0, which labels have at their own value, counts as inside:
-  // there it is made negative.
+  // object ends half way to the next point. A depth of 0, which labels have at their own value, counts as inside;
+  // the next lower number does not.
   const bool is_outside =
       glm::any(glm::lessThan(at, glm::dvec3(-0.5))) || glm::any(glm::greaterThan(at, last + 0.5));
-  return is_outside ? std::min(-std::abs(depth), -1e-6f) : depth;
+  return is_outside ? std::nextafter(-std::abs(depth), -infinity) : depth;
 }
 
 PlaneContours points_of(std::vector<brep::Contour> contours) {
@@ -72,16 +74,6 @@ std::vector<brep::Contour> contours_of(const PlaneContours& polygons) {
   std::vector<brep::Contour> contours;
   for (const auto& polygon : polygons) contours.push_back({polygon});
   return contours;
-}
-
-bool contains(const std::vector<glm::dvec2>& polygon, const glm::dvec2& p) {
-  bool is_inside = false;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const glm::dvec2 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
-      is_inside = !is_inside;
-  }
-  return is_inside;
 }
 
 }  // namespace
@@ -113,7 +105,7 @@ PlaneContours region_around(const PlaneContours& contours, const glm::dvec2& p_m
   const std::vector<std::size_t> depth = brep::depths(around);
   std::optional<std::size_t> innermost;
   for (std::size_t i = 0; i < contours.size(); ++i)
-    if (contains(contours[i], p_mm) && (!innermost || depth[i] > depth[*innermost])) innermost = i;
+    if (voxel::contains({contours[i]}, p_mm) && (!innermost || depth[i] > depth[*innermost])) innermost = i;
   if (!innermost || depth[*innermost] % 2 == 1) return {};
   PlaneContours region{contours[*innermost]};
   for (std::size_t i = 0; i < contours.size(); ++i)
