@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "brep/io/base64.h"
 #include "planner/plan/sha256.h"
 #include "planner/result/report/drawn_page.h"
 #include "voxel/dicom/character_set.h"
@@ -26,27 +27,6 @@ std::string bytes_of_hex(const std::string& hex) {
   std::string bytes;
   for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
     bytes += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
-  return bytes;
-}
-
-/// Decodes Base64 in groups of four symbols without line breaks; none if there is any other symbol.
-std::optional<std::string> from_base64_text(std::string_view text) {
-  constexpr std::string_view symbols = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  if (text.size() % 4 != 0) return std::nullopt;
-  std::string bytes;
-  for (std::size_t i = 0; i < text.size(); i += 4) {
-    std::uint32_t three = 0;
-    std::size_t filled = 4;
-    for (std::size_t k = 0; k < 4; ++k) {
-      const std::size_t digit = symbols.find(text[i + k]);
-      const bool is_end = text[i + k] == '=' && i + 4 == text.size() && k >= 2;
-      if (digit == std::string_view::npos && !is_end) return std::nullopt;
-      if (is_end) filled = std::min(filled, k);
-      if (!is_end && filled < 4) return std::nullopt;
-      three = three << 6 | static_cast<std::uint32_t>(is_end ? 0 : digit);
-    }
-    for (std::size_t k = 0; k + 1 < filled; ++k) bytes += static_cast<char>(three >> (16 - 8 * k) & 0xff);
-  }
   return bytes;
 }
 
@@ -134,12 +114,13 @@ std::string plan_in_document(std::string_view document) {
   if (sum_end == std::string_view::npos || end == std::string_view::npos ||
       end < sum_end + body_middle.size())
     throw std::runtime_error("its body is damaged");
-  const auto plan =
-      from_base64_text(rest.substr(sum_end + body_middle.size(), end - sum_end - body_middle.size()));
-  if (!plan || rest.substr(0, sum_end) != in_base64(bytes_of_hex(sha256_of(*plan))))
+  const std::string_view body = rest.substr(sum_end + body_middle.size(), end - sum_end - body_middle.size());
+  std::string plan = brep::from_base64(body, body.size());
+  // Decoding ends at a symbol that is not base64, so the body has to be what the plan is encoded to.
+  if (in_base64(plan) != body || rest.substr(0, sum_end) != in_base64(bytes_of_hex(sha256_of(plan))))
     throw std::runtime_error(
         "its plan differs from the SHA-256 that the document states: it was damaged or changed");
-  return *plan;
+  return plan;
 }
 
 }  // namespace octotomy::planner
