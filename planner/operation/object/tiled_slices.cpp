@@ -53,10 +53,26 @@ void need_uncrossed_slices(const voxel::SliceMask& mask) {
   }
 }
 
+/// Ten metres of drawn slices, with sections between them: longer stacks are in another unit.
+void need_few_sections(const voxel::SliceMask& mask) {
+  if (!is_interpolated(mask)) return;
+  constexpr double most_mm = 10'000.0;
+  double joined_mm = 0.0;
+  for (std::size_t s = 0; s + 1 < mask.slices.size(); ++s)
+    if (!mask.slices[s].polygons_mm.empty() && !mask.slices[s + 1].polygons_mm.empty())
+      joined_mm += mask.slices[s + 1].position_mm - mask.slices[s].position_mm;
+  if (joined_mm > most_mm)
+    throw brep::Error(brep::ErrorCode::Geometry, "the slices join over " + plain(joined_mm) +
+                                                     " mm, and at most " + plain(most_mm) +
+                                                     " mm can be tiled, by sections every " +
+                                                     plain(tile_step_mm()) + " mm: state positions in mm");
+}
+
 }  // namespace
 
 TiledSlices tiled_slices(const voxel::SliceMask& mask, std::optional<brep::TileCost> cost,
                          std::stop_token stop) {
+  need_few_sections(mask);
   need_uncrossed_slices(mask);
   brep::SectionsBetweenOptions between;
   between.between = is_interpolated(mask) ? brep::Between::shape_based : brep::Between::nearest;

@@ -26,7 +26,7 @@ struct TiledSlices {
 
 /// The surface tiled from the slices and from sections between them (brep::sections_between()), LPS. `cost` as in
 /// brep::TileSectionsOptions. Throws brep::Error (Geometry) that names the slice's position where contours of a
-/// slice cross or touch; brep::Stopped. Precondition: the mask passes check().
+/// slice cross or touch, or if interpolated slices join over 10 m; brep::Stopped. Precondition: the mask passes check().
 TiledSlices tiled_slices(const voxel::SliceMask& mask,
                          std::optional<brep::TileCost> cost = brep::TileCost::shortest_span,
                          std::stop_token stop = {});

@@ -103,6 +103,15 @@ TEST_F(MeshVerbs, ContoursThatCrossAreRefusedByFileAndDrawnSlice) {
   EXPECT_NE(bow.errors.find("near [4.5, 4.5] mm: draw one outline"), std::string::npos) << bow.errors;
 }
 
+TEST_F(MeshVerbs, ContoursInAnotherUnitAreRefusedAtOnce) {
+  const std::string square = R"("polygons_mm": [[[0, 0], [9, 0], [9, 9], [0, 9]]]})";
+  std::ofstream(folder_ / "far.json") << R"({"view": "inferior", "slices": [{"position_mm": 0, )" << square
+                                      << R"(, {"position_mm": 100000, )" << square << "]}";
+  const CommandAnswer far = run("mesh " + at("far.json") + " -o " + at("far.off"));
+  expect_refused(far, "far.json: the slices join over 100000 mm");
+  EXPECT_NE(far.errors.find("state positions in mm"), std::string::npos) << far.errors;
+}
+
 TEST_F(MeshVerbs, AMeshIsAskedForSectionsWaysAnglesWallsAndCurvature) {
   ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off")).status, 0);
   const SortedJson ball = SortedJson::parse(run("measure " + at("ball.off") + " --json").out);
