@@ -18,6 +18,9 @@ const most_in_flight = 2;
 const rest_after_ms = 140;
 const slow_after_ms = 500;
 
+/// The newest request whose picture stated volumes of the dragged piece.
+let newest_volumes = 0;
+
 interface Picture {
   header: FrameHeader;
   bitmap: ImageBitmap;
@@ -176,6 +179,7 @@ export class Pane {
     this.sent.clear();
     this.previews.clear();
     this.newest_decoded = 0;
+    newest_volumes = 0;
     this.want(false);
   }
 
@@ -201,12 +205,19 @@ export class Pane {
     const latency_ms = started === undefined ? null : performance.now() - started;
     this.canvas.dispatchEvent(
         new CustomEvent("picture", {bubbles: true, detail: {latency_ms, quality: header.quality}}));
-    if (header.overlap_mm3 !== undefined && state.preview) set({overlap_mm3: header.overlap_mm3});
+    this.take_volumes(header);
     if (header.preview && is_same(state.preview, preview)) set({tried: {...header.preview, is_coarse: header.quality !== "rest", refusal: ""}});
-    if (header.difference && state.preview) set({difference: header.difference});
     if (header.quality !== "rest") return;
     picture.planes = await planes_of(header, parts);
     this.redraw();
+  }
+
+  /// Shows the volumes of the dragged piece, unless those of a later request of another pane are shown.
+  private take_volumes({id, overlap_mm3, difference}: FrameHeader): void {
+    if (!state.preview || (overlap_mm3 === undefined && !difference) || id < newest_volumes) return;
+    newest_volumes = id;
+    if (overlap_mm3 !== undefined) set({overlap_mm3});
+    if (difference && state.preview.move && difference.to === state.preview.difference) set({difference});
   }
 
   /// The point of the surface or slice at a canvas position, and its object. Null beside all objects.
