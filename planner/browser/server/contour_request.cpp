@@ -7,6 +7,8 @@
 
 #include "brep/contour/contour_edit.h"
 #include "brep/contour/thin.h"
+#include "brep/mesh/mesh.h"
+#include "convert/surface/expression_surface.h"
 #include "planner/browser/server/pane_fields.h"
 #include "planner/operation/file/plane_contours.h"
 #include "planner/operation/table/number_format.h"
@@ -26,19 +28,31 @@ std::vector<glm::dvec2> thinned(const std::vector<glm::dvec2>& polygon, double t
   return brep::first_crossing(thin) ? polygon : thin.points_mm;
 }
 
-/// Rounded to a hundredth of a millimetre, without points that then equal the one before.
+/// Rounded to a hundredth of a millimetre, without points that then equal the one before and without contours that then
+/// enclose no area.
 Json polygons_json(const PlaneContours& polygons, double thin_mm) {
+  constexpr double least_mm2 = 0.01 * 0.01;
   Json all = Json::array();
   for (const auto& polygon : polygons) {
-    Json points = Json::array();
+    brep::Contour rounded;
     for (const glm::dvec2& p : thinned(polygon, thin_mm)) {
-      const Json point{std::round(100.0 * p.x) / 100.0, std::round(100.0 * p.y) / 100.0};
-      if (points.empty() || points.back() != point) points.push_back(point);
+      const glm::dvec2 point = glm::round(100.0 * p) / 100.0;
+      if (rounded.points_mm.empty() || rounded.points_mm.back() != point) rounded.points_mm.push_back(point);
     }
-    if (points.size() > 3 && points.front() == points.back()) points.erase(points.size() - 1);
-    if (points.size() > 2) all.push_back(std::move(points));
+    if (rounded.points_mm.size() > 3 && rounded.points_mm.front() == rounded.points_mm.back())
+      rounded.points_mm.pop_back();
+    if (rounded.points_mm.size() < 3 || std::abs(brep::signed_area_mm2(rounded)) < least_mm2) continue;
+    Json points = Json::array();
+    for (const glm::dvec2& p : rounded.points_mm) points.push_back({p.x, p.y});
+    all.push_back(std::move(points));
   }
   return all;
+}
+
+/// The mesh kernel's answer, or half way between voxels where the object is not certified yet.
+brep::Mesh surface_of(const Object& object) {
+  if (object.mesh.within) return object.mesh.within->mesh();
+  return brep::mesh_of(convert::isosurface(object.voxel.octree.universe(), object.voxel.octree));
 }
 
 }  // namespace
@@ -52,8 +66,7 @@ Json trace_contours(Session& session, const Json& said, const Watched&) {
     const std::string id = said["object"];
     for (const Object& object : snapshot.evaluation->objects) {
       if (object.id != id) continue;
-      if (!object.mesh.within) refuse_contours("'" + id + "' has no surface: see its findings");
-      const Json polygons = polygons_json(contours_in_plane(object.mesh.within->mesh(), plane), thin_mm);
+      const Json polygons = polygons_json(contours_in_plane(surface_of(object), plane), thin_mm);
       if (polygons.empty()) refuse_contours("the slice does not meet '" + id + "': choose another slice");
       return {{"polygons_mm", polygons}};
     }

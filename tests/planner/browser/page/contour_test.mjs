@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The contour workbench on the head phantom, or on the scan OCTOTOMY_CONTOUR_SCAN: contours are drawn, corrected, dragged,
-// smoothed, erased, found around a pixel and copied. Each is one edit, and the object is certified.
+// smoothed, erased, found around a pixel, taken from an object and copied. Each is one edit, and the object is certified.
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import os from 'node:os';
@@ -151,7 +151,7 @@ test('an object of contours is tiled by both kernels, which agree', async () => 
   await picture('certified');
 });
 
-test('a seed finds the region around a pixel', async () => {
+test('a seed finds the region around a pixel, and the outline of an object is taken over', async () => {
   await one.click('Contours (E)');
   await one.select(ours().id);
   await one.at_rest();
@@ -162,5 +162,9 @@ test('a seed finds the region around a pixel', async () => {
   await one.click_at(axial, [0, -30]);
   await one.until(() => Math.max(...at(top).polygons_mm.map(area)) > 2000, 'the brain behind the middle');
   await picture('seed');
+  const found = JSON.stringify(at(top).polygons_mm);
+  await one.page.locator('[data-key="contour-object"]').click();
+  await one.until(() => JSON.stringify(at(top).polygons_mm) !== found, 'the outline of the skull');
+  await picture('outline');
   assert.deepEqual(one.problems, []);
 });
