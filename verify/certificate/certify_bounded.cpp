@@ -207,11 +207,24 @@ void judge_by_witness(Certificate& certificate, const Evidence& evidence, const 
                  most);
 }
 
-/// Adds the places of bridges as WARN: the kernels chose differently whether a thin neck connects a part.
+/// Adds the places of bridges: the kernels chose differently whether a thin neck connects a part. Parts larger than the
+/// limit are a WARN. Smaller ones are listed alone, because the certificate says that a part of the limit's size could
+/// be wrong anywhere, and the comparisons of volumes and surfaces judge their sum.
 void judge_bridges(Certificate& certificate, const Places& places) {
   constexpr std::size_t most_told = 3;
   for (const OpenPart& part : places.open) certificate.bridges.push_back(part.bridge);
-  for (std::size_t i = 0; i < std::min(certificate.bridges.size(), most_told); ++i) {
+  if (certificate.bridges.empty()) return;
+  const auto first_small =
+      std::find_if(certificate.bridges.begin(), certificate.bridges.end(),
+                   [&](const WorstPlace& bridge) { return bridge.volume_mm3 <= places.limit.volume_mm3; });
+  const auto large = static_cast<std::size_t>(first_small - certificate.bridges.begin());
+  add_comparison(certificate, {.quantity = "parts beyond thin necks",
+                               .unit = "mm3",
+                               .difference = certificate.bridges.front().volume_mm3,
+                               .formula = "no verdict up to the limit; the largest of " +
+                                          std::to_string(certificate.bridges.size()) +
+                                          " parts that hang on necks which one kernel cuts"});
+  for (std::size_t i = 0; i < std::min(large, most_told); ++i) {
     const WorstPlace& bridge = certificate.bridges[i];
     lower(certificate, Verdict::Warn,
           "An ambiguous bridge near " + voxel::rounded(bridge.at_mm) + ": " + bridge.what + ", " +
@@ -220,10 +233,9 @@ void judge_bridges(Certificate& certificate, const Places& places) {
               ": decide it by 'keep_bridges_mm' or 'cut_bridges_mm' of the step that chooses parts, "
               "or take smaller voxels.");
   }
-  if (certificate.bridges.size() > most_told)
-    certificate.reasons.push_back(std::to_string(certificate.bridges.size() - most_told) +
-                                  " more parts hang on by such bridges.");
-  if (!certificate.bridges.empty() && !certificate.worst) certificate.worst = certificate.bridges.front();
+  if (large > most_told)
+    certificate.reasons.push_back(std::to_string(large - most_told) + " more parts hang on by such bridges.");
+  if (!certificate.worst) certificate.worst = certificate.bridges.front();
 }
 
 /// Share of an object that resampling may lose before the verdict is WARN. The rest is stated alone.

@@ -22,6 +22,7 @@
 #include "convert/surface/isosurface.h"
 #include "convert/voxel/voxelise.h"
 #include "tests/reference_data.h"
+#include "verify/certificate/certify_bounded.h"
 #include "verify/phantom/head_phantom.h"
 #include "verify/witness/witness.h"
 #include "voxel/filter/components.h"
@@ -411,7 +412,8 @@ class LumpOnAThread : public testing::Test {
 
   voxel::Universe universe_;
   voxel::Box thread_{{20.1, 12.1, 12.1}, {25.1, 12.4, 12.4}};
-  const voxel::Box body_{glm::dvec3(8.5), glm::dvec3(20.5)}, lump_{{24.5, 9.5, 9.5}, {30.5, 19.5, 19.5}};
+  const voxel::Box body_{glm::dvec3(8.5), glm::dvec3(20.5)};
+  voxel::Box lump_{{24.5, 9.5, 9.5}, {30.5, 19.5, 19.5}};
   const brep::Solid body_mesh_ = brep::solid_of(brep::Prism{
       {0, 0, -1}, {0, 1, 0}, {1, 0, 0}, {{{8.5, 8.5}, {20.5, 8.5}, {20.5, 20.5}, {8.5, 20.5}}}, -20.5, -8.5});
 };
@@ -469,6 +471,24 @@ TEST_F(LumpOnAThread, IsABridgeWhereTheMeshAloneShowsTheThread) {
   const Places loose = judged_with(apart);
   EXPECT_EQ(loose.voxel_count, 600U);
   EXPECT_TRUE(loose.open.empty());
+}
+
+// The certificate says that a part of its limit's size could be wrong anywhere, so a lump up to it is listed alone.
+TEST_F(LumpOnAThread, LowersTheVerdictAboveTheLimitAndIsListedBelowIt) {
+  for (const int side : {3, 9}) {
+    lump_ = {{24.5, 11.5, 11.5}, glm::dvec3(24.5, 11.5, 11.5) + static_cast<double>(side)};
+    BoundInputs inputs;
+    inputs.witness = witness_of_parts(whole(true), chosen());
+    const Certificate certificate =
+        certify_bounded(voxel::combine(universe_, Expression(body_) | Expression(lump_)), body_mesh_, inputs);
+    ASSERT_EQ(certificate.bridges.size(), 1U) << side;
+    ASSERT_TRUE(certificate.limit) << side;
+    const bool is_warned =
+        std::any_of(certificate.reasons.begin(), certificate.reasons.end(),
+                    [](const std::string& reason) { return reason.find("An ambiguous bridge") == 0; });
+    EXPECT_EQ(certificate.bridges.front().volume_mm3 > certificate.limit->volume_mm3, side == 9) << side;
+    EXPECT_EQ(is_warned, side == 9) << testing::PrintToString(certificate.reasons);
+  }
 }
 
 TEST_F(LumpOnAThread, IsAnErrorWhereThePlanHasDecided) {
