@@ -164,7 +164,9 @@ void add_unmeasured(const MadeOf& from, Object& made) {
     const double missing_mm3 = static_cast<double>(enclosed) * scene.lattice.voxel_mm3();
     const bool is_hole = enclosed > 0 && !left_by_motion &&
                          (are_nonfinite || missing_mm3 > most_missing_share * made.voxel.measures.volume_mm3);
-    made.caveats.push_back({is_hole ? voxel::Verdict::Fail : voxel::Verdict::Warn, std::move(reason), false});
+    made.caveats.push_back({is_hole ? voxel::Verdict::Fail : voxel::Verdict::Warn, std::move(reason), false,
+                            false,
+                            are_nonfinite || left_by_motion ? std::nullopt : std::optional(missing_mm3)});
   }
 }
 
@@ -180,7 +182,7 @@ void add_inherited(const MadeOf& from, Object& made) {
       const bool is_known = std::any_of(made.caveats.begin(), made.caveats.end(),
                                         [&](const Caveat& known) { return known.reason == reason; });
       if (!is_known && !(made.is_interpolated && operand.is_interpolated))
-        made.caveats.push_back({voxel::Verdict::Warn, reason, true});
+        made.caveats.push_back({voxel::Verdict::Warn, reason, true, false, caveat.missing_mm3});
     }
   }
 }

@@ -34,8 +34,13 @@ void judge_reshaped(Object& made, const voxel::Progress& progress) {
                       progress);
 }
 
+/// Share of an object below which missing tissue is stated among its findings alone: intervals of volume are wider.
+constexpr double negligible_share = 0.001;
+
 void lower_by_caveats(Object& made) {
-  for (const Caveat& caveat : made.caveats) verify::lower(*made.certificate, caveat.verdict, caveat.reason);
+  for (const Caveat& caveat : made.caveats)
+    if (!caveat.missing_mm3 || *caveat.missing_mm3 > negligible_share * made.certificate->larger_mm3())
+      verify::lower(*made.certificate, caveat.verdict, caveat.reason);
 }
 
 /// Computes the certificate, without the time that this takes.

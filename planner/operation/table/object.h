@@ -100,6 +100,8 @@ struct Caveat {
   std::string reason;
   bool is_inherited = false;  ///< caveat of an object from which it was made
   bool is_of_place = false;   ///< depends on the object's position, so a moved object does not inherit it
+  /// Tissue that is missing at most. None: unknown, or the caveat is about something else.
+  std::optional<double> missing_mm3 = {};
 };
 
 /// What an operation made, in both kernels.

@@ -210,6 +210,30 @@ TEST_F(Caveats, ASliceOfPaddingThroughAnObjectIsAHoleInItAndPaddingBesideItIsNon
   }
 }
 
+/// A dark sample within a ball of 33,000 mm3 has the padding's value: it is stated, and the ball passes. In a piece of it
+/// that has a few hundred cubic millimetres, one sample matters.
+TEST_F(Caveats, PaddingOfLittleVolumeIsStatedAndCountsInSmallPieces) {
+  voxel::Scene scene = tests::ball_scene(20.0);
+  std::get<voxel::Int16Samples>(scene.samples)[(32 * 64 + 32) * 64 + 32] = -3024;
+  scene.padding = -3024.0;
+  voxel::write_scene(scene, folder_ / "ball.nrrd");
+  const SortedJson square = SortedJson::array({{{-4, -4}, {4, -4}, {4, 4}, {-4, 4}}});
+  add({{"id", "cube"},
+       {"do", "mask"},
+       {"regions",
+        {{{"view", "anterior"}, {"polygons_mm", square}}, {{"view", "left"}, {"polygons_mm", square}}}}});
+  add({{"id", "core"}, {"do", "combine"}, {"expression", "ball & cube"}});
+  const Evaluation evaluation = evaluated();
+  const Object& ball = evaluation.object("ball");
+  const Object& core = evaluation.object("core");
+  EXPECT_EQ(ball.certificate->verdict, Verdict::Pass) << reasons(ball);
+  EXPECT_EQ(core.certificate->verdict, Verdict::Warn) << core.voxel.measures.volume_mm3;
+  EXPECT_NE(reasons(core).find("are padding"), std::string::npos) << reasons(core);
+  EXPECT_TRUE(std::any_of(ball.findings.begin(), ball.findings.end(), [](const std::string& finding) {
+    return finding.find("lie between samples of this object") != std::string::npos;
+  }));
+}
+
 /// A motion leaves a hole of 5 mm through the ball: no tissue is missing there, also in scans made of the
 /// operated one.
 TEST_F(Caveats, HolesThatAMotionLeftAreNoMissingTissue) {
