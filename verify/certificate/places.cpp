@@ -314,10 +314,12 @@ void take_lost(std::vector<FailedVoxel>& failed, const voxel::Octree& octree, Pl
   std::sort(places.lost.begin(), places.lost.end(), before);
 }
 
-/// Joins the failed voxels, which are sorted, into groups. Leaves out groups that chance explains, moves
-/// parts beyond thin necks to `places.open`, and keeps the largest remaining group as the worst place.
+/// Joins the failed voxels, which are sorted, into groups. Moves parts beyond thin necks to `places.open`, and keeps
+/// the largest remaining group as the worst place. With `Chance::Allowed`, groups that chance explains are left out
+/// before.
+enum class Chance : std::uint8_t { Allowed, Excluded };
 void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Octree& octree,
-                const voxel::Octree& digitised, const Witness& witness, Places& places) {
+                const voxel::Octree& digitised, const Witness& witness, Chance chance, Places& places) {
   const Bridges bridges(octree, digitised, witness);
   std::vector<glm::ivec3> voxels;
   for (const FailedVoxel& voxel : failed) voxels.push_back(voxel.at);
@@ -327,7 +329,7 @@ void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Octree& oct
     for (const std::size_t i : members) group.push_back(failed[i]);
     if (std::all_of(group.begin(), group.end(),
                     [](const FailedVoxel& voxel) { return voxel.fault == PlaceFault::Apart; })) {
-      if (group.size() < chance_voxels &&
+      if (chance == Chance::Allowed && group.size() < chance_voxels &&
           std::all_of(group.begin(), group.end(), [&](const FailedVoxel& voxel) {
             return hangs_on_no_face(voxel.at, octree, digitised, witness);
           }))
@@ -391,7 +393,7 @@ Places contradictions(const voxel::Octree& octree, const voxel::Octree& digitise
   progress.at(0.2);
   std::vector<FailedVoxel> failed = failed_voxels(octree, digitised, voxels, witness, progress);
   take_lost(failed, octree, places);
-  add_groups(failed, octree, digitised, witness, places);
+  add_groups(failed, octree, digitised, witness, Chance::Allowed, places);
   add_inside(failed_inside(octree, digitised, voxels, witness, progress), octree, places);
   add_stray_triangles(solid.triangles(), witness, progress, places);
   return places;
@@ -412,7 +414,8 @@ std::vector<OpenPart> open_parts(const voxel::Octree& octree, const brep::Solid&
   std::vector<FailedVoxel> failed =
       failed_voxels(octree, digitised, compared_voxels(octree, digitised, {}), witness, {});
   take_lost(failed, octree, places);
-  add_groups(failed, octree, digitised, witness, places);
+  // Parts that both kernels are to keep stay in all that is made of them: a motion would expose a small one.
+  add_groups(failed, octree, digitised, witness, Chance::Excluded, places);
   return std::move(places.open);
 }
 
