@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// 1 A weight at every point: 1 where the scan counts, 0 where the solid does. It grows along the width of the
+//   border with the least of four lengths: the distance of the scan's nearest point from the scan's border, the
+//   height of the point above the depth, its distance within the radius of the chosen crowns, and what is left of
+//   the reach.
+// 2 In a box about the crowns the level surface of the mixed distances, (1 - w) solid + w scan. The box's walls end it.
+// 3 The solid less a slightly smaller box, united with that. Between both boxes the new surface lies a little
+//   within the solid, so that both cross each other nowhere but at the box.
+//
+// Mixed distances change faster than places do where the weight changes and the scan lies far from the solid: the
+// sum of 1 and that distance times 1.5 / width, the steepest slope of the weight. The field is divided by a bound of
+// it, because the level surface needs such a field.
+#include "brep/shape/scan_blend.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "brep/boolean/boolean.h"
+#include "brep/mesh/error.h"
+#include "brep/mesh/oriented_surface.h"
+#include "brep/shape/level_surface.h"
+#include "brep/shape/prism.h"
+
+namespace octotomy::brep {
+namespace {
+
+/// Points in the cells of a grid, for the distance to the nearest one up to the cell's edge.
+class NearPoints {
+ public:
+  explicit NearPoints(double cell_mm) : cell_mm_(cell_mm) {}
+  void add(const glm::dvec3& p_mm) { cells_[cell_of(p_mm)].push_back(p_mm); }
+  /// At most the cell's edge.
+  double distance_mm(const glm::dvec3& p_mm) const {
+    double least = cell_mm_;
+    const auto [x, y, z] = cell_of(p_mm);
+    for (long k = z - 1; k <= z + 1; ++k)
+      for (long j = y - 1; j <= y + 1; ++j)
+        for (long i = x - 1; i <= x + 1; ++i)
+          if (const auto found = cells_.find({i, j, k}); found != cells_.end())
+            for (const glm::dvec3& q : found->second) least = std::min(least, glm::distance(p_mm, q));
+    return least;
+  }
+
+ private:
+  using Cell = std::tuple<long, long, long>;
+  Cell cell_of(const glm::dvec3& p_mm) const {
+    const glm::dvec3 cell = glm::floor(p_mm / cell_mm_);
+    return {static_cast<long>(cell.x), static_cast<long>(cell.y), static_cast<long>(cell.z)};
+  }
+  double cell_mm_;
+  std::map<Cell, std::vector<glm::dvec3>> cells_;
+};
+
+/// The points along the scan's border, no further apart than a tenth of the border's width.
+NearPoints border_of(const Mesh& scan, double width_mm) {
+  NearPoints border(width_mm);
+  for (const auto edge : scan.edges()) {
+    if (!scan.is_boundary(edge)) continue;
+    const auto side = scan.halfedge_handle(edge, 0);
+    const Mesh::Point &a = scan.point(scan.from_vertex_handle(side)),
+                      &b = scan.point(scan.to_vertex_handle(side));
+    const int steps = 1 + static_cast<int>((b - a).norm() / (0.1 * width_mm));
+    for (int i = 0; i <= steps; ++i) {
+      const Mesh::Point p = a + (b - a) * (double(i) / steps);
+      border.add({p[0], p[1], p[2]});
+    }
+  }
+  return border;
+}
+
+/// The triangles of the scan that have a point no deeper than `depth_mm`.
+Mesh down_to(const Mesh& scan, const ScanBlendOptions& options, double depth_mm) {
+  Triangles part = triangles_of(scan);
+  const auto is_deep = [&](std::uint32_t i) {
+    return glm::dot(part.points_mm[i], options.to_roots) - options.tips_mm > depth_mm;
+  };
+  std::erase_if(part.faces, [&](const auto& face) { return std::all_of(face.begin(), face.end(), is_deep); });
+  return mesh_of(part);
+}
+
+/// The scan's distance and weight at a point.
+struct Mixed {
+  double scan_mm = 0.0, weight = 0.0;
+};
+
+class Weight {
+ public:
+  Weight(const Mesh& scan, const ScanBlendOptions& options)
+      : options_(options),
+        far_mm_(options.reach_mm + options.blend_mm),
+        border_(border_of(scan, options.blend_mm)),
+        surface_(down_to(scan, options, options.depth_mm + 2.0 * far_mm_)) {}
+
+  double far_mm() const { return far_mm_; }
+
+  /// How far a point lies within the depth and the chosen crowns.
+  double within_mm(const glm::dvec3& p_mm) const {
+    double within = options_.depth_mm + options_.tips_mm - glm::dot(p_mm, options_.to_roots);
+    if (options_.about_mm.empty()) return within;
+    double chosen = -std::numeric_limits<double>::infinity();
+    for (const glm::dvec3& q : options_.about_mm)
+      chosen = std::max(chosen, options_.radius_mm - glm::distance(p_mm, q));
+    return std::min(within, chosen);
+  }
+
+  std::vector<Mixed> at(const std::vector<glm::dvec3>& points_mm) const {
+    const std::vector<SignedFoot> feet = surface_.feet(points_mm);
+    std::vector<Mixed> mixed(points_mm.size());
+    for (std::size_t i = 0; i < points_mm.size(); ++i) {
+      const SignedFoot& foot = feet[i];
+      if (foot.on_border) continue;
+      const double within = std::min(within_mm(points_mm[i]), far_mm_ - std::abs(foot.distance_mm));
+      if (within <= 0.0) continue;
+      const double share =
+          std::clamp(std::min(within, border_.distance_mm(foot.p_mm)) / options_.blend_mm, 0.0, 1.0);
+      mixed[i] = {foot.distance_mm, share * share * (3.0 - 2.0 * share)};
+    }
+    return mixed;
+  }
+
+ private:
+  const ScanBlendOptions& options_;
+  double far_mm_;
+  NearPoints border_;
+  OrientedSurface surface_;
+};
+
+/// A box that is turned against all axes, so that no plane of a cut lies in its sides.
+struct TurnedBox {
+  glm::dvec3 right, up, look, low{0.0}, high{0.0};
+
+  TurnedBox(const glm::dvec3& to_roots, const std::vector<glm::dvec3>& points_mm, double margin_mm) {
+    look = glm::normalize(to_roots + glm::dvec3(0.0123, 0.0217, 0.0171));
+    const glm::dvec3 beside = std::abs(look.x) < 0.6 ? glm::dvec3(1, 0.031, 0) : glm::dvec3(0.031, 1, 0);
+    up = glm::normalize(glm::cross(look, beside));
+    right = glm::cross(look, up);
+    low = glm::dvec3(std::numeric_limits<double>::infinity());
+    high = -low;
+    for (const glm::dvec3& p : points_mm) {
+      low = glm::min(low, in_box(p));
+      high = glm::max(high, in_box(p));
+    }
+    low -= margin_mm;
+    high += margin_mm;
+  }
+  glm::dvec3 in_box(const glm::dvec3& p) const {
+    return {glm::dot(p, right), glm::dot(p, up), glm::dot(p, look)};
+  }
+  /// Negative inside; exact inside, and at most the distance outside.
+  double distance_mm(const glm::dvec3& p) const {
+    const glm::dvec3 q = in_box(p), beyond = glm::max(low - q, q - high);
+    return std::max({beyond.x, beyond.y, beyond.z});
+  }
+  Size size() const {
+    Size size{.low_mm = glm::dvec3(std::numeric_limits<double>::infinity()), .high_mm = {}};
+    size.high_mm = -size.low_mm;
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::dvec3 q((corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
+                         (corner & 4) != 0 ? high.z : low.z);
+      const glm::dvec3 p = right * q.x + up * q.y + look * q.z;
+      size.low_mm = glm::min(size.low_mm, p);
+      size.high_mm = glm::max(size.high_mm, p);
+    }
+    return size;
+  }
+  Solid solid(double inset_mm) const {
+    const glm::dvec3 a = low + inset_mm, b = high - inset_mm;
+    return solid_of(Prism{look, up, right, {{{a.x, a.y}, {b.x, a.y}, {b.x, b.y}, {a.x, b.y}}}, a.z, b.z});
+  }
+};
+
+/// The level surface of the mixed distances in the box. Within `strip_mm` of its walls it lies `inset_mm` within.
+Solid mixed_surface(const Solid& solid, const Weight& weight, const TurnedBox& box, double strip_mm,
+                    double inset_mm, double steepness, const ScanBlendOptions& options) {
+  const double far_mm = weight.far_mm();
+  const LevelField field = [&](const std::vector<glm::dvec3>& points_mm,
+                               std::vector<std::uint32_t>& nearest) {
+    std::vector<double> values(points_mm.size());
+    std::vector<std::size_t> inside;
+    std::vector<glm::dvec3> inside_mm;
+    std::vector<std::uint32_t> inside_nearest;
+    for (std::size_t i = 0; i < points_mm.size(); ++i) {
+      values[i] = box.distance_mm(points_mm[i]);
+      if (values[i] >= far_mm) continue;
+      inside.push_back(i);
+      inside_mm.push_back(points_mm[i]);
+      inside_nearest.push_back(nearest[i]);
+    }
+    if (!inside.empty()) {
+      const std::vector<double> solid_mm = solid.tree().signed_distances_mm(inside_mm, inside_nearest);
+      const std::vector<Mixed> mixed = weight.at(inside_mm);
+      for (std::size_t k = 0; k < inside.size(); ++k) {
+        const double kept_mm = std::clamp(solid_mm[k], -far_mm, far_mm);
+        const double value = kept_mm + mixed[k].weight * (mixed[k].scan_mm - kept_mm);
+        double& at = values[inside[k]];
+        at = std::max(at, value + inset_mm * std::clamp(1.0 + at / strip_mm, 0.0, 1.0));
+        nearest[inside[k]] = inside_nearest[k];
+      }
+    }
+    for (double& value : values) value /= steepness;
+    return values;
+  };
+  // A level body's surface does not move, so that the offset's length is 0.
+  return level_surface(field, box.size(), {0.0, options.cell_mm, options.progress});
+}
+
+/// The area of the surface by its source, and the largest distance of the scan's part from the solid before.
+void find_sources(const Solid& before, const Weight& weight, const TurnedBox& box, ScanBlend& made) {
+  const Triangles& surface = made.solid.triangles();
+  std::vector<glm::dvec3> middles_mm;
+  std::vector<double> areas_mm2;
+  for (const auto& [a, b, c] : surface.faces) {
+    const glm::dvec3 &p = surface.points_mm[a], &q = surface.points_mm[b], &r = surface.points_mm[c];
+    const double area_mm2 = 0.5 * glm::length(glm::cross(q - p, r - p));
+    const glm::dvec3 middle_mm = (p + q + r) / 3.0;
+    if (box.distance_mm(middle_mm) > 0.0) {
+      made.sources.solid_mm2 += area_mm2;
+      continue;
+    }
+    middles_mm.push_back(middle_mm);
+    areas_mm2.push_back(area_mm2);
+  }
+  const std::vector<Mixed> mixed = weight.at(middles_mm);
+  std::vector<glm::dvec3> of_scan_mm;
+  for (std::size_t i = 0; i < mixed.size(); ++i) {
+    double& area_mm2 = mixed[i].weight >= 1.0  ? made.sources.scan_mm2
+                       : mixed[i].weight > 0.0 ? made.sources.border_mm2
+                                               : made.sources.solid_mm2;
+    area_mm2 += areas_mm2[i];
+    if (mixed[i].weight >= 1.0) of_scan_mm.push_back(middles_mm[i]);
+  }
+  if (of_scan_mm.empty()) return;
+  const std::vector<double> moves_mm = before.tree().distances_mm(of_scan_mm);
+  made.largest_move_mm = *std::max_element(moves_mm.begin(), moves_mm.end());
+}
+
+void check(const Solid& solid, const ScanBlendOptions& options) {
+  if (solid.empty()) throw InvalidInput("an empty solid has no crowns");
+  for (const double mm :
+       {options.depth_mm, options.blend_mm, options.reach_mm, options.radius_mm, options.cell_mm})
+    if (!(mm > 0.0) || !std::isfinite(mm))
+      throw InvalidInput("depth, border, reach, radius and cells of a scan's crowns are above 0 mm");
+}
+
+/// How much faster than places the mixed distances may change: for half of the reach, as only streaks lie farther
+/// from the scan.
+double steepness_of(const ScanBlendOptions& options) {
+  return 1.0 + 0.75 * options.reach_mm / options.blend_mm;
+}
+
+}  // namespace
+
+double scan_blend_allowance_mm(const ScanBlendOptions& options) {
+  return 0.25 * options.cell_mm + steepness_of(options) * options.cell_mm / 16.0;
+}
+
+ScanBlend blended_with_scan(const Solid& solid, const Mesh& scan, const ScanBlendOptions& options) {
+  check(solid, options);
+  const Weight weight(scan, options);
+  std::vector<glm::dvec3> crowns_mm;
+  for (const auto v : scan.vertices()) {
+    const Mesh::Point& p = scan.point(v);
+    if (const glm::dvec3 at(p[0], p[1], p[2]); weight.within_mm(at) > 0.0) crowns_mm.push_back(at);
+  }
+  if (crowns_mm.empty())
+    throw Error(
+        ErrorCode::Geometry,
+        "the scan shows none of the crowns that it is to replace: give points on crowns that it shows");
+  const double strip_mm = 2.0 * options.cell_mm, inset_mm = options.cell_mm / 8.0;
+  const TurnedBox box(options.to_roots, crowns_mm, weight.far_mm() + 2.0 * strip_mm);
+  ScanBlend made;
+  const Solid anew = mixed_surface(solid, weight, box, strip_mm, inset_mm, steepness_of(options), options);
+  const BooleanResult rest =
+      boolean(solid, Operation::Difference, box.solid(strip_mm), options.progress.stop);
+  if (rest.solid.empty()) {
+    made.solid = anew;
+  } else {
+    const BooleanResult united = boolean(rest.solid, Operation::Union, anew, options.progress.stop);
+    made.solid = united.solid;
+    made.shift_mm = rest.shift_mm + united.shift_mm;
+    made.findings = rest.findings;
+    made.findings.insert(made.findings.end(), united.findings.begin(), united.findings.end());
+  }
+  find_sources(solid, weight, box, made);
+  return made;
+}
+
+}  // namespace octotomy::brep
