@@ -151,17 +151,26 @@ class ScanBlendReader {
   BoxGrid border_;
 };
 
+/// Witnesses are copied; the scan is shared.
+struct SharedReader {
+  std::shared_ptr<const ScanBlendReader> reader;
+
+  Reading operator()(const glm::dvec3& p_mm, double slack_mm, ReadingNeeds needs) const {
+    return (*reader)(p_mm, slack_mm, needs);
+  }
+};
+
 }  // namespace
 
 Witness witness_of_scan_blend(Witness object, WitnessedScan asked) {
   if (!object) return {};
   std::vector<PartChoice> choices = object.choices();
-  // Readers are copied; the scan is shared.
-  auto reader = std::make_shared<const ScanBlendReader>(std::move(object), std::move(asked));
-  return Witness([reader](const glm::dvec3& p_mm, double slack_mm, ReadingNeeds needs) {
-           return (*reader)(p_mm, slack_mm, needs);
-         })
+  return Witness(SharedReader{std::make_shared<const ScanBlendReader>(std::move(object), std::move(asked))})
       .with_choices(std::move(choices));
+}
+
+bool is_scan_blend(const Witness& witness) {
+  return witness.reader<SharedReader>() != nullptr;
 }
 
 }  // namespace octotomy::verify

@@ -25,4 +25,7 @@ struct WitnessedScan {
 /// the object has no witness. Cost of a reading: some triangles, and the object's reading where it counts.
 Witness witness_of_scan_blend(Witness object, WitnessedScan asked);
 
+/// Whether a witness is one of these, and not a Boolean or a motion of others.
+bool is_scan_blend(const Witness& witness);
+
 }  // namespace octotomy::verify
