@@ -4,13 +4,14 @@
 //   border with the least of four lengths: the distance of the scan's nearest point from the scan's border, the
 //   height of the point above the depth, its distance within the radius of the chosen crowns, and what is left of
 //   the reach.
-// 2 In a box about the crowns the level surface of the mixed distances, (1 - w) solid + w scan. The box's walls end it.
+// 2 In a box about the crowns the surface on which the mixed distances, (1 - w) solid + w scan, are 0: of cells of one
+//   size, six tetrahedra each, because mixed distances may jump where the nearest point of the scan does, and such cells
+//   close nevertheless. The box's walls end it. Blocks of cells far from the surface are passed over.
 // 3 The solid less a slightly smaller box, united with that. Between both boxes the new surface lies a little
 //   within the solid, so that both cross each other nowhere but at the box.
 //
-// Mixed distances change faster than places do where the weight changes and the scan lies far from the solid: the
-// sum of 1 and that distance times 1.5 / width, the steepest slope of the weight. The field is divided by a bound of
-// it, because the level surface needs such a field.
+// Mixed distances change faster than places do where the weight changes and the scan lies far from the solid: by 1 and
+// that distance times 1.5 / width, the steepest slope of the weight.
 #include "brep/shape/scan_blend.h"
 
 #include <algorithm>
@@ -26,7 +27,8 @@
 #include "brep/boolean/boolean.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/oriented_surface.h"
-#include "brep/shape/level_surface.h"
+#include "brep/mesh/short_text.h"
+#include "brep/shape/kuhn_cells.h"
 #include "brep/shape/prism.h"
 
 namespace octotomy::brep {
@@ -177,39 +179,149 @@ struct TurnedBox {
   }
 };
 
-/// The level surface of the mixed distances in the box. Within `strip_mm` of its walls it lies `inset_mm` within.
-Solid mixed_surface(const Solid& solid, const Weight& weight, const TurnedBox& box, double strip_mm,
-                    double inset_mm, double steepness, const ScanBlendOptions& options) {
-  const double far_mm = weight.far_mm();
-  const LevelField field = [&](const std::vector<glm::dvec3>& points_mm,
-                               std::vector<std::uint32_t>& nearest) {
+/// The mixed distances, which end at the walls of the box. Within `strip_mm` of the walls the surface lies
+/// `inset_mm` within the solid's.
+class MixedField {
+ public:
+  MixedField(const Solid& solid, const Weight& weight, const TurnedBox& box, double strip_mm, double inset_mm)
+      : solid_(solid), weight_(weight), box_(box), strip_mm_(strip_mm), inset_mm_(inset_mm) {}
+
+  std::vector<double> at(const std::vector<glm::dvec3>& points_mm) const {
+    const double far_mm = weight_.far_mm();
     std::vector<double> values(points_mm.size());
     std::vector<std::size_t> inside;
     std::vector<glm::dvec3> inside_mm;
-    std::vector<std::uint32_t> inside_nearest;
     for (std::size_t i = 0; i < points_mm.size(); ++i) {
-      values[i] = box.distance_mm(points_mm[i]);
+      values[i] = box_.distance_mm(points_mm[i]);
       if (values[i] >= far_mm) continue;
       inside.push_back(i);
       inside_mm.push_back(points_mm[i]);
-      inside_nearest.push_back(nearest[i]);
     }
-    if (!inside.empty()) {
-      const std::vector<double> solid_mm = solid.tree().signed_distances_mm(inside_mm, inside_nearest);
-      const std::vector<Mixed> mixed = weight.at(inside_mm);
-      for (std::size_t k = 0; k < inside.size(); ++k) {
-        const double kept_mm = std::clamp(solid_mm[k], -far_mm, far_mm);
-        const double value = kept_mm + mixed[k].weight * (mixed[k].scan_mm - kept_mm);
-        double& at = values[inside[k]];
-        at = std::max(at, value + inset_mm * std::clamp(1.0 + at / strip_mm, 0.0, 1.0));
-        nearest[inside[k]] = inside_nearest[k];
-      }
+    if (inside.empty()) return values;
+    std::vector<std::uint32_t> nearest(inside.size(), SurfaceTree::unknown_triangle);
+    const std::vector<double> solid_mm = solid_.tree().signed_distances_mm(inside_mm, nearest);
+    const std::vector<Mixed> mixed = weight_.at(inside_mm);
+    for (std::size_t k = 0; k < inside.size(); ++k) {
+      const double kept_mm = std::clamp(solid_mm[k], -far_mm, far_mm);
+      const double value = kept_mm + mixed[k].weight * (mixed[k].scan_mm - kept_mm);
+      double& at = values[inside[k]];
+      at = std::max(at, value + inset_mm_ * std::clamp(1.0 + at / strip_mm_, 0.0, 1.0));
     }
-    for (double& value : values) value /= steepness;
     return values;
-  };
-  // A level body's surface does not move, so that the offset's length is 0.
-  return level_surface(field, box.size(), {0.0, options.cell_mm, options.progress});
+  }
+
+ private:
+  const Solid& solid_;
+  const Weight& weight_;
+  const TurnedBox& box_;
+  double strip_mm_, inset_mm_;
+};
+
+/// The field's values at the points of a lattice about the box, x fastest. Blocks of points that lie farther from
+/// the surface than their size have the value of their middle: only its sign counts there.
+struct LatticeValues {
+  glm::dvec3 origin_mm{0.0};
+  double step_mm = 1.0;
+  glm::ivec3 dims{0};
+  std::vector<double> values;
+
+  glm::dvec3 at_mm(const glm::dvec3& place) const { return origin_mm + step_mm * place; }
+  std::size_t index(const LatticePoint& p) const {
+    return static_cast<std::size_t>(p.x) +
+           static_cast<std::size_t>(dims.x) *
+               (static_cast<std::size_t>(p.y) +
+                static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(p.z));
+  }
+};
+
+LatticeValues values_about(const Size& size, const MixedField& field, double steepness,
+                           const ScanBlendOptions& options) {
+  constexpr int block = 4;
+  LatticeValues lattice;
+  lattice.step_mm = options.cell_mm;
+  // Irregular shares of a cell keep the lattice off planes at round coordinates.
+  lattice.origin_mm = size.low_mm - options.cell_mm * glm::dvec3(1.2718281828, 1.3141592653, 1.1414213562);
+  const glm::ivec3 blocks = glm::ivec3(
+      glm::ceil((size.high_mm + 2.0 * options.cell_mm - lattice.origin_mm) / (block * options.cell_mm)));
+  constexpr double most_blocks = double(1 << 21);
+  if (double(blocks.x) * blocks.y * blocks.z > most_blocks)
+    throw TooLarge("cells of " + std::to_string(options.cell_mm) +
+                   " mm are too small for the crowns of this scan");
+  lattice.dims = block * blocks;
+  std::vector<LatticePoint> lowest;
+  std::vector<glm::dvec3> middles_mm;
+  for (int z = 0; z < blocks.z; ++z)
+    for (int y = 0; y < blocks.y; ++y)
+      for (int x = 0; x < blocks.x; ++x) {
+        lowest.emplace_back(block * LatticePoint(x, y, z));
+        middles_mm.push_back(lattice.at_mm(glm::dvec3(lowest.back()) + 0.5 * (block - 1)));
+      }
+  const std::vector<double> at_middles = field.at(middles_mm);
+  options.progress.at(0.2);
+  lattice.values.resize(static_cast<std::size_t>(lattice.dims.x) * static_cast<std::size_t>(lattice.dims.y) *
+                        static_cast<std::size_t>(lattice.dims.z));
+  // From a block's middle to a cell beyond its farthest point.
+  const double reach_mm = steepness * options.cell_mm * (0.5 * std::sqrt(3.0) * (block - 1) + 1.0);
+  std::vector<std::size_t> numbers;
+  std::vector<glm::dvec3> points_mm;
+  for (std::size_t i = 0; i < lowest.size(); ++i)
+    for (int k = 0; k < block * block * block; ++k) {
+      const LatticePoint p = lowest[i] + LatticePoint(k % block, k / block % block, k / (block * block));
+      lattice.values[lattice.index(p)] = at_middles[i];
+      if (std::abs(at_middles[i]) > reach_mm) continue;
+      numbers.push_back(lattice.index(p));
+      points_mm.push_back(lattice.at_mm(glm::dvec3(p)));
+    }
+  const std::vector<double> values = field.at(points_mm);
+  for (std::size_t k = 0; k < numbers.size(); ++k) lattice.values[numbers[k]] = values[k];
+  options.progress.at(0.6);
+  return lattice;
+}
+
+/// The surface between lattice points inside and outside. It is closed whatever the values are.
+Solid surface_of(const LatticeValues& lattice) {
+  std::vector<EdgeTriangle> triangles;
+  for (int z = 0; z + 1 < lattice.dims.z; ++z)
+    for (int y = 0; y + 1 < lattice.dims.y; ++y)
+      for (int x = 0; x + 1 < lattice.dims.x; ++x) {
+        std::array<double, 8> corners{};
+        int inside = 0;
+        for (int corner = 0; corner < 8; ++corner) {
+          const double value = lattice.values[lattice.index(LatticePoint(x, y, z) + corner_place(corner))];
+          corners[static_cast<std::size_t>(corner)] = value;
+          inside += value < 0.0 ? 1 : 0;
+        }
+        if (inside != 0 && inside != 8) add_triangles({x, y, z}, corners, triangles);
+      }
+  const std::vector<LatticeEdge> edges = edges_of(triangles);
+  Triangles surface;
+  surface.faces = numbered(triangles, edges);
+  for (const LatticeEdge& edge : edges) {
+    const LatticePoint from = place_of(edge.from()), to = from + corner_place(edge.along());
+    const double a = lattice.values[lattice.index(from)], b = lattice.values[lattice.index(to)];
+    const double share = std::clamp(a / (a - b), nearest_end, 1.0 - nearest_end);
+    surface.points_mm.push_back(lattice.at_mm(glm::mix(glm::dvec3(from), glm::dvec3(to), share)));
+  }
+  return trusted_solid(std::move(surface), Proof::Construction);
+}
+
+/// Where the nearest point of the scan jumps, mixed distances do, too, and leave specks. They are taken out.
+Solid without_specks(const Solid& solid, ScanBlend& made) {
+  constexpr double least_mm3 = 2.0;
+  const std::vector<Component>& parts = solid.components();
+  std::vector<std::uint32_t> kept;
+  std::size_t specks = 0;
+  for (const Component& part : parts) {
+    if (std::abs(part.volume_mm3) < least_mm3)
+      ++specks;
+    else
+      kept.insert(kept.end(), part.faces.begin(), part.faces.end());
+  }
+  if (specks == 0) return solid;
+  made.findings.push_back(std::to_string(specks) + " specks of less than " + short_text(least_mm3) +
+                          " mm³ at the border of the scan are left out");
+  std::sort(kept.begin(), kept.end());
+  return trusted_solid(part_of(solid.mesh(), kept), proof_of_part(solid.proof()));
 }
 
 /// The area of the surface by its source, and the largest distance of the scan's part from the solid before.
@@ -259,7 +371,7 @@ double steepness_of(const ScanBlendOptions& options) {
 }  // namespace
 
 double scan_blend_allowance_mm(const ScanBlendOptions& options) {
-  return 0.25 * options.cell_mm + steepness_of(options) * options.cell_mm / 16.0;
+  return 0.5 * options.cell_mm;
 }
 
 ScanBlend blended_with_scan(const Solid& solid, const Mesh& scan, const ScanBlendOptions& options) {
@@ -277,7 +389,9 @@ ScanBlend blended_with_scan(const Solid& solid, const Mesh& scan, const ScanBlen
   const double strip_mm = 2.0 * options.cell_mm, inset_mm = options.cell_mm / 8.0;
   const TurnedBox box(options.to_roots, crowns_mm, weight.far_mm() + 2.0 * strip_mm);
   ScanBlend made;
-  const Solid anew = mixed_surface(solid, weight, box, strip_mm, inset_mm, steepness_of(options), options);
+  const MixedField field(solid, weight, box, strip_mm, inset_mm);
+  const Solid anew =
+      without_specks(surface_of(values_about(box.size(), field, steepness_of(options), options)), made);
   const BooleanResult rest =
       boolean(solid, Operation::Difference, box.solid(strip_mm), options.progress.stop);
   if (rest.solid.empty()) {
@@ -286,7 +400,7 @@ ScanBlend blended_with_scan(const Solid& solid, const Mesh& scan, const ScanBlen
     const BooleanResult united = boolean(rest.solid, Operation::Union, anew, options.progress.stop);
     made.solid = united.solid;
     made.shift_mm = rest.shift_mm + united.shift_mm;
-    made.findings = rest.findings;
+    made.findings.insert(made.findings.end(), rest.findings.begin(), rest.findings.end());
     made.findings.insert(made.findings.end(), united.findings.begin(), united.findings.end());
   }
   find_sources(solid, weight, box, made);

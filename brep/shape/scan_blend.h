@@ -24,7 +24,7 @@ struct ScanBlendOptions {
   std::vector<glm::dvec3> about_mm =
       {};                  ///< only within `radius_mm` of these; empty: all that the scan shows
   double radius_mm = 6.0;  ///< above 0
-  double cell_mm = 0.5;    ///< of the new triangles, as in OffsetOptions
+  double cell_mm = 0.5;    ///< of the new triangles; sharp edges are cut off within half of it
   Progress progress = {};
 };
 
@@ -47,10 +47,11 @@ double scan_blend_allowance_mm(const ScanBlendOptions& options);
 
 /// The solid with the surface of an open scan that lies on it. Between both, distances are mixed with a weight that
 /// changes smoothly along `blend_mm`, so that the border is smooth. Near the crowns the surface is made anew from
-/// distances, as offset() does; elsewhere the triangles stay. Where the solid passes the box about the crowns
+/// distances; elsewhere the triangles stay. Where the solid passes the box about the crowns
 /// there is a step of up to a quarter of a cell. Throws std::invalid_argument if an option is out of its range;
-/// Error (Geometry) if the scan shows none of the crowns; as offset() and boolean(); Stopped. The same bits on
-/// any number of threads. Cost: that of offset() of the crowns and two Booleans.
+/// Error (Geometry) if the scan shows none of the crowns; as boolean(); Stopped. The same bits on
+/// any number of threads. Cost: two distances for each cell near the surface in the
+/// box of the crowns, and two Booleans.
 ScanBlend blended_with_scan(const Solid& solid, const Mesh& scan, const ScanBlendOptions& options);
 
 }  // namespace octotomy::brep
