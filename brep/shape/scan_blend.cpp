@@ -25,8 +25,8 @@
 #include <utility>
 
 #include "brep/boolean/boolean.h"
+#include "brep/mesh/distance.h"
 #include "brep/mesh/error.h"
-#include "brep/mesh/oriented_surface.h"
 #include "brep/mesh/short_text.h"
 #include "brep/shape/kuhn_cells.h"
 #include "brep/shape/prism.h"
@@ -79,13 +79,30 @@ NearPoints border_of(const Mesh& scan, double width_mm) {
 }
 
 /// The triangles of the scan that have a point no deeper than `depth_mm`.
-Mesh down_to(const Mesh& scan, const ScanBlendOptions& options, double depth_mm) {
+Triangles down_to(const Mesh& scan, const ScanBlendOptions& options, double depth_mm) {
   Triangles part = triangles_of(scan);
   const auto is_deep = [&](std::uint32_t i) {
     return glm::dot(part.points_mm[i], options.to_roots) - options.tips_mm > depth_mm;
   };
   std::erase_if(part.faces, [&](const auto& face) { return std::all_of(face.begin(), face.end(), is_deep); });
-  return mesh_of(part);
+  return part;
+}
+
+/// Normals at points, weighted by area and averaged once over neighbours: noise turns small triangles over, whose
+/// own normals would put points on the wrong side.
+std::vector<glm::dvec3> smooth_normals(const Triangles& surface) {
+  std::vector<glm::dvec3> normals(surface.points_mm.size(), glm::dvec3(0.0));
+  for (const auto& [a, b, c] : surface.faces) {
+    const glm::dvec3 normal =
+        glm::cross(surface.points_mm[b] - surface.points_mm[a], surface.points_mm[c] - surface.points_mm[a]);
+    for (const std::uint32_t corner : {a, b, c}) normals[corner] += normal;
+  }
+  std::vector<glm::dvec3> smooth = normals;
+  for (const auto& [a, b, c] : surface.faces) {
+    const glm::dvec3 sum = normals[a] + normals[b] + normals[c];
+    for (const std::uint32_t corner : {a, b, c}) smooth[corner] += sum;
+  }
+  return smooth;
 }
 
 /// The scan's distance and weight at a point.
@@ -99,7 +116,9 @@ class Weight {
       : options_(options),
         far_mm_(options.reach_mm + options.blend_mm),
         border_(border_of(scan, options.blend_mm)),
-        surface_(down_to(scan, options, options.depth_mm + 2.0 * far_mm_)) {}
+        scan_(down_to(scan, options, options.depth_mm + 2.0 * far_mm_)),
+        normals_(smooth_normals(scan_)),
+        tree_(scan_) {}
 
   double far_mm() const { return far_mm_; }
 
@@ -114,16 +133,19 @@ class Weight {
   }
 
   std::vector<Mixed> at(const std::vector<glm::dvec3>& points_mm) const {
-    const std::vector<SignedFoot> feet = surface_.feet(points_mm);
+    const std::vector<Foot> feet = tree_.feet(points_mm);
     std::vector<Mixed> mixed(points_mm.size());
     for (std::size_t i = 0; i < points_mm.size(); ++i) {
-      const SignedFoot& foot = feet[i];
-      if (foot.on_border) continue;
-      const double within = std::min(within_mm(points_mm[i]), far_mm_ - std::abs(foot.distance_mm));
+      const Foot& foot = feet[i];
+      const double within = std::min(within_mm(points_mm[i]), far_mm_ - foot.distance_mm);
       if (within <= 0.0) continue;
+      const auto& face = scan_.faces[foot.face];
+      const glm::dvec3 normal = foot.weights.x * normals_[face[0]] + foot.weights.y * normals_[face[1]] +
+                                foot.weights.z * normals_[face[2]];
+      const bool is_inside = glm::dot(points_mm[i] - foot.p_mm, normal) < 0.0;
       const double share =
           std::clamp(std::min(within, border_.distance_mm(foot.p_mm)) / options_.blend_mm, 0.0, 1.0);
-      mixed[i] = {foot.distance_mm, share * share * (3.0 - 2.0 * share)};
+      mixed[i] = {is_inside ? -foot.distance_mm : foot.distance_mm, share * share * (3.0 - 2.0 * share)};
     }
     return mixed;
   }
@@ -132,7 +154,9 @@ class Weight {
   const ScanBlendOptions& options_;
   double far_mm_;
   NearPoints border_;
-  OrientedSurface surface_;
+  Triangles scan_;
+  std::vector<glm::dvec3> normals_;
+  SurfaceTree tree_;
 };
 
 /// A box that is turned against all axes, so that no plane of a cut lies in its sides.

@@ -58,17 +58,20 @@ class ScanBlendReader {
     return through(asked_.scan.faces[foot.face], foot.weights, values);
   }
 
+  /// Weighted by area and summed over all triangles that share a corner with those at a point, so that small
+  /// triangles that noise turned over do not count.
   void find_normals() {
-    normals_.assign(asked_.scan.points_mm.size(), glm::dvec3(0.0));
-    for (const auto& face : asked_.scan.faces)
-      for (std::size_t k = 0; k < 3; ++k) {
-        const glm::dvec3 &p = asked_.scan.points_mm[face[k]],
-                         u = asked_.scan.points_mm[face[(k + 1) % 3]] - p,
-                         v = asked_.scan.points_mm[face[(k + 2) % 3]] - p;
-        const glm::dvec3 normal = glm::cross(u, v);
-        const double length = glm::length(normal);
-        if (length > 0.0) normals_[face[k]] += std::atan2(length, glm::dot(u, v)) / length * normal;
-      }
+    const std::vector<glm::dvec3>& points = asked_.scan.points_mm;
+    std::vector<glm::dvec3> own(points.size(), glm::dvec3(0.0));
+    const auto add = [&](std::vector<glm::dvec3>& to, const auto& value_of) {
+      for (std::size_t i = 0; i < asked_.scan.faces.size(); ++i)
+        for (const std::uint32_t corner : asked_.scan.faces[i]) to[corner] += value_of(asked_.scan.faces[i]);
+    };
+    add(own, [&](const auto& face) {
+      return glm::cross(points[face[1]] - points[face[0]], points[face[2]] - points[face[0]]);
+    });
+    normals_.assign(points.size(), glm::dvec3(0.0));
+    add(normals_, [&](const auto& face) { return own[face[0]] + own[face[1]] + own[face[2]]; });
   }
 
   /// Edges of one triangle only.
@@ -145,7 +148,7 @@ class ScanBlendReader {
   Witness object_;
   WitnessedScan asked_;
   TriangleGrid grid_;
-  std::vector<glm::dvec3> normals_;  ///< at points, weighted by angles
+  std::vector<glm::dvec3> normals_;  ///< at points
   std::vector<bool> is_border_;
   std::vector<std::pair<glm::dvec3, glm::dvec3>> edges_;
   BoxGrid border_;
