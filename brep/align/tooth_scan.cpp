@@ -41,7 +41,7 @@ constexpr std::uint32_t held_one_in = 4;
 constexpr std::size_t least_held = 8;
 constexpr double sample_every_mm = 0.4;
 /// The least share of the held patches that lies near the object's surface. Right scans of the head phantom's
-/// teeth reach 0.85 and more, those of the other jaw less than 0.4.
+/// teeth reach 0.8, those of the other jaw less than 0.4.
 constexpr double least_matched = 0.55;
 /// The share of the samples' spacing by which the object's surface may be off on all teeth alike, and the largest
 /// root mean square of what it is off by. Isosurfaces of partial volumes keep both; see the bound above.
@@ -337,7 +337,10 @@ void bound_error(const ToothScanOptions& options, LaidToothScan& laid) {
   constexpr double far = 4.0;  // times the middle patch
   std::vector<double> squares;
   for (const HeldPatch& patch : laid.held) squares.push_back(patch.mean_mm2);
-  const double most_mm2 = squares.empty() ? 0.0 : far * far * middle_of(squares);
+  // Patches nearer than samples resolve are never far.
+  const double resolved_mm = 0.1 * options.sample_mm;
+  const double most_mm2 =
+      squares.empty() ? 0.0 : std::max(far * far * middle_of(squares), resolved_mm * resolved_mm);
   squares.clear();
   for (HeldPatch& patch : laid.held) {
     patch.is_left_out = patch.mean_mm2 > most_mm2;
