@@ -142,6 +142,17 @@ class ScanBlendReader {
     const double along = glm::dot(p_mm - foot_mm, normal), whole = foot.distance_mm * glm::length(normal);
     constexpr double nearly_square = 0.1;
     if (std::abs(along) <= nearly_square * whole) return either_side;
+    // No surface is as near as the slack, so that the side changes there only where the scan crosses itself, as noise
+    // makes it between neighbouring teeth.
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double sign : {-1.0, 1.0}) {
+        glm::dvec3 beside_mm = p_mm;
+        beside_mm[axis] += sign * slack;
+        const auto other = grid_.nearest(beside_mm, foot.distance_mm + 2.0 * slack);
+        if (!other) continue;
+        const glm::dvec3 apart = beside_mm - at(*other, asked_.scan.points_mm);
+        if (glm::dot(apart, at(*other, normals_)) * along < 0.0) return either_side;
+      }
     return along < 0.0 ? certainly_in : certainly_out;
   }
 
