@@ -36,6 +36,7 @@
 #include "planner/plan/step_errors.h"
 #include "verify/certificate/places.h"
 #include "verify/witness/reshaped_witness.h"
+#include "verify/witness/scan_blend_witness.h"
 #include "verify/witness/witness.h"
 #include "voxel/measure/distance_map.h"
 #include "voxel/scan/read_image_stack.h"
@@ -527,7 +528,7 @@ class Evaluator {
 
   /// Whether the mesh has voxels of the other kernel or a witness of its own beside it.
   static bool is_judged(const Operation& operation, const Object& object) {
-    return operation.voxel || verify::is_reshaped(object.witness);
+    return operation.voxel || verify::is_reshaped(object.witness) || verify::is_scan_blend(object.witness);
   }
 
   /// The voxels of an answer that only the mesh kernel has.

@@ -4,6 +4,7 @@
 #include "planner/cli/program/verbs.h"
 #include "planner/cli/verb/numbers.h"
 #include "planner/cli/verb/verb.h"
+#include "planner/operation/file/mesh_file.h"
 #include "planner/operation/measure/octree_summary.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/table/number_format.h"
@@ -12,6 +13,7 @@
 #include "verify/phantom/leg_phantom.h"
 #include "verify/phantom/sample_volume.h"
 #include "verify/phantom/solid_phantom.h"
+#include "verify/phantom/tooth_scan_phantom.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/space/disk_need.h"
 
@@ -125,6 +127,29 @@ int leg(const Program& program, const PhantomText& text) {
   return done;
 }
 
+bool is_tooth_scan(const PhantomText& text) {
+  return text.kind == "upper_teeth" || text.kind == "lower_teeth";
+}
+
+/// A scan of teeth, and in the JSON what tooth_scan needs to lay it onto the head phantom.
+int teeth(const Program& program, const PhantomText& text) {
+  need_mesh_extension(text.out);
+  Timings timings;
+  verify::ToothScanPhantomOptions options;
+  options.is_upper = text.kind == "upper_teeth";
+  options.seed = text.head.seed;
+  const verify::ToothScanPhantom made = verify::tooth_scan_phantom(options);
+  write_surface(made.scan, text.out, timings);
+  Json json{{"path", text.out.string()}, {"faces", made.scan.faces.size()}};
+  json["truth"] = {{"lps_from_scan", to_json(made.lps_from_scan)}};
+  for (const auto& [name, points_mm] :
+       {std::pair("points", &made.points_mm), {"scan_points", &made.scan_points_mm}})
+    for (const glm::dvec3& p : *points_mm) json[name].push_back(to_json(p));
+  program.say(json, lines({{"phantom", text.out.string()},
+                           {"triangles", grouped(double(made.scan.faces.size()), 0)}}));
+  return done;
+}
+
 verify::SolidPhantom solid_of(const PhantomText& text) {
   verify::SolidPhantomOptions options;
   if (text.kind == "figure_3_1") options.voxels = 4;
@@ -186,25 +211,32 @@ int phantom(const Program& program, const PhantomText& text) {
   const bool is_scan = text.kind == "head" || text.kind == "leg";
   for (const CLI::Option* option : text.verb->get_options()) {
     const std::string& group = option->get_group();
-    const bool is_idle = is_scan ? group == solid_group || (group == head_group && text.kind != "head")
-                                 : group == head_group || group == scan_group;
+    const bool is_idle = is_tooth_scan(text)
+                             ? group == solid_group || group == head_group ||
+                                   option->get_name() == "--noise" || option->get_name() == "--dicom" ||
+                                   option->get_name() == "--voxel"
+                         : is_scan ? group == solid_group || (group == head_group && text.kind != "head")
+                                   : group == head_group || group == scan_group;
     if (is_idle && option->count() > 0)
       throw CLI::ValidationError(option->get_name(), "has no effect for " + text.kind + ": leave it out");
   }
   const bool is_folder = is_scan && (text.dicom || !text.out.has_extension());
   need_folder_of(text.out, is_folder ? OutputKind::Folder : OutputKind::File);
+  if (is_tooth_scan(text)) return teeth(program, text);
   return text.kind == "head" ? head(program, text) : is_scan ? leg(program, text) : solid(program, text);
 }
 
 std::string kinds_said() {
-  std::string said = "head: a CT of a head; leg: a CT of a lower leg; or an octree of a solid:";
+  std::string said =
+      "head: a CT of a head; leg: a CT of a lower leg; upper_teeth, lower_teeth: a mesh of the head's teeth "
+      "as a scanner in the mouth shows them; or an octree of a solid:";
   for (const verify::SolidPhantomKind& kind : verify::solid_phantom_kinds())
     said.append("\n").append(kind.name).append(": ").append(kind.what);
   return said;
 }
 
 std::vector<std::string> kind_names() {
-  std::vector<std::string> names{"head", "leg"};
+  std::vector<std::string> names{"head", "leg", "upper_teeth", "lower_teeth"};
   for (const verify::SolidPhantomKind& kind : verify::solid_phantom_kinds()) names.emplace_back(kind.name);
   return names;
 }
@@ -261,7 +293,8 @@ void add_phantom(Program& program) {
   text->verb = &verb;
   verb.add_option("kind", text->kind, kinds_said())->required()->check(CLI::IsMember(kind_names()));
   verb.add_option("-o,--out", text->out,
-                  "A .octree file; for head and leg a .nrrd, .nii.gz or .mha file, or a folder for DICOM")
+                  "A .octree file; for teeth a mesh, such as .stl; for head and leg a .nrrd, .nii.gz or .mha "
+                  "file, or a folder for DICOM")
       ->required();
   verb.add_option("--voxel", text->head.voxel_mm, "Edge of a voxel, mm")
       ->check(between(0.1, 20.0))

@@ -79,6 +79,7 @@ constexpr std::array verb_table{
     GroupedVerb{shaping, "splint"},
     GroupedVerb{shaping, "guide"},
     GroupedVerb{shaping, "plate"},
+    GroupedVerb{shaping, "tooth_scan"},
     GroupedVerb{elements, "tet"},
     GroupedVerb{elements, "warp"},
     GroupedVerb{measuring, "measure"},

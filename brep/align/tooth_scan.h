@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "brep/align/register_surfaces.h"
+#include "brep/mesh/mesh.h"
+#include "brep/mesh/progress.h"
+#include "brep/mesh/solid.h"
+
+namespace octotomy::brep {
+
+/// The same places of the teeth on both surfaces, in the same order: at least three, on biting surfaces, not on
+/// one line. Each lies within 3 mm of its surface, because such points are placed by hand.
+struct ToothPoints {
+  std::vector<glm::dvec3> fixed_mm, scan_mm;
+};
+
+struct ToothScanOptions {
+  /// The crowns are fitted from their tips, the plane of the points, to this depth, mm, above 0. What the scan
+  /// shows beyond is gum.
+  double depth_mm = 5.0;
+  /// The largest spacing of the samples from which the fixed surface was made, mm, at least 0. Its surface may
+  /// be off by a part of that, alike on all teeth.
+  double sample_mm = 1.0;
+  std::size_t samples = 6000;                           ///< as in SurfaceFitOptions
+  std::string scan = "the scan", fixed = "the object";  ///< names for messages
+  Progress progress = {};
+};
+
+/// A patch of the scan's surface, a few millimetres wide, that the fit did not use.
+struct HeldPatch {
+  glm::dvec3 at_mm{0.0};     ///< its middle, where the scan was laid
+  double mean_mm = 0.0;      ///< mean distance from the fixed surface, negative inside
+  double mean_mm2 = 0.0;     ///< mean of the squared distances
+  bool is_left_out = false;  ///< it lies farther off than chance and the other patches explain
+};
+
+/// A scan laid onto the teeth, and how far it is off there.
+struct LaidToothScan {
+  glm::dmat4 fixed_from_scan{1.0};
+  glm::dvec3 to_roots{0, 0, 1};  ///< unit normal of the plane of the points, from the tips to the roots
+  double tips_mm = 0.0;          ///< p . to_roots of that plane
+  double points_rms_mm = 0.0;    ///< of the points alone, before the surfaces were fitted
+  SurfaceFit fit;                ///< of the patches that were fitted
+  std::vector<HeldPatch> held;
+  std::size_t fitted_patches = 0;
+  double matched_share = 0.0;  ///< of the held patches' samples, with a counterpart on the fixed surface
+  double distance_mm = 0.0;    ///< root mean square distance of the held patches from the fixed surface
+  /// The root mean square distance of the scan, as it lies, from the true teeth is error_mm, give or take
+  /// half_width_mm, in 99 of 100 cases.
+  double error_mm = 0.0, half_width_mm = 0.0;
+
+  /// The depth of a point below the tips.
+  double depth_mm(const glm::dvec3& p_mm) const { return glm::dot(p_mm, to_roots) - tips_mm; }
+};
+
+/// Lays a scan of teeth, open and with holes, onto a solid that shows the same teeth: by the points, then by the
+/// surfaces of the crowns, of which the farthest parts are trimmed. Patches of a quarter of the crowns are held
+/// back: their distances are the error. Both in LPS millimetres. Throws Error (Input or Geometry) in one sentence
+/// that states the cause: an unfitting unit; points that are too few, off their surface, on one line or fit
+/// only mirrored; a scan that does not match the teeth, as that of the other jaw; too little of the crowns;
+/// Stopped. The same bits on any number of threads. Cost: that of register_surfaces() with a start. Sources: as
+/// register_surfaces(); held-out patches are a cross-validation.
+LaidToothScan lay_tooth_scan(const Mesh& scan, const Solid& fixed, const ToothPoints& points,
+                             const ToothScanOptions& options);
+
+}  // namespace octotomy::brep

@@ -1,0 +1,434 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// 1 A weight at every point: 1 where the scan counts, 0 where the solid does. It grows along the width of the
+//   border with the least of four lengths: the distance of the scan's nearest point from the scan's border, the
+//   height of the point above the depth, its distance within the radius of the chosen crowns, and what is left of
+//   the reach.
+// 2 In a box about the crowns the surface on which the mixed distances, (1 - w) solid + w scan, are 0: of cells of one
+//   size, six tetrahedra each, because mixed distances may jump where the nearest point of the scan does, and such cells
+//   close nevertheless. The box's walls end it. Blocks of cells far from the surface are passed over.
+// 3 The solid less a slightly smaller box, united with that. Between both boxes the new surface lies a little
+//   within the solid, so that both cross each other nowhere but at the box.
+//
+// Mixed distances change faster than places do where the weight changes and the scan lies far from the solid: by 1 and
+// that distance times 1.5 / width, the steepest slope of the weight.
+#include "brep/shape/scan_blend.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "brep/boolean/boolean.h"
+#include "brep/mesh/distance.h"
+#include "brep/mesh/error.h"
+#include "brep/mesh/short_text.h"
+#include "brep/shape/kuhn_cells.h"
+#include "brep/shape/prism.h"
+
+namespace octotomy::brep {
+namespace {
+
+/// Points in the cells of a grid, for the distance to the nearest one up to the cell's edge.
+class NearPoints {
+ public:
+  explicit NearPoints(double cell_mm) : cell_mm_(cell_mm) {}
+  void add(const glm::dvec3& p_mm) { cells_[cell_of(p_mm)].push_back(p_mm); }
+  /// At most the cell's edge.
+  double distance_mm(const glm::dvec3& p_mm) const {
+    double least = cell_mm_;
+    const auto [x, y, z] = cell_of(p_mm);
+    for (long k = z - 1; k <= z + 1; ++k)
+      for (long j = y - 1; j <= y + 1; ++j)
+        for (long i = x - 1; i <= x + 1; ++i)
+          if (const auto found = cells_.find({i, j, k}); found != cells_.end())
+            for (const glm::dvec3& q : found->second) least = std::min(least, glm::distance(p_mm, q));
+    return least;
+  }
+
+ private:
+  using Cell = std::tuple<long, long, long>;
+  Cell cell_of(const glm::dvec3& p_mm) const {
+    const glm::dvec3 cell = glm::floor(p_mm / cell_mm_);
+    return {static_cast<long>(cell.x), static_cast<long>(cell.y), static_cast<long>(cell.z)};
+  }
+  double cell_mm_;
+  std::map<Cell, std::vector<glm::dvec3>> cells_;
+};
+
+/// The points along the scan's border, no further apart than a tenth of the border's width.
+NearPoints border_of(const Mesh& scan, double width_mm) {
+  NearPoints border(width_mm);
+  for (const auto edge : scan.edges()) {
+    if (!scan.is_boundary(edge)) continue;
+    const auto side = scan.halfedge_handle(edge, 0);
+    const Mesh::Point &a = scan.point(scan.from_vertex_handle(side)),
+                      &b = scan.point(scan.to_vertex_handle(side));
+    const int steps = 1 + static_cast<int>((b - a).norm() / (0.1 * width_mm));
+    for (int i = 0; i <= steps; ++i) {
+      const Mesh::Point p = a + (b - a) * (double(i) / steps);
+      border.add({p[0], p[1], p[2]});
+    }
+  }
+  return border;
+}
+
+/// The triangles of the scan that have a point no deeper than `depth_mm`.
+Triangles down_to(const Mesh& scan, const ScanBlendOptions& options, double depth_mm) {
+  Triangles part = triangles_of(scan);
+  const auto is_deep = [&](std::uint32_t i) {
+    return glm::dot(part.points_mm[i], options.to_roots) - options.tips_mm > depth_mm;
+  };
+  std::erase_if(part.faces, [&](const auto& face) { return std::all_of(face.begin(), face.end(), is_deep); });
+  return part;
+}
+
+/// Normals at points, weighted by area and averaged once over neighbours: noise turns small triangles over, whose
+/// own normals would put points on the wrong side.
+std::vector<glm::dvec3> smooth_normals(const Triangles& surface) {
+  std::vector<glm::dvec3> normals(surface.points_mm.size(), glm::dvec3(0.0));
+  for (const auto& [a, b, c] : surface.faces) {
+    const glm::dvec3 normal =
+        glm::cross(surface.points_mm[b] - surface.points_mm[a], surface.points_mm[c] - surface.points_mm[a]);
+    for (const std::uint32_t corner : {a, b, c}) normals[corner] += normal;
+  }
+  std::vector<glm::dvec3> smooth = normals;
+  for (const auto& [a, b, c] : surface.faces) {
+    const glm::dvec3 sum = normals[a] + normals[b] + normals[c];
+    for (const std::uint32_t corner : {a, b, c}) smooth[corner] += sum;
+  }
+  return smooth;
+}
+
+/// The scan's distance and weight at a point.
+struct Mixed {
+  double scan_mm = 0.0, weight = 0.0;
+};
+
+class Weight {
+ public:
+  Weight(const Mesh& scan, const ScanBlendOptions& options)
+      : options_(options),
+        far_mm_(options.reach_mm + options.blend_mm),
+        border_(border_of(scan, options.blend_mm)),
+        scan_(down_to(scan, options, options.depth_mm + 2.0 * far_mm_)),
+        normals_(smooth_normals(scan_)),
+        tree_(scan_) {}
+
+  double far_mm() const { return far_mm_; }
+
+  /// How far a point lies within the depth and the chosen crowns.
+  double within_mm(const glm::dvec3& p_mm) const {
+    double within = options_.depth_mm + options_.tips_mm - glm::dot(p_mm, options_.to_roots);
+    if (options_.about_mm.empty()) return within;
+    double chosen = -std::numeric_limits<double>::infinity();
+    for (const glm::dvec3& q : options_.about_mm)
+      chosen = std::max(chosen, options_.radius_mm - glm::distance(p_mm, q));
+    return std::min(within, chosen);
+  }
+
+  std::vector<Mixed> at(const std::vector<glm::dvec3>& points_mm) const {
+    const std::vector<Foot> feet = tree_.feet(points_mm);
+    std::vector<Mixed> mixed(points_mm.size());
+    for (std::size_t i = 0; i < points_mm.size(); ++i) {
+      const Foot& foot = feet[i];
+      const double within = std::min(within_mm(points_mm[i]), far_mm_ - foot.distance_mm);
+      if (within <= 0.0) continue;
+      const auto& face = scan_.faces[foot.face];
+      const glm::dvec3 normal = foot.weights.x * normals_[face[0]] + foot.weights.y * normals_[face[1]] +
+                                foot.weights.z * normals_[face[2]];
+      const bool is_inside = glm::dot(points_mm[i] - foot.p_mm, normal) < 0.0;
+      const double share =
+          std::clamp(std::min(within, border_.distance_mm(foot.p_mm)) / options_.blend_mm, 0.0, 1.0);
+      mixed[i] = {is_inside ? -foot.distance_mm : foot.distance_mm, share * share * (3.0 - 2.0 * share)};
+    }
+    return mixed;
+  }
+
+ private:
+  const ScanBlendOptions& options_;
+  double far_mm_;
+  NearPoints border_;
+  Triangles scan_;
+  std::vector<glm::dvec3> normals_;
+  SurfaceTree tree_;
+};
+
+/// A box that is turned against all axes, so that no plane of a cut lies in its sides.
+struct TurnedBox {
+  glm::dvec3 right, up, look, low{0.0}, high{0.0};
+
+  TurnedBox(const glm::dvec3& to_roots, const std::vector<glm::dvec3>& points_mm, double margin_mm) {
+    look = glm::normalize(to_roots + glm::dvec3(0.0123, 0.0217, 0.0171));
+    const glm::dvec3 beside = std::abs(look.x) < 0.6 ? glm::dvec3(1, 0.031, 0) : glm::dvec3(0.031, 1, 0);
+    up = glm::normalize(glm::cross(look, beside));
+    right = glm::cross(look, up);
+    low = glm::dvec3(std::numeric_limits<double>::infinity());
+    high = -low;
+    for (const glm::dvec3& p : points_mm) {
+      low = glm::min(low, in_box(p));
+      high = glm::max(high, in_box(p));
+    }
+    low -= margin_mm;
+    high += margin_mm;
+  }
+  glm::dvec3 in_box(const glm::dvec3& p) const {
+    return {glm::dot(p, right), glm::dot(p, up), glm::dot(p, look)};
+  }
+  /// Negative inside; exact inside, and at most the distance outside.
+  double distance_mm(const glm::dvec3& p) const {
+    const glm::dvec3 q = in_box(p), beyond = glm::max(low - q, q - high);
+    return std::max({beyond.x, beyond.y, beyond.z});
+  }
+  Size size() const {
+    Size size{.low_mm = glm::dvec3(std::numeric_limits<double>::infinity()), .high_mm = {}};
+    size.high_mm = -size.low_mm;
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::dvec3 q((corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
+                         (corner & 4) != 0 ? high.z : low.z);
+      const glm::dvec3 p = right * q.x + up * q.y + look * q.z;
+      size.low_mm = glm::min(size.low_mm, p);
+      size.high_mm = glm::max(size.high_mm, p);
+    }
+    return size;
+  }
+  Solid solid(double inset_mm) const {
+    const glm::dvec3 a = low + inset_mm, b = high - inset_mm;
+    return solid_of(Prism{look, up, right, {{{a.x, a.y}, {b.x, a.y}, {b.x, b.y}, {a.x, b.y}}}, a.z, b.z});
+  }
+};
+
+/// The mixed distances, which end at the walls of the box. Within `strip_mm` of the walls the surface lies
+/// `inset_mm` within the solid's.
+class MixedField {
+ public:
+  MixedField(const Solid& solid, const Weight& weight, const TurnedBox& box, double strip_mm, double inset_mm)
+      : solid_(solid), weight_(weight), box_(box), strip_mm_(strip_mm), inset_mm_(inset_mm) {}
+
+  std::vector<double> at(const std::vector<glm::dvec3>& points_mm) const {
+    const double far_mm = weight_.far_mm();
+    std::vector<double> values(points_mm.size());
+    std::vector<std::size_t> inside;
+    std::vector<glm::dvec3> inside_mm;
+    for (std::size_t i = 0; i < points_mm.size(); ++i) {
+      values[i] = box_.distance_mm(points_mm[i]);
+      if (values[i] >= far_mm) continue;
+      inside.push_back(i);
+      inside_mm.push_back(points_mm[i]);
+    }
+    if (inside.empty()) return values;
+    std::vector<std::uint32_t> nearest(inside.size(), SurfaceTree::unknown_triangle);
+    const std::vector<double> solid_mm = solid_.tree().signed_distances_mm(inside_mm, nearest);
+    const std::vector<Mixed> mixed = weight_.at(inside_mm);
+    for (std::size_t k = 0; k < inside.size(); ++k) {
+      const double kept_mm = std::clamp(solid_mm[k], -far_mm, far_mm);
+      const double value = kept_mm + mixed[k].weight * (mixed[k].scan_mm - kept_mm);
+      double& at = values[inside[k]];
+      at = std::max(at, value + inset_mm_ * std::clamp(1.0 + at / strip_mm_, 0.0, 1.0));
+    }
+    return values;
+  }
+
+ private:
+  const Solid& solid_;
+  const Weight& weight_;
+  const TurnedBox& box_;
+  double strip_mm_, inset_mm_;
+};
+
+/// The field's values at the points of a lattice about the box, x fastest. Blocks of points that lie farther from
+/// the surface than their size have the value of their middle: only its sign counts there.
+struct LatticeValues {
+  glm::dvec3 origin_mm{0.0};
+  double step_mm = 1.0;
+  glm::ivec3 dims{0};
+  std::vector<double> values;
+
+  glm::dvec3 at_mm(const glm::dvec3& place) const { return origin_mm + step_mm * place; }
+  std::size_t index(const LatticePoint& p) const {
+    return static_cast<std::size_t>(p.x) +
+           static_cast<std::size_t>(dims.x) *
+               (static_cast<std::size_t>(p.y) +
+                static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(p.z));
+  }
+};
+
+LatticeValues values_about(const Size& size, const MixedField& field, double steepness,
+                           const ScanBlendOptions& options) {
+  constexpr int block = 4;
+  LatticeValues lattice;
+  lattice.step_mm = options.cell_mm;
+  // Irregular shares of a cell keep the lattice off planes at round coordinates.
+  lattice.origin_mm = size.low_mm - options.cell_mm * glm::dvec3(1.2718281828, 1.3141592653, 1.1414213562);
+  const glm::ivec3 blocks = glm::ivec3(
+      glm::ceil((size.high_mm + 2.0 * options.cell_mm - lattice.origin_mm) / (block * options.cell_mm)));
+  constexpr double most_blocks = double(1 << 21);
+  if (double(blocks.x) * blocks.y * blocks.z > most_blocks)
+    throw TooLarge("cells of " + std::to_string(options.cell_mm) +
+                   " mm are too small for the crowns of this scan");
+  lattice.dims = block * blocks;
+  std::vector<LatticePoint> lowest;
+  std::vector<glm::dvec3> middles_mm;
+  for (int z = 0; z < blocks.z; ++z)
+    for (int y = 0; y < blocks.y; ++y)
+      for (int x = 0; x < blocks.x; ++x) {
+        lowest.emplace_back(block * LatticePoint(x, y, z));
+        middles_mm.push_back(lattice.at_mm(glm::dvec3(lowest.back()) + 0.5 * (block - 1)));
+      }
+  const std::vector<double> at_middles = field.at(middles_mm);
+  options.progress.at(0.2);
+  lattice.values.resize(static_cast<std::size_t>(lattice.dims.x) * static_cast<std::size_t>(lattice.dims.y) *
+                        static_cast<std::size_t>(lattice.dims.z));
+  // From a block's middle to a cell beyond its farthest point.
+  const double reach_mm = steepness * options.cell_mm * (0.5 * std::sqrt(3.0) * (block - 1) + 1.0);
+  std::vector<std::size_t> numbers;
+  std::vector<glm::dvec3> points_mm;
+  for (std::size_t i = 0; i < lowest.size(); ++i)
+    for (int k = 0; k < block * block * block; ++k) {
+      const LatticePoint p = lowest[i] + LatticePoint(k % block, k / block % block, k / (block * block));
+      lattice.values[lattice.index(p)] = at_middles[i];
+      if (std::abs(at_middles[i]) > reach_mm) continue;
+      numbers.push_back(lattice.index(p));
+      points_mm.push_back(lattice.at_mm(glm::dvec3(p)));
+    }
+  const std::vector<double> values = field.at(points_mm);
+  for (std::size_t k = 0; k < numbers.size(); ++k) lattice.values[numbers[k]] = values[k];
+  options.progress.at(0.6);
+  return lattice;
+}
+
+/// The surface between lattice points inside and outside. It is closed whatever the values are.
+Solid surface_of(const LatticeValues& lattice) {
+  std::vector<EdgeTriangle> triangles;
+  for (int z = 0; z + 1 < lattice.dims.z; ++z)
+    for (int y = 0; y + 1 < lattice.dims.y; ++y)
+      for (int x = 0; x + 1 < lattice.dims.x; ++x) {
+        std::array<double, 8> corners{};
+        int inside = 0;
+        for (int corner = 0; corner < 8; ++corner) {
+          const double value = lattice.values[lattice.index(LatticePoint(x, y, z) + corner_place(corner))];
+          corners[static_cast<std::size_t>(corner)] = value;
+          inside += value < 0.0 ? 1 : 0;
+        }
+        if (inside != 0 && inside != 8) add_triangles({x, y, z}, corners, triangles);
+      }
+  const std::vector<LatticeEdge> edges = edges_of(triangles);
+  Triangles surface;
+  surface.faces = numbered(triangles, edges);
+  for (const LatticeEdge& edge : edges) {
+    const LatticePoint from = place_of(edge.from()), to = from + corner_place(edge.along());
+    const double a = lattice.values[lattice.index(from)], b = lattice.values[lattice.index(to)];
+    const double share = std::clamp(a / (a - b), nearest_end, 1.0 - nearest_end);
+    surface.points_mm.push_back(lattice.at_mm(glm::mix(glm::dvec3(from), glm::dvec3(to), share)));
+  }
+  return trusted_solid(std::move(surface), Proof::Construction);
+}
+
+/// Where the nearest point of the scan jumps, mixed distances do, too, and leave specks. They are taken out.
+Solid without_specks(const Solid& solid, ScanBlend& made) {
+  constexpr double least_mm3 = 2.0;
+  const std::vector<Component>& parts = solid.components();
+  std::vector<std::uint32_t> kept;
+  std::size_t specks = 0;
+  for (const Component& part : parts) {
+    if (std::abs(part.volume_mm3) < least_mm3)
+      ++specks;
+    else
+      kept.insert(kept.end(), part.faces.begin(), part.faces.end());
+  }
+  if (specks == 0) return solid;
+  made.findings.push_back(std::to_string(specks) + " specks of less than " + short_text(least_mm3) +
+                          " mm³ at the border of the scan are left out");
+  std::sort(kept.begin(), kept.end());
+  return trusted_solid(part_of(solid.mesh(), kept), proof_of_part(solid.proof()));
+}
+
+/// The area of the surface by its source, and the largest distance of the scan's part from the solid before.
+void find_sources(const Solid& before, const Weight& weight, const TurnedBox& box, ScanBlend& made) {
+  const Triangles& surface = made.solid.triangles();
+  std::vector<glm::dvec3> middles_mm;
+  std::vector<double> areas_mm2;
+  for (const auto& [a, b, c] : surface.faces) {
+    const glm::dvec3 &p = surface.points_mm[a], &q = surface.points_mm[b], &r = surface.points_mm[c];
+    const double area_mm2 = 0.5 * glm::length(glm::cross(q - p, r - p));
+    const glm::dvec3 middle_mm = (p + q + r) / 3.0;
+    if (box.distance_mm(middle_mm) > 0.0) {
+      made.sources.solid_mm2 += area_mm2;
+      continue;
+    }
+    middles_mm.push_back(middle_mm);
+    areas_mm2.push_back(area_mm2);
+  }
+  const std::vector<Mixed> mixed = weight.at(middles_mm);
+  std::vector<glm::dvec3> of_scan_mm;
+  for (std::size_t i = 0; i < mixed.size(); ++i) {
+    double& area_mm2 = mixed[i].weight >= 1.0  ? made.sources.scan_mm2
+                       : mixed[i].weight > 0.0 ? made.sources.border_mm2
+                                               : made.sources.solid_mm2;
+    area_mm2 += areas_mm2[i];
+    if (mixed[i].weight >= 1.0) of_scan_mm.push_back(middles_mm[i]);
+  }
+  if (of_scan_mm.empty()) return;
+  const std::vector<double> moves_mm = before.tree().distances_mm(of_scan_mm);
+  made.largest_move_mm = *std::max_element(moves_mm.begin(), moves_mm.end());
+}
+
+void check(const Solid& solid, const ScanBlendOptions& options) {
+  if (solid.empty()) throw InvalidInput("an empty solid has no crowns");
+  for (const double mm :
+       {options.depth_mm, options.blend_mm, options.reach_mm, options.radius_mm, options.cell_mm})
+    if (!(mm > 0.0) || !std::isfinite(mm))
+      throw InvalidInput("depth, border, reach, radius and cells of a scan's crowns are above 0 mm");
+}
+
+/// How much faster than places the mixed distances may change: for half of the reach, as only streaks lie farther
+/// from the scan.
+double steepness_of(const ScanBlendOptions& options) {
+  return 1.0 + 0.75 * options.reach_mm / options.blend_mm;
+}
+
+}  // namespace
+
+double scan_blend_allowance_mm(const ScanBlendOptions& options) {
+  return 0.5 * options.cell_mm;
+}
+
+ScanBlend blended_with_scan(const Solid& solid, const Mesh& scan, const ScanBlendOptions& options) {
+  check(solid, options);
+  const Weight weight(scan, options);
+  std::vector<glm::dvec3> crowns_mm;
+  for (const auto v : scan.vertices()) {
+    const Mesh::Point& p = scan.point(v);
+    if (const glm::dvec3 at(p[0], p[1], p[2]); weight.within_mm(at) > 0.0) crowns_mm.push_back(at);
+  }
+  if (crowns_mm.empty())
+    throw Error(
+        ErrorCode::Geometry,
+        "the scan shows none of the crowns that it is to replace: give points on crowns that it shows");
+  const double strip_mm = 2.0 * options.cell_mm, inset_mm = options.cell_mm / 8.0;
+  const TurnedBox box(options.to_roots, crowns_mm, weight.far_mm() + 2.0 * strip_mm);
+  ScanBlend made;
+  const MixedField field(solid, weight, box, strip_mm, inset_mm);
+  const Solid anew =
+      without_specks(surface_of(values_about(box.size(), field, steepness_of(options), options)), made);
+  const BooleanResult rest =
+      boolean(solid, Operation::Difference, box.solid(strip_mm), options.progress.stop);
+  if (rest.solid.empty()) {
+    made.solid = anew;
+  } else {
+    const BooleanResult united = boolean(rest.solid, Operation::Union, anew, options.progress.stop);
+    made.solid = united.solid;
+    made.shift_mm = rest.shift_mm + united.shift_mm;
+    made.findings.insert(made.findings.end(), rest.findings.begin(), rest.findings.end());
+    made.findings.insert(made.findings.end(), united.findings.begin(), united.findings.end());
+  }
+  find_sources(solid, weight, box, made);
+  return made;
+}
+
+}  // namespace octotomy::brep

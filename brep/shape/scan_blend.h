@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "brep/mesh/mesh.h"
+#include "brep/mesh/progress.h"
+#include "brep/mesh/solid.h"
+
+namespace octotomy::brep {
+
+/// Which crowns a scan replaces, and how. LPS millimetres.
+struct ScanBlendOptions {
+  glm::dvec3 to_roots{0, 0, 1};  ///< unit, from the tips of the teeth to their roots
+  double tips_mm = 0.0;          ///< p . to_roots of the tips
+  double depth_mm = 5.0;         ///< crowns are replaced from the tips to this depth, above 0
+  /// Along this width the surface changes from the scan's to the solid's: at the depth, at the scan's borders
+  /// and holes, and at `radius_mm`. Above 0.
+  double blend_mm = 1.5;
+  /// What the solid has within this distance of the scan is replaced, above 0. Streaks that stick out farther stay.
+  double reach_mm = 1.5;
+  std::vector<glm::dvec3> about_mm =
+      {};                  ///< only within `radius_mm` of these; empty: all that the scan shows
+  double radius_mm = 6.0;  ///< above 0
+  double cell_mm = 0.5;    ///< of the new triangles; sharp edges are cut off within half of it
+  Progress progress = {};
+};
+
+/// Where the surface comes from, mm².
+struct SurfaceSources {
+  double scan_mm2 = 0.0, border_mm2 = 0.0, solid_mm2 = 0.0;
+};
+
+struct ScanBlend {
+  Solid solid;
+  SurfaceSources sources;
+  double largest_move_mm = 0.0;  ///< of the scan's part, from the surface before
+  double shift_mm = 0.0;         ///< as in BooleanResult
+  std::vector<std::string> findings;
+};
+
+/// How far the new triangles may lie from the surface that they stand for: what sharp edges lose, and what flat
+/// parts deviate by.
+double scan_blend_allowance_mm(const ScanBlendOptions& options);
+
+/// The solid with the surface of an open scan that lies on it. Between both, distances are mixed with a weight that
+/// changes smoothly along `blend_mm`, so that the border is smooth. Near the crowns the surface is made anew from
+/// distances; elsewhere the triangles stay. Where the solid passes the box about the crowns
+/// there is a step of up to a quarter of a cell. Throws std::invalid_argument if an option is out of its range;
+/// Error (Geometry) if the scan shows none of the crowns; as boolean(); Stopped. The same bits on
+/// any number of threads. Cost: two distances for each cell near the surface in the
+/// box of the crowns, and two Booleans.
+ScanBlend blended_with_scan(const Solid& solid, const Mesh& scan, const ScanBlendOptions& options);
+
+}  // namespace octotomy::brep

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "brep/mesh/triangles.h"
+
+namespace octotomy::verify {
+
+/// How the head phantom's teeth are scanned from within the mouth.
+struct ToothScanPhantomOptions {
+  bool is_upper = true;
+  double spacing_mm = 0.3;  ///< between the scan's points, about
+  double noise_mm = 0.05;   ///< standard deviation of each point along its normal
+  /// The displacement of the arch's ends, in a direction by chance across the arch; the middle keeps its place.
+  double bend_mm = 0.1;
+  int holes = 8;  ///< round, with a radius of 0.7 to 2 mm
+  /// The standard deviation of `points_mm` along each axis, as points placed by hand are off.
+  double hand_mm = 0.4;
+  std::uint64_t seed = 1;
+};
+
+/// An open scan of one row of teeth with some of the gum, in a pose by chance.
+struct ToothScanPhantom {
+  brep::Triangles scan;
+  /// The same points on the closed form of teeth and gum, LPS millimetres: where they would be without noise,
+  /// bend and pose.
+  std::vector<glm::dvec3> truth_mm;
+  glm::dmat4 lps_from_scan{1.0};  ///< the pose
+  /// Seven places on biting surfaces along the arch, from the right to the left, in the scan's frame and in LPS.
+  /// Both are off by chance.
+  std::vector<glm::dvec3> scan_points_mm, points_mm;
+};
+
+/// The gum lies 1.2 mm before the bone, and reaches up to 10 mm from the tips. Throws std::invalid_argument if
+/// the spacing is not above 0. The same bits on any number of threads. Cost: a second of processor time for a
+/// row, the first call of a row and a spacing only.
+ToothScanPhantom tooth_scan_phantom(const ToothScanPhantomOptions& options = {});
+
+}  // namespace octotomy::verify

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// A point is the scan's if its nearest point on the scan, the point itself and its distance are within every limit by
+// more than the border's width; it is the object's if it is beyond one of them. Limits are read with a slack of what
+// a right answer may be off by. The scan's side of a point is that of the normals of the triangle's corners,
+// interpolated at the nearest point; where that is nearly square to the line to the point, it decides nothing.
+#include "verify/witness/scan_blend_witness.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "verify/witness/reshaped_witness.h"
+#include "verify/witness/triangle_grid.h"
+
+namespace octotomy::verify {
+namespace {
+
+class ScanBlendReader {
+ public:
+  ScanBlendReader(Witness object, WitnessedScan asked)
+      : object_(std::move(object)), asked_(std::move(asked)), grid_(asked_.scan) {
+    find_normals();
+    find_border();
+  }
+
+  Reading operator()(const glm::dvec3& p_mm, double slack_mm, ReadingNeeds) const {
+    const double slack = asked_.apart_mm + slack_mm + rounded_mm(p_mm),
+                 far_mm = asked_.reach_mm + asked_.blend_mm;
+    const double within = limit_mm(p_mm);
+    std::optional<TriangleGrid::Foot> foot;
+    if (within > -slack) foot = grid_.nearest(p_mm, far_mm + slack);
+    if (!foot) return of_object(p_mm, slack);
+    const glm::dvec3 foot_mm = at(*foot, asked_.scan.points_mm);
+    const double least = std::min({within, far_mm - foot->distance_mm, border_distance_mm(foot_mm)});
+    if (least <= -slack || (is_on_border(*foot) && foot->distance_mm > 2.0 * slack))
+      return of_object(p_mm, slack);
+    const AllowedSides of_scan = scan_sides(p_mm, *foot, foot_mm, slack);
+    if (least > asked_.blend_mm + slack) return {of_scan, of_scan, of_scan.near ? 2 : 0};
+    const Reading object = of_object(p_mm, slack);
+    if (object.mesh == of_scan) return object;
+    // Mixed distances lie between both: no surface is near where both decide alike.
+    return {on_surface, on_surface, 2};
+  }
+
+ private:
+  static glm::dvec3 through(const std::array<std::uint32_t, 3>& face, const glm::dvec3& weights,
+                            const std::vector<glm::dvec3>& values) {
+    return weights.x * values[face[0]] + weights.y * values[face[1]] + weights.z * values[face[2]];
+  }
+  glm::dvec3 at(const TriangleGrid::Foot& foot, const std::vector<glm::dvec3>& values) const {
+    return through(asked_.scan.faces[foot.face], foot.weights, values);
+  }
+
+  /// Weighted by area and summed over all triangles that share a corner with those at a point, so that small
+  /// triangles that noise turned over do not count.
+  void find_normals() {
+    const std::vector<glm::dvec3>& points = asked_.scan.points_mm;
+    std::vector<glm::dvec3> own(points.size(), glm::dvec3(0.0));
+    const auto add = [&](std::vector<glm::dvec3>& to, const auto& value_of) {
+      for (std::size_t i = 0; i < asked_.scan.faces.size(); ++i)
+        for (const std::uint32_t corner : asked_.scan.faces[i]) to[corner] += value_of(asked_.scan.faces[i]);
+    };
+    add(own, [&](const auto& face) {
+      return glm::cross(points[face[1]] - points[face[0]], points[face[2]] - points[face[0]]);
+    });
+    normals_.assign(points.size(), glm::dvec3(0.0));
+    add(normals_, [&](const auto& face) { return own[face[0]] + own[face[1]] + own[face[2]]; });
+  }
+
+  /// Edges of one triangle only.
+  void find_border() {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> count;
+    for (const auto& face : asked_.scan.faces)
+      for (std::size_t k = 0; k < 3; ++k) ++count[std::minmax(face[k], face[(k + 1) % 3])];
+    is_border_.assign(asked_.scan.points_mm.size(), false);
+    std::vector<BoxGrid::Box> boxes;
+    for (const auto& [edge, triangles] : count) {
+      if (triangles != 1) continue;
+      is_border_[edge.first] = is_border_[edge.second] = true;
+      const glm::dvec3 &a = asked_.scan.points_mm[edge.first], &b = asked_.scan.points_mm[edge.second];
+      edges_.push_back({a, b});
+      boxes.push_back({glm::min(a, b), glm::max(a, b)});
+    }
+    border_ = BoxGrid(boxes, asked_.blend_mm);
+  }
+
+  /// At most the width of two borders.
+  double border_distance_mm(const glm::dvec3& p_mm) const {
+    const double most = 2.0 * asked_.blend_mm;
+    double least = most;
+    if (border_.empty()) return least;
+    const glm::ivec3 low = glm::max(border_.cell_of(p_mm - most), glm::ivec3(0)),
+                     high = glm::min(border_.cell_of(p_mm + most), border_.dims() - 1);
+    for (int z = low.z; z <= high.z; ++z)
+      for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x)
+          border_.any_in({x, y, z}, [&](std::uint32_t i) {
+            const auto& [a, b] = edges_[i];
+            const glm::dvec3 along = b - a;
+            const double squared = glm::dot(along, along);
+            const double share =
+                squared > 0.0 ? std::clamp(glm::dot(p_mm - a, along) / squared, 0.0, 1.0) : 0.0;
+            least = std::min(least, glm::distance(p_mm, a + share * along));
+            return false;
+          });
+    return least;
+  }
+
+  bool is_on_border(const TriangleGrid::Foot& foot) const {
+    const auto& face = asked_.scan.faces[foot.face];
+    for (std::size_t k = 0; k < 3; ++k)
+      if (foot.weights[static_cast<int>(k)] > 1e-9 && !is_border_[face[k]]) return false;
+    return border_distance_mm(at(foot, asked_.scan.points_mm)) < 1e-6;
+  }
+
+  double limit_mm(const glm::dvec3& p_mm) const {
+    const double within = asked_.depth_mm + asked_.tips_mm - glm::dot(p_mm, asked_.to_roots);
+    if (asked_.about_mm.empty()) return within;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const glm::dvec3& q : asked_.about_mm) nearest = std::min(nearest, glm::distance(p_mm, q));
+    return std::min(within, asked_.radius_mm - nearest);
+  }
+
+  Reading of_object(const glm::dvec3& p_mm, double slack) const {
+    Reading reading = object_(p_mm, slack, ReadingNeeds::MeshOnly);
+    reading.voxel = reading.mesh;
+    if (reading.mesh.near) reading.surfaces = 2;
+    return reading;
+  }
+
+  AllowedSides scan_sides(const glm::dvec3& p_mm, const TriangleGrid::Foot& foot, const glm::dvec3& foot_mm,
+                          double slack) const {
+    if (foot.distance_mm <= slack) return on_surface;
+    const glm::dvec3 normal = at(foot, normals_);
+    const double along = glm::dot(p_mm - foot_mm, normal), whole = foot.distance_mm * glm::length(normal);
+    constexpr double nearly_square = 0.1;
+    if (std::abs(along) <= nearly_square * whole) return either_side;
+    // No surface is as near as the slack, so that the side changes there only where the scan crosses itself, as noise
+    // makes it between neighbouring teeth.
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double sign : {-1.0, 1.0}) {
+        glm::dvec3 beside_mm = p_mm;
+        beside_mm[axis] += sign * slack;
+        const auto other = grid_.nearest(beside_mm, foot.distance_mm + 2.0 * slack);
+        if (!other) continue;
+        const glm::dvec3 apart = beside_mm - at(*other, asked_.scan.points_mm);
+        if (glm::dot(apart, at(*other, normals_)) * along < 0.0) return either_side;
+      }
+    return along < 0.0 ? certainly_in : certainly_out;
+  }
+
+  Witness object_;
+  WitnessedScan asked_;
+  TriangleGrid grid_;
+  std::vector<glm::dvec3> normals_;  ///< at points
+  std::vector<bool> is_border_;
+  std::vector<std::pair<glm::dvec3, glm::dvec3>> edges_;
+  BoxGrid border_;
+};
+
+/// Witnesses are copied; the scan is shared.
+struct SharedReader {
+  std::shared_ptr<const ScanBlendReader> reader;
+
+  Reading operator()(const glm::dvec3& p_mm, double slack_mm, ReadingNeeds needs) const {
+    return (*reader)(p_mm, slack_mm, needs);
+  }
+};
+
+}  // namespace
+
+Witness witness_of_scan_blend(Witness object, WitnessedScan asked) {
+  if (!object) return {};
+  std::vector<PartChoice> choices = object.choices();
+  return Witness(SharedReader{std::make_shared<const ScanBlendReader>(std::move(object), std::move(asked))})
+      .with_choices(std::move(choices));
+}
+
+bool is_scan_blend(const Witness& witness) {
+  return witness.reader<SharedReader>() != nullptr;
+}
+
+}  // namespace octotomy::verify

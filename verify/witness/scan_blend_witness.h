@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "brep/mesh/triangles.h"
+#include "verify/witness/reading.h"
+
+namespace octotomy::verify {
+
+/// The numbers of a step that replaces crowns by those of a scan, as brep::ScanBlendOptions has them, LPS mm.
+struct WitnessedScan {
+  brep::Triangles scan;  ///< open, wound outward, where it was laid
+  glm::dvec3 to_roots{0, 0, 1};
+  double tips_mm = 0.0, depth_mm = 0.0, blend_mm = 1.0, reach_mm = 1.0;
+  std::vector<glm::dvec3> about_mm = {};
+  double radius_mm = 0.0;
+  double apart_mm = 0.0;  ///< how far a right answer's surface may lie from the scan's, and from the object's
+};
+
+/// The object with the scan's surface on its crowns. Where only the scan counts, the side of the scan's triangles
+/// decides; where only the object counts, its own witness does. Between both, along the border, both sides are
+/// allowed where the two differ. Both kernels' sides are the same, because voxels are digitised triangles. Empty if
+/// the object has no witness. Cost of a reading: some triangles, and the object's reading where it counts.
+Witness witness_of_scan_blend(Witness object, WitnessedScan asked);
+
+/// Whether a witness is one of these, and not a Boolean or a motion of others.
+bool is_scan_blend(const Witness& witness);
+
+}  // namespace octotomy::verify
