@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "convert/tet/element_faces.h"
+#include "convert/tet/split_sides.h"
 #include "voxel/space/rounded.h"
 
 namespace octotomy::convert {
@@ -70,22 +71,6 @@ const LabelPlane* plane_of(const std::vector<LabelPlane>& planes, const Interfac
                        static_cast<std::uint8_t>(between.to + 1));
 }
 
-/// By node, the elements that have it.
-std::vector<std::vector<std::uint32_t>> elements_about(const Tetrahedra& made) {
-  std::vector<std::vector<std::uint32_t>> about(made.nodes_mm.size());
-  for (std::uint32_t t = 0; t < made.tets.size(); ++t)
-    for (const std::uint32_t v : made.tets[t]) about[v].push_back(t);
-  return about;
-}
-
-bool is_fit(const TetCorners& corners_mm, double least_deg) {
-  if (!(six_volumes(corners_mm) > 0.0)) return false;
-  Tetrahedra alone;
-  alone.nodes_mm.assign(corners_mm.begin(), corners_mm.end());
-  alone.tets = {{0, 1, 2, 3}};
-  return quality(alone).min_dihedral_deg >= least_deg;
-}
-
 /// By node, 1 if elements of the plane's lower region have it, and 2 if elements of its higher region do.
 std::vector<std::uint8_t> touched(const Tetrahedra& made, const LabelPlane& plane) {
   std::vector<std::uint8_t> touches(made.nodes_mm.size(), 0);
@@ -138,48 +123,6 @@ std::optional<InterfacePlane> plane_of_most(const Tetrahedra& made, const Interf
   return fitted_plane(points_mm, *best, near_mm);
 }
 
-/// Elements whose sides are split one after the other.
-class Splitting {
- public:
-  Splitting(Tetrahedra& made, double least_deg)
-      : made_(made), least_deg_(least_deg), about_(elements_about(made)) {}
-
-  /// Puts a node on a side and divides the elements about the side; false, and nothing changes, if a part would
-  /// be unfit.
-  bool split(std::uint32_t a, std::uint32_t b, const glm::dvec3& at_mm) {
-    std::vector<std::uint32_t> halved;
-    for (const std::uint32_t t : about_[a])
-      if (std::find(made_.tets[t].begin(), made_.tets[t].end(), b) != made_.tets[t].end())
-        halved.push_back(t);
-    for (const std::uint32_t t : halved)
-      for (const std::uint32_t end : {a, b}) {
-        TetCorners part_mm = corners_mm(made_, t);
-        for (std::size_t k = 0; k < 4; ++k)
-          if (made_.tets[t][k] == end) part_mm[k] = at_mm;
-        if (!is_fit(part_mm, least_deg_)) return false;
-      }
-    const auto middle = static_cast<std::uint32_t>(made_.nodes_mm.size());
-    made_.nodes_mm.push_back(at_mm);
-    about_.emplace_back();
-    for (const std::uint32_t t : halved) {
-      const auto other = static_cast<std::uint32_t>(made_.tets.size());
-      made_.tets.push_back(made_.tets[t]);
-      made_.region_of_tet.push_back(made_.region_of_tet[t]);
-      std::replace(made_.tets[t].begin(), made_.tets[t].end(), b, middle);
-      std::replace(made_.tets[other].begin(), made_.tets[other].end(), a, middle);
-      about_[middle].push_back(t);
-      std::erase(about_[b], t);
-      for (const std::uint32_t v : made_.tets[other]) about_[v].push_back(other);
-    }
-    return true;
-  }
-
- private:
-  Tetrahedra& made_;
-  double least_deg_;
-  std::vector<std::vector<std::uint32_t>> about_;
-};
-
 }  // namespace
 
 void divide_by_planes(Tetrahedra& made, const std::vector<LabelPlane>& planes) {
@@ -220,7 +163,7 @@ std::size_t split_at_planes(Tetrahedra& made, const FlatInterfaceOptions& option
   // Nodes that were put on a plane are off it by rounding alone.
   const double rounding_mm = 1e-6 * options.voxel_mm;
   const std::size_t before = made.nodes_mm.size();
-  Splitting splitting(made, options.least_deg);
+  SideSplitter splitter(made, options.least_deg);
   for (const LabelPlane& plane : options.planes) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> sides;
     for (const std::uint32_t t : elements_at(made, plane))
@@ -236,7 +179,7 @@ std::size_t split_at_planes(Tetrahedra& made, const FlatInterfaceOptions& option
       const glm::dvec3 &p = made.nodes_mm[a], &q = made.nodes_mm[b];
       const double p_mm = plane.away_mm(p), q_mm = plane.away_mm(q);
       const glm::dvec3 at_mm = p + p_mm / (p_mm - q_mm) * (q - p);
-      splitting.split(a, b, at_mm);
+      splitter.split(a, b, at_mm);
     }
   }
   divide_by_planes(made, options.planes);

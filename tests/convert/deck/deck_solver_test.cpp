@@ -7,14 +7,11 @@
 #include <fstream>
 #include <functional>
 #include <gtest/gtest.h>
-#include <sstream>
-#include <stdexcept>
 
 #include "convert/deck/calculix_result.h"
 #include "convert/deck/deck.h"
 #include "convert/deck/second_order.h"
 #include "convert/tet/octree_tetrahedra.h"
-#include "convert/tet/region_tetrahedra.h"
 #include "convert/tet/separate_regions.h"
 #include "convert/tet/tetrahedralise.h"
 #include "tests/convert/surfaces.h"
@@ -282,49 +279,6 @@ TEST(DeckSolver, ContactPressesAsSharedNodesDoAndLetsGoWhereTheyPull) {
   EXPECT_NEAR(TwoBlocks(true, -0.06).between_mm(folder), -0.03, 1e-3);
   EXPECT_NEAR(TwoBlocks(false, 0.06).between_mm(folder), 0.03, 1e-4);
   EXPECT_NEAR(TwoBlocks(true, 0.06).between_mm(folder), 0.0, 1e-3);
-}
-
-/// The total reaction of a set of nodes, as CalculiX prints it.
-glm::dvec3 reaction_n(const std::string& printed, const std::string& set) {
-  const std::size_t title = printed.find("total force (fx,fy,fz) for set " + set);
-  if (title == std::string::npos) throw std::runtime_error("no reactions of " + set + " in: " + printed);
-  std::istringstream numbers(printed.substr(printed.find('\n', title)));
-  glm::dvec3 sum;
-  numbers >> sum.x >> sum.y >> sum.z;
-  return sum;
-}
-
-TEST(DeckSolver, FlatSurfacesOfSmoothElementsInContactSlideWithoutForce) {
-  if (!has_program("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
-  voxel::Universe universe;
-  universe.depth = 5;
-  const std::vector<voxel::Octree> blocks{
-      voxel::combine(universe, voxel::Box{{3.5, 3.5, 3.5}, {27.5, 19.5, 11.5}}),
-      voxel::combine(universe, voxel::Box{{3.5, 3.5, 11.5}, {27.5, 19.5, 19.5}})};
-  for (const double size_mm : {1.5, 2.0, 3.0}) {
-    RegionMeshOptions sizes;
-    sizes.size_mm = size_mm;
-    Tetrahedra t = smooth_tetrahedra_of(blocks, sizes);
-    DeckOptions options;
-    const Interface between = interfaces(t).front();
-    options.surfaces = {{"LOWER", between.faces}, {"UPPER", between.opposite}};
-    options.contacts = {{"PAIR", "LOWER", "UPPER"}};
-    t = separate_regions(t);
-    options.node_sets = {{"HELD", {}}, {"MOVED", {}}};
-    for (const std::uint32_t node : t.boundary_nodes) {
-      if (t.nodes_mm[node].z < 3.6) options.node_sets[0].nodes.push_back(node);
-      if (t.nodes_mm[node].z > 19.4) options.node_sets[1].nodes.push_back(node);
-    }
-    options.prescribed = {
-        {"HELD", {}},
-        {"MOVED", std::vector<glm::dvec3>(options.node_sets[1].nodes.size(), {0.05, 0.0, -0.01})}};
-    const ScratchFolder folder;
-    solved_by_ccx(folder, t, options);
-    const glm::dvec3 held_n = reaction_n(tests::bytes_of(folder / "job.dat"), "HELD");
-    EXPECT_GT(held_n.z, 1000.0) << size_mm << " mm: the blocks are pressed together";
-    EXPECT_LT(std::abs(held_n.x), 1e-4 * held_n.z) << size_mm << " mm";
-    EXPECT_LT(std::abs(held_n.y), 1e-4 * held_n.z) << size_mm << " mm";
-  }
 }
 
 TEST(DeckSolver, AFebioDeckHasItsContactPairs) {
