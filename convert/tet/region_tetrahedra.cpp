@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "convert/tet/element_faces.h"
+#include "convert/tet/flat_interfaces.h"
 #include "convert/tet/improve_tetrahedra.h"
 #include "convert/tet/mesher_process.h"
 #include "convert/tet/tetrahedralise.h"
@@ -28,7 +29,7 @@
 //   never ends.
 // 3 The nodes are moved to the patient's frame. Where regions meet in a plane, the nodes along its rim, where
 //   three labels meet, are put on it, because surfaces in contact that are not flat interlock. Then nodes
-//   move to mend flat elements.
+//   move to mend flat elements. Where that leaves nodes off the plane, elements are split at it.
 // 4 The answer counts only if all volumes are positive and each region's is near that of its voxels.
 
 namespace octotomy::convert {
@@ -129,49 +130,6 @@ struct Counted {
   double exposed_mm2 = 0.0;  ///< faces towards other labels
 };
 
-/// A plane by a point and its unit normal.
-struct InterfacePlane {
-  glm::dvec3 on_mm{0.0}, normal{0.0};
-  double away_mm(const glm::dvec3& p_mm) const { return glm::dot(p_mm - on_mm, normal); }
-};
-
-/// The plane of least squares through the points within `near_mm` of it, found by iteration from a first
-/// plane.
-InterfacePlane fitted(const std::vector<glm::dvec3>& points_mm, InterfacePlane plane, double near_mm) {
-  constexpr int rounds = 5;
-  for (int round = 0; round < rounds; ++round) {
-    glm::dvec3 middle_mm(0.0);
-    double count = 0.0;
-    const auto visit_near = [&](const auto& visit) {
-      for (const glm::dvec3& p_mm : points_mm)
-        if (std::abs(plane.away_mm(p_mm)) <= near_mm) visit(p_mm);
-    };
-    visit_near([&](const glm::dvec3& p_mm) {
-      middle_mm += p_mm;
-      count += 1.0;
-    });
-    if (count == 0.0) return plane;
-    middle_mm /= count;
-    // The slopes along two directions of the plane solve a system of two equations.
-    const glm::dvec3 other = std::abs(plane.normal.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-    const glm::dvec3 u = glm::normalize(glm::cross(plane.normal, other)), w = glm::cross(plane.normal, u);
-    glm::dmat2 squares(0.0);
-    glm::dvec2 products(0.0);
-    visit_near([&](const glm::dvec3& p_mm) {
-      const glm::dvec3 arm = p_mm - middle_mm;
-      const glm::dvec2 at(glm::dot(arm, u), glm::dot(arm, w));
-      squares += glm::outerProduct(at, at);
-      products += glm::dot(arm, plane.normal) * at;
-    });
-    plane.on_mm = middle_mm;
-    const double determinant = glm::determinant(squares);
-    if (!(determinant > 0.0)) return plane;
-    const glm::dvec2 slopes = glm::inverse(squares) * products;
-    plane.normal = glm::normalize(plane.normal - slopes.x * u - slopes.y * w);
-  }
-  return plane;
-}
-
 using LabelPair = std::pair<std::uint8_t, std::uint8_t>;  // the lower first
 
 /// Planes of the interfaces that may be plane cuts. If a plane cuts two regions apart, the middle between two
@@ -209,8 +167,8 @@ std::vector<LabelPlane> planes_between(const Labelled& labelled) {
     if (points_mm.size() < fewest || !(glm::length(between.across) > 0.0)) continue;
     glm::dvec3 middle_mm(0.0);
     for (const glm::dvec3& p_mm : points_mm) middle_mm += p_mm / static_cast<double>(points_mm.size());
-    const InterfacePlane plane = fitted(points_mm, {middle_mm, glm::normalize(between.across)},
-                                        std::numeric_limits<double>::infinity());
+    const InterfacePlane plane = fitted_plane(points_mm, {middle_mm, glm::normalize(between.across)},
+                                              std::numeric_limits<double>::infinity());
     const double near_mm = most_edges * std::max({edge_mm.x, edge_mm.y, edge_mm.z});
     const auto near = std::count_if(points_mm.begin(), points_mm.end(), [&](const glm::dvec3& p_mm) {
       return std::abs(plane.away_mm(p_mm)) <= near_mm;
@@ -219,14 +177,6 @@ std::vector<LabelPlane> planes_between(const Labelled& labelled) {
       planes.push_back({plane.on_mm, plane.normal, pair.first, pair.second});
   }
   return planes;
-}
-
-const LabelPlane* plane_between(const std::vector<LabelPlane>& planes, std::uint8_t one, std::uint8_t other) {
-  const auto [low, high] = std::minmax(one, other);
-  const auto found =
-      std::find_if(planes.begin(), planes.end(),
-                   [low = low, high = high](const LabelPlane& p) { return p.low == low && p.high == high; });
-  return found == planes.end() ? nullptr : &*found;
 }
 
 /// Seed points on the interface of one label pair are at least `size_mm` apart. They also keep a distance
@@ -351,122 +301,7 @@ std::vector<Counted> add_starts(Labelled& labelled, double size_mm, std::size_t 
   return counted;
 }
 
-std::optional<InterfacePlane> plane_of(const Tetrahedra& made, const Interface& between,
-                                       const std::vector<std::uint32_t>& nodes, double near_mm) {
-  constexpr std::size_t most_tried = 200;
-  constexpr double least_share = 0.6;
-  std::optional<InterfacePlane> best;
-  std::size_t most = 0;
-  const std::size_t step = std::max<std::size_t>(1, between.faces.size() / most_tried);
-  for (std::size_t f = 0; f < between.faces.size(); f += step) {
-    const auto [a, b, c] = corners_of(made, between.faces[f]);
-    const glm::dvec3& p_mm = made.nodes_mm[a];
-    const glm::dvec3 across = glm::cross(made.nodes_mm[b] - p_mm, made.nodes_mm[c] - p_mm);
-    if (!(glm::length(across) > 0.0)) continue;
-    const InterfacePlane plane{p_mm, glm::normalize(across)};
-    const auto count =
-        static_cast<std::size_t>(std::count_if(nodes.begin(), nodes.end(), [&](std::uint32_t v) {
-          return std::abs(plane.away_mm(made.nodes_mm[v])) <= near_mm;
-        }));
-    if (count <= most) continue;
-    most = count;
-    best = plane;
-  }
-  if (static_cast<double>(most) < least_share * static_cast<double>(nodes.size())) return std::nullopt;
-  std::vector<glm::dvec3> points_mm;
-  for (const std::uint32_t v : nodes) points_mm.push_back(made.nodes_mm[v]);
-  return fitted(points_mm, *best, near_mm);
-}
-
-/// Gives elements at a plane between two regions to the one on whose side their middle is. Mesh_3 decides by the
-/// middle of an element's ball, which for those at a rim may lie beyond the plane.
-void divide_by_planes(Tetrahedra& made, const std::vector<LabelPlane>& planes) {
-  for (const LabelPlane& plane : planes) {
-    const auto low = static_cast<std::uint32_t>(plane.low - 1),
-               high = static_cast<std::uint32_t>(plane.high - 1);
-    std::vector<std::uint8_t> touches(made.nodes_mm.size(), 0);
-    for (std::size_t t = 0; t < made.tets.size(); ++t)
-      if (const std::uint32_t region = made.region_of_tet[t]; region == low || region == high)
-        for (const std::uint32_t v : made.tets[t]) touches[v] |= region == low ? 1 : 2;
-    for (std::size_t t = 0; t < made.tets.size(); ++t) {
-      if (made.region_of_tet[t] != low && made.region_of_tet[t] != high) continue;
-      if (std::none_of(made.tets[t].begin(), made.tets[t].end(),
-                       [&](std::uint32_t v) { return touches[v] == 3; }))
-        continue;
-      const TetCorners p = corners_mm(made, t);
-      made.region_of_tet[t] = plane.away_mm(0.25 * (p[0] + p[1] + p[2] + p[3])) < 0.0 ? low : high;
-    }
-  }
-}
-
-/// Puts the nodes of interfaces that are flat but for their rims on their planes, where no element about them
-/// comes to have a smaller angle than `least_deg` or turns over.
-void flatten_interfaces(Tetrahedra& made, const std::vector<LabelPlane>& planes,
-                        const RegionMeshOptions& options, double voxel_mm, double least_deg) {
-  const double near_mm = 0.05 * voxel_mm;  // five times what surfaces between labels are found to
-  const double far_mm = 0.75 * options.size_mm;
-  std::vector<std::vector<std::uint32_t>> about(made.nodes_mm.size());
-  for (std::uint32_t t = 0; t < made.tets.size(); ++t)
-    for (const std::uint32_t v : made.tets[t]) about[v].push_back(t);
-  for (const Interface& between : interfaces(made)) {
-    std::vector<std::uint32_t> nodes;
-    for (const ElementFace& face : between.faces)
-      for (const std::uint32_t v : corners_of(made, face)) nodes.push_back(v);
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    std::optional<InterfacePlane> plane;
-    if (const LabelPlane* known = plane_between(planes, static_cast<std::uint8_t>(between.from + 1),
-                                                static_cast<std::uint8_t>(between.to + 1)))
-      plane = InterfacePlane{known->on_mm, known->normal};
-    else
-      plane = plane_of(made, between, nodes, near_mm);
-    if (!plane) continue;
-    for (const std::uint32_t v : nodes) {
-      const double away_mm = plane->away_mm(made.nodes_mm[v]);
-      if (std::abs(away_mm) > far_mm) continue;
-      const glm::dvec3 before_mm = made.nodes_mm[v];
-      made.nodes_mm[v] -= away_mm * plane->normal;
-      const bool is_unfit = std::any_of(about[v].begin(), about[v].end(), [&](std::uint32_t t) {
-        const TetCorners p = corners_mm(made, t);
-        Tetrahedra alone;
-        alone.nodes_mm.assign(p.begin(), p.end());
-        alone.tets = {{0, 1, 2, 3}};
-        return !(six_volumes(p) > 0.0) || quality(alone).min_dihedral_deg < least_deg;
-      });
-      if (is_unfit) made.nodes_mm[v] = before_mm;
-    }
-  }
-}
-
-/// Reports nodes of a flat interface that stayed off its plane: surfaces in contact interlock there.
-void tell_bumps(Tetrahedra& made, const std::vector<LabelPlane>& planes, double voxel_mm) {
-  constexpr double least_share = 0.02;  // of a voxel
-  for (const Interface& between : interfaces(made)) {
-    const LabelPlane* plane = plane_between(planes, static_cast<std::uint8_t>(between.from + 1),
-                                            static_cast<std::uint8_t>(between.to + 1));
-    if (plane == nullptr) continue;
-    std::vector<std::uint32_t> nodes;
-    for (const ElementFace& face : between.faces)
-      for (const std::uint32_t v : corners_of(made, face)) nodes.push_back(v);
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    std::size_t off = 0;
-    double most_mm = 0.0;
-    for (const std::uint32_t v : nodes) {
-      const double away_mm = std::abs(plane->away_mm(made.nodes_mm[v]));
-      if (away_mm > least_share * voxel_mm) ++off;
-      most_mm = std::max(most_mm, away_mm);
-    }
-    if (off > 0)
-      made.findings.push_back("the interface of regions " + std::to_string(between.from + 1) + " and " +
-                              std::to_string(between.to + 1) + " is flat, but " + std::to_string(off) +
-                              " of its " + std::to_string(nodes.size()) +
-                              " nodes stay off its plane, by up to " + rounded(most_mm) +
-                              " mm: surfaces in contact interlock there; take another size of elements");
-  }
-}
-
-/// Pass 3. Nodes of interfaces count as nodes of surfaces.
+/// Mends flat elements. Nodes of interfaces count as nodes of surfaces.
 void mend(Tetrahedra& made, const RegionMeshOptions& options) {
   std::vector<std::uint32_t> outer = made.boundary_nodes;
   for (const Interface& between : interfaces(made))
@@ -487,6 +322,23 @@ void mend(Tetrahedra& made, const RegionMeshOptions& options) {
   improving.keeps_flat = false;
   if (quality(made).min_dihedral_deg < improving.min_dihedral_deg) improve(made, improving);
   made.boundary_nodes = std::move(outer);
+}
+
+/// Pass 3.
+void flatten(Tetrahedra& made, const RegionMeshOptions& options, const FlatInterfaceOptions& flat) {
+  divide_by_planes(made, flat.planes);
+  flatten_interfaces(made, flat);
+  mend(made, options);
+  // Nodes that mending took off a plane go back where that leaves elements fit.
+  flatten_interfaces(made, flat);
+  // Splitting gives nodes that may still be mended.
+  constexpr int most_rounds = 4;
+  for (int round = 0; round < most_rounds && !bumps(made, flat).empty(); ++round) {
+    split_at_planes(made, flat);
+    mend(made, options);
+    flatten_interfaces(made, flat);
+  }
+  for (std::string& finding : bumps(made, flat)) made.findings.push_back(std::move(finding));
 }
 
 /// Pass 4.
@@ -554,14 +406,10 @@ Tetrahedra smooth_tetrahedra_of(const std::vector<voxel::Octree>& regions, const
     plane.on_mm = lps_mm(image, lattice, plane.on_mm);
     plane.normal = glm::normalize(end_mm - plane.on_mm);  // still from the lower label to the higher
   }
-  const double least_deg = std::min(options.min_dihedral_deg, fit_dihedral_deg());
-  divide_by_planes(made, planes);
-  flatten_interfaces(made, planes, options, voxel_mm, least_deg);
-  mend(made, options);
-  // Nodes that mending took off a plane go back where that leaves elements fit.
-  flatten_interfaces(made, planes, options, voxel_mm, least_deg);
+  flatten(
+      made, options,
+      {std::move(planes), voxel_mm, options.size_mm, std::min(options.min_dihedral_deg, fit_dihedral_deg())});
   check_volumes(made, counted, image);
-  tell_bumps(made, planes, voxel_mm);
   return made;
 }
 

@@ -13,6 +13,7 @@
 
 #include "brep/mesh/segment.h"
 #include "convert/tet/element_faces.h"
+#include "convert/tet/split_sides.h"
 
 // Some meshers make a surface of their own with nodes on the given one; its triangles then cut off sharp
 // edges. Here such nodes move onto these edges, as Labelle and Shewchuk (isosurface_stuffing.h) move
@@ -153,19 +154,13 @@ class Putting {
       : t_(tetrahedra),
         given_(given),
         least_deg_(least_deg),
-        about_(tetrahedra.nodes_mm.size()),
+        about_(elements_about(tetrahedra)),
         is_moved_(tetrahedra.nodes_mm.size(), false) {
-    for (std::uint32_t t = 0; t < t_.tets.size(); ++t)
-      for (const std::uint32_t v : t_.tets[t]) about_[v].push_back(t);
     for (const auto& face : given.triangles.faces) normals_.push_back(unit_normal_of(given.triangles, face));
   }
 
   std::vector<std::uint32_t> run() {
-    std::vector<Ends> sides;
-    for (const auto& [a, b, c] : surface_of(t_).faces)
-      for (const Ends& side : {ends(a, b), ends(b, c), ends(c, a)}) sides.push_back(side);
-    std::sort(sides.begin(), sides.end());
-    sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+    const std::vector<Ends> sides = surface_sides();
     double sum_mm = 0.0;
     for (const auto& [a, b] : sides) sum_mm += glm::distance(t_.nodes_mm[a], t_.nodes_mm[b]);
     const double side_mm = sum_mm / static_cast<double>(sides.size());
@@ -175,6 +170,11 @@ class Putting {
     // the element has changed.
     constexpr int rounds = 2;
     for (int round = 0; round < rounds; ++round) put_on_edges(edges, sides);
+    // A split leaves two sides that may still cut the edge off, and its node makes further notches to fill.
+    constexpr int most_splits = 4;
+    fill_at_edges(edges, side_mm);
+    for (int round = 0; round < most_splits && split_at_edges(edges, side_mm); ++round)
+      fill_at_edges(edges, side_mm);
     std::sort(moved_.begin(), moved_.end());
     return moved_;
   }
@@ -239,6 +239,83 @@ class Putting {
       for (std::size_t i = 0; i < 2; ++i)
         if (std::isfinite(to_mm.at(i).x) && put(order.at(i), to_mm.at(i))) break;
     }
+  }
+
+  bool are_joined(std::uint32_t a, std::uint32_t b) const {
+    return std::any_of(about_[a].begin(), about_[a].end(), [&](std::uint32_t t) {
+      return std::find(t_.tets[t].begin(), t_.tets[t].end(), b) != t_.tets[t].end();
+    });
+  }
+
+  /// Fills notches with an element each: where a side of the surface cuts an edge off, and the two triangles at
+  /// the side have their third nodes on that edge.
+  void fill_at_edges(const SharpEdges& edges, double side_mm) {
+    const auto is_on_edge = [&](const glm::dvec3& p_mm) {
+      return glm::distance(edges.nearest_mm(p_mm), p_mm) <= 1e-6 * side_mm;
+    };
+    const brep::Triangles surface = surface_of(t_);
+    about_ = elements_about(t_);
+    std::map<Ends, std::vector<std::pair<std::uint32_t, std::uint32_t>>> at_side;  // face, and its other node
+    for (std::uint32_t f = 0; f < surface.faces.size(); ++f)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto& face = surface.faces[f];
+        if (is_on_edge(t_.nodes_mm[face.at((i + 2) % 3)]))
+          at_side[ends(face.at(i), face.at((i + 1) % 3))].emplace_back(f, face.at((i + 2) % 3));
+      }
+    std::vector<bool> is_covered(surface.faces.size(), false);
+    for (const auto& [side, faces] : at_side) {
+      if (faces.size() != 2) continue;
+      const auto& [f, p] = faces[0];
+      const auto& [g, q] = faces[1];
+      if (is_covered[f] || is_covered[g] || are_joined(p, q) ||
+          !is_on_edge(0.5 * (t_.nodes_mm[p] + t_.nodes_mm[q])))
+        continue;
+      // Faces run counter-clockwise seen from outside, where the notch is.
+      const auto& [a, b, c] = surface.faces[f];
+      const auto& at = t_.nodes_mm;
+      if (!is_fit({at[a], at[b], at[c], at[q]}, least_deg_)) continue;
+      const auto made = static_cast<std::uint32_t>(t_.tets.size());
+      t_.tets.push_back({a, b, c, q});
+      for (const std::uint32_t v : t_.tets[made]) about_[v].push_back(made);
+      is_covered[f] = is_covered[g] = true;
+    }
+  }
+
+  /// Splits the sides of the surface that still cut an edge off, with a node on the edge; true if any.
+  bool split_at_edges(const SharpEdges& edges, double side_mm) {
+    constexpr double least_off = 0.05;  // of the side's length: chords of a smooth surface stay
+    std::vector<Ends> sides;
+    std::vector<glm::dvec3> middles_mm, edge_mm;
+    for (const Ends& side : surface_sides()) {
+      const glm::dvec3 middle_mm = 0.5 * (t_.nodes_mm[side.first] + t_.nodes_mm[side.second]);
+      const glm::dvec3 at_mm = edges.nearest_mm(middle_mm);
+      if (!(glm::distance(at_mm, middle_mm) <= side_mm)) continue;
+      sides.push_back(side);
+      middles_mm.push_back(middle_mm);
+      edge_mm.push_back(at_mm);
+    }
+    const std::vector<double> off_mm = given_.tree.distances_mm(middles_mm);
+    SideSplitter splitter(t_, least_deg_);
+    const std::size_t before = moved_.size();
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      const auto [a, b] = sides[i];
+      if (off_mm[i] <= least_off * glm::distance(t_.nodes_mm[a], t_.nodes_mm[b]) ||
+          !splitter.split(a, b, edge_mm[i]))
+        continue;
+      const auto made = static_cast<std::uint32_t>(t_.nodes_mm.size() - 1);
+      t_.boundary_nodes.push_back(made);
+      moved_.push_back(made);
+    }
+    return moved_.size() > before;
+  }
+
+  std::vector<Ends> surface_sides() const {
+    std::vector<Ends> sides;
+    for (const auto& [a, b, c] : surface_of(t_).faces)
+      for (const Ends& side : {ends(a, b), ends(b, c), ends(c, a)}) sides.push_back(side);
+    std::sort(sides.begin(), sides.end());
+    sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+    return sides;
   }
 
   Tetrahedra& t_;

@@ -77,8 +77,8 @@ TEST_P(Beam, IsAsStiffAsTimoshenkoSays) {
                                   length_mm / (shape * shear_mpa * area_mm2));
   RecordProperty("share", std::to_string(found_n / truth_n));
   // Held ends cannot thin out, which stiffens the beam by some per cent; four-node elements lock in bending.
-  // Mesh_3 cuts some corners of the section off.
-  EXPECT_GT(found_n, (mesher == Mesher::Mesh3 ? 0.93 : 0.99) * truth_n);
+  // Mesh_3 still cuts some corners of the section off.
+  EXPECT_GT(found_n, (mesher == Mesher::Mesh3 ? 0.95 : 0.99) * truth_n);
   EXPECT_LT(found_n, (second ? 1.05 : 1.25) * truth_n);
 }
 
@@ -119,6 +119,33 @@ TEST(DeckElements, HalvesInContactSlideAlongAFlatCutWithoutForce) {
   EXPECT_LT(force_n.z, -100.0) << "pressed";
   // The rest of the force is from the ball's halves, whose cut faces no longer cover each other completely.
   EXPECT_LT(std::abs(force_n.x), 0.03 * std::abs(force_n.z));
+}
+
+/// Two blocks, one on the other, with corners at the rim of the cut between them.
+TEST(DeckElements, BlocksInContactSlideWithoutForceWhateverTheSizeOfElements) {
+  OCTOTOMY_NEEDS_PROGRAM("ccx", "calculix-ccx");
+  const voxel::Universe universe = tests::unit_universe(5);
+  const std::vector<voxel::Octree> blocks{
+      voxel::combine(universe, voxel::Box{{3.5, 3.5, 3.5}, {27.5, 19.5, 11.5}}),
+      voxel::combine(universe, voxel::Box{{3.5, 3.5, 11.5}, {27.5, 19.5, 19.5}})};
+  for (const double size_mm : {1.5, 2.0, 3.0}) {
+    RegionMeshOptions size;
+    size.size_mm = size_mm;
+    const Tetrahedra shared = smooth_tetrahedra_of(blocks, size);
+    EXPECT_GE(quality(shared).min_dihedral_deg, 5.0);
+    DeckOptions options;
+    const Interface between = interfaces(shared).front();
+    options.surfaces = {{"LOW_TO_HIGH", between.faces}, {"HIGH_TO_LOW", between.opposite}};
+    options.contacts = {{"CUT", "LOW_TO_HIGH", "HIGH_TO_LOW"}};
+    const Tetrahedra t = separate_regions(shared);
+    options.node_sets = {nodes_at(t, "LOW", 3.5), nodes_at(t, "HIGH", 19.5)};
+    options.prescribed = {{"LOW", {}}, {"HIGH", all_by(options.node_sets[1], {0.05, 0.0, -0.01})}};
+    const tests::ScratchFolder folder;
+    const glm::dvec3 force_n = reaction_n(folder, t, options, "HIGH");
+    EXPECT_LT(force_n.z, -1000.0) << size_mm << " mm: pressed";
+    EXPECT_LT(std::abs(force_n.x), 1e-4 * std::abs(force_n.z)) << size_mm << " mm";
+    EXPECT_LT(std::abs(force_n.y), 1e-4 * std::abs(force_n.z)) << size_mm << " mm";
+  }
 }
 
 }  // namespace

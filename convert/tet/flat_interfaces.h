@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "convert/tet/mesher_process.h"
+#include "convert/tet/tetrahedra.h"
+
+namespace octotomy::convert {
+
+/// A plane by a point and its unit normal.
+struct InterfacePlane {
+  glm::dvec3 on_mm{0.0}, normal{0.0};
+  double away_mm(const glm::dvec3& p_mm) const { return glm::dot(p_mm - on_mm, normal); }
+};
+
+/// The plane of least squares through the points within `near_mm` of it, found by iteration from a first
+/// plane.
+InterfacePlane fitted_plane(const std::vector<glm::dvec3>& points_mm, InterfacePlane plane, double near_mm);
+
+/// The plane between two labels; null if their interface is not flat.
+const LabelPlane* plane_between(const std::vector<LabelPlane>& planes, std::uint8_t one, std::uint8_t other);
+
+struct FlatInterfaceOptions {
+  std::vector<LabelPlane> planes{};  ///< in LPS millimetres, the labels are one above the regions
+  double voxel_mm = 1.0;
+  double size_mm = 3.0;    ///< of elements
+  double least_deg = 5.0;  ///< no change leaves or makes an element with a smaller dihedral angle
+};
+
+/// Gives elements at a plane between two regions to the one on whose side their middle is. Mesh_3 decides by
+/// the middle of an element's ball, which for those at a rim may lie beyond the plane.
+void divide_by_planes(Tetrahedra& made, const std::vector<LabelPlane>& planes);
+
+/// Puts the nodes of interfaces that are flat but for their rims on their planes, where that leaves the
+/// elements about them fit. An interface without a known plane has one if most of its nodes lie in it.
+void flatten_interfaces(Tetrahedra& made, const FlatInterfaceOptions& options);
+
+/// Splits the sides that pass through a plane between two regions, in elements that touch both, with a node on
+/// the plane, where that leaves the parts fit. Then gives each part to its side. Elements and nodes keep their
+/// numbers; new ones come after them. Returns the number of new nodes. `boundary_nodes` are made anew.
+std::size_t split_at_planes(Tetrahedra& made, const FlatInterfaceOptions& options);
+
+/// The findings on nodes of a flat interface that stayed off its plane: surfaces in contact interlock there.
+std::vector<std::string> bumps(const Tetrahedra& made, const FlatInterfaceOptions& options);
+
+}  // namespace octotomy::convert

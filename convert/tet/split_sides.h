@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "convert/tet/tetrahedra.h"
+
+namespace octotomy::convert {
+
+/// True if the volume is positive and no dihedral angle is smaller.
+bool is_fit(const TetCorners& corners_mm, double least_deg);
+
+/// By node, the elements that have it, ascending.
+std::vector<std::vector<std::uint32_t>> elements_about(const Tetrahedra& tetrahedra);
+
+/// Splits sides of elements one after the other. Elements and nodes keep their numbers; new ones come after
+/// them. `boundary_nodes` stay as they are.
+class SideSplitter {
+ public:
+  /// No split makes an element that is turned over or has a smaller dihedral angle than `least_deg`, or than
+  /// the flattest of the divided elements if that was smaller.
+  SideSplitter(Tetrahedra& tetrahedra, double least_deg);
+
+  /// Divides the elements about a side by a new node, which need not lie on the side. False, and nothing
+  /// changes, if no element has that side or a part would be unfit.
+  bool split(std::uint32_t a, std::uint32_t b, const glm::dvec3& at_mm);
+
+ private:
+  Tetrahedra& tetrahedra_;
+  double least_deg_;
+  std::vector<std::vector<std::uint32_t>> about_;
+};
+
+}  // namespace octotomy::convert
