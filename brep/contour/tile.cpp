@@ -68,14 +68,15 @@ std::vector<glm::dvec2> in_unit_square(const std::vector<glm::dvec2>& points) {
 class Blame {
  public:
   Blame(const Ring& lower, const Ring& upper, const SpanClearance& sides,
-        const std::vector<std::array<std::uint32_t, 3>>& avoided)
+        const std::vector<std::array<std::uint32_t, 3>>& avoided, std::vector<std::uint8_t>& scores)
       : lower_(lower),
         upper_(upper),
         sides_(sides),
         m_(lower.points_mm.size()),
         n_(upper.points_mm.size()),
         reach_mm_(reach_of(lower, upper)),
-        of_(m_ * n_, unknown) {
+        of_(scores) {
+    of_.resize(m_ * n_, unknown);
     for (const auto& face : avoided) {
       const Step step = face[2] < m_ ? along_upper : along_lower;
       const std::size_t i = step == along_lower ? face[0] : face[2];
@@ -93,15 +94,8 @@ class Blame {
   }
   /// The lowest score of a span at each lower and each upper point.
   std::array<std::vector<int>, 2> least() const {
-    std::array least{std::vector<int>(m_, unknown), std::vector<int>(n_, unknown)};
-    for (std::size_t i = 0; i < m_; ++i)
-      for (std::size_t j = 0; j < n_; ++j) {
-        if (least[0][i] == 0 && least[1][j] == 0) continue;
-        const int score = (*this)(i, j);
-        least[0][i] = std::min(least[0][i], score);
-        least[1][j] = std::min(least[1][j], score);
-      }
-    return least;
+    return {least_of(m_, n_, [&](std::size_t i, std::size_t j) { return (*this)(i, j); }),
+            least_of(n_, m_, [&](std::size_t j, std::size_t i) { return (*this)(i, j); })};
   }
   /// The score of a step from a span: that of the step's triangle and of the span that it leads to.
   int of(std::size_t i, std::size_t j, Step step) const {
@@ -113,6 +107,26 @@ class Blame {
 
  private:
   static constexpr std::uint8_t unknown = 255;
+
+  /// The lowest score at each point of one ring, sought up to the first 0 from the point of the other ring that
+  /// the point before it had found.
+  template <typename Score>
+  static std::vector<int> least_of(std::size_t count, std::size_t others, const Score& score) {
+    std::vector<int> least(count, unknown);
+    std::size_t near = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      std::size_t found = near;
+      for (std::size_t away = 0; 2 * away <= others && least[k] > 0; ++away)
+        for (const std::size_t other : {(near + away) % others, (near + others - away) % others}) {
+          const int here = score(k, other);
+          if (here >= least[k]) continue;
+          least[k] = here;
+          found = other;
+        }
+      near = found;
+    }
+    return least;
+  }
 
   std::uint8_t scored(std::size_t i, std::size_t j) const {
     constexpr int most_sides = 6;
@@ -165,7 +179,7 @@ class Blame {
   const SpanClearance& sides_;
   std::size_t m_, n_;
   double reach_mm_;
-  mutable std::vector<std::uint8_t> of_;
+  std::vector<std::uint8_t>& of_;
   std::array<std::unordered_map<std::size_t, int>, 2> of_step_;  ///< of triangles to be avoided
 };
 
@@ -309,7 +323,7 @@ class LeastPath {
   }
 
   /// The path of least sum from (0, 0) in a band that holds one.
-  Found find_in(const Band& band) const { return *from(0, band, no_limit); }
+  Found find_in(const Band& band) { return *from(0, band, no_limit); }
 
   /// The path of least sum among all starts.
   Found find(const std::vector<Step>& steps_near) {
@@ -511,9 +525,10 @@ class LeastPath {
 
   /// The path of least sum from (0, start) to (m, start + n) in a band. None if at any of its nodes its sum so
   /// far, with the least of the rest, exceeds `most`.
-  std::optional<Found> from(std::size_t start, const Band& band, const Sum& most) const {
+  std::optional<Found> from(std::size_t start, const Band& band, const Sum& most) {
     // Sums in another order differ by rounding, a part of 2^-53 for each of their terms.
     const double rounding = 0x1p-50 * static_cast<double>(m_ + n_);
+    reached_count_ = 0;
     const Aim aim{start, {most.blame, most.cost + rounding * std::abs(most.cost)}};
     if (least_rest(0, start, start) > aim.most) return {};
     if (blame_ != nullptr && (*blame_)(start_[0], start_[1] + start) > most.blame) return {};
@@ -548,6 +563,7 @@ class LeastPath {
         row.push_back(node);
         reached.add(node);
       }
+      reached_count_ = reached.came.size();
       if (row.empty()) return {};
     }
     if (row.back().column != start + n_) return {};
@@ -566,10 +582,12 @@ class LeastPath {
   }
 
   /// Improves the best path by those between two others that start after one column and before another.
-  void search(const Band& between, std::size_t after, std::size_t before, Found& best) const {
+  void search(const Band& between, std::size_t after, std::size_t before, Found& best) {
     if (before - after < 2) return;
     const std::size_t middle = (after + before) / 2;
     auto found = from(middle, between, limit(best.sum));
+    // A long search that fails costs as much for each start between. The start's own best path narrows theirs.
+    if (!found && reached_count_ > 4 * (m_ + n_)) found = from(middle, between, no_limit);
     if (!found) {
       search(between, after, middle, best);
       search(between, middle, before, best);
@@ -586,6 +604,7 @@ class LeastPath {
   std::array<std::size_t, 2> start_;
   const Blame* blame_;
   std::size_t m_, n_;
+  std::size_t reached_count_ = 0;        ///< nodes of the last search
   std::vector<Sum> to_row_, to_column_;  ///< the least from the first row and column; empty for none
 };
 
@@ -661,9 +680,9 @@ std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& up
 
 std::vector<std::array<std::uint32_t, 3>> tile_clear(
     const Ring& lower, const Ring& upper, TileCost cost, const SpanClearance& sides,
-    const std::vector<std::array<std::uint32_t, 3>>& avoided) {
+    std::vector<std::uint8_t>& scores, const std::vector<std::array<std::uint32_t, 3>>& avoided) {
   check(lower, upper, cost);
-  const Blame blame(lower, upper, sides, avoided);
+  const Blame blame(lower, upper, sides, avoided, scores);
   const std::array<std::size_t, 2> start = start_of(lower, upper, &blame);
   const bool has_room = lower.points_mm.size() * upper.points_mm.size() <= most_pairs(TileCost::least_area);
   if (cost == TileCost::shortest_span && (avoided.empty() || !has_room))
