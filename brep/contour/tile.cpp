@@ -7,6 +7,7 @@
 // limits of the blame first. If costs depend on single triangles, the strip may start elsewhere: every strip has
 // a span at the lower ring's first point. Therefore 5 find the path that starts half way between two known ones,
 // which it need not cross, and so on; 6 write the triangles of the best.
+// Over 600 lines, because all passes share the rings' scores, costs and bounds.
 // Departure from Fuchs, Kedem and Uselton: nodes whose sums exceed that of a known path are left out, which
 // changes no result, because steps have no cost below zero; of greatest_volume only the blame is limited.
 #include "brep/contour/tile.h"
@@ -502,7 +503,9 @@ class LeastPath {
     const std::size_t j = from.column < n_ ? from.column : from.column - n_;
     const int blame = blame_of(i, j, step);
     const Sum rest = least_rest(i + (step == along_lower), to.column, aim.start);
-    if (std::min(from.sums[0].blame, from.sums[1].blame) + blame + rest.blame > aim.most.blame) return;
+    // Steps whose own cost is not needed to refuse them: no cost is below zero where the limit has one.
+    const Sum& least = std::min(from.sums[0], from.sums[1]);
+    if (Sum{least.blame + blame + rest.blame, least.cost + rest.cost} > aim.most) return;
     const Triangle triangle = pair_.triangle(i, j, step);
     const glm::dvec3 normal = triangle.normal();
     const double cost = own_cost(triangle, step, normal);
@@ -586,8 +589,12 @@ class LeastPath {
     if (before - after < 2) return;
     const std::size_t middle = (after + before) / 2;
     auto found = from(middle, between, limit(best.sum));
-    // A long search that fails costs as much for each start between. The start's own best path narrows theirs.
-    if (!found && reached_count_ > 4 * (m_ + n_)) found = from(middle, between, no_limit);
+    // Failed searches narrow none of those between. Once they have reached a quarter of all nodes, the start's own
+    // best path does.
+    if (!found && (failed_count_ += reached_count_) > m_ * n_ / 4) {
+      failed_count_ = 0;
+      found = from(middle, between, no_limit);
+    }
     if (!found) {
       search(between, after, middle, best);
       search(between, middle, before, best);
@@ -605,6 +612,7 @@ class LeastPath {
   const Blame* blame_;
   std::size_t m_, n_;
   std::size_t reached_count_ = 0;        ///< nodes of the last search
+  std::size_t failed_count_ = 0;         ///< nodes of failed searches since the last without a limit
   std::vector<Sum> to_row_, to_column_;  ///< the least from the first row and column; empty for none
 };
 
