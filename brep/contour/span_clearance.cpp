@@ -66,6 +66,9 @@ int SpanClearance::crossed(const glm::dvec2& from_mm, const glm::dvec2& to_mm, i
   int count = 0;
   const glm::dvec2& a = from_mm.y <= to_mm.y ? from_mm : to_mm;
   const glm::dvec2& b = from_mm.y <= to_mm.y ? to_mm : from_mm;
+  const auto column_of = [&](double x) {
+    return static_cast<int>(std::clamp((x - low_.x) / cell_mm_, 0.0, cells_.x - 1.0));
+  };
   const int first_row = cell_of(a).y, last_row = cell_of(b).y;
   for (int y = first_row; y <= last_row; ++y) {
     // The part of the segment in this row of cells, a hundredth of a cell longer for rounding.
@@ -76,7 +79,7 @@ int SpanClearance::crossed(const glm::dvec2& from_mm, const glm::dvec2& to_mm, i
     double low = x_at(low_.y + y * cell_mm_ - slack), high = x_at(low_.y + (y + 1) * cell_mm_ + slack);
     if (height <= 0.0) high = b.x;
     if (low > high) std::swap(low, high);
-    const int left = cell_of({low - slack, 0.0}).x, right = cell_of({high + slack, 0.0}).x;
+    const int left = column_of(low - slack), right = column_of(high + slack);
     for (int x = left; x <= right; ++x) {
       const std::size_t cell = index({x, y});
       for (std::uint32_t k = first_[cell]; k < first_[cell + 1]; ++k) {

@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A strip is a path in a graph: node (i, j) is the span from the lower ring's point i to the upper ring's
-// point j, and a step to (i + 1, j) or (i, j + 1) is a triangle. If costs depend on single triangles: every
-// strip has a span at the lower ring's first point. Therefore 1 find the path of least cost from (0, 0) to
-// (m, n); from (0, n) to (m, 2n) it is the same; 2 find the path that starts half way between two known ones,
-// which it need not cross, and so on; 3 write the triangles of the best. Otherwise: 1 find the start; 2 walk
-// greedily, or find the path of least cost from there. Where spans are to be clear of contours, each span that is
-// not costs more than any strip without it.
+// point j, and a step to (i + 1, j) or (i, j + 1) is a triangle. A path's sum is first the blame of its spans,
+// which is 0 unless spans are to be clear of contours, then its cost. Passes: 1 choose the start; 2 walk greedily
+// from there, or 3 find the path with the least sum of those near the greedy one: no better path has a larger sum
+// at any node, so 4 find the path with the least sum among nodes whose sums are not above it, trying smaller
+// limits of the blame first. If costs depend on single triangles, the strip may start elsewhere: every strip has
+// a span at the lower ring's first point. Therefore 5 find the path that starts half way between two known ones,
+// which it need not cross, and so on; 6 write the triangles of the best.
+// Over 600 lines, because all passes share the rings' scores, costs and bounds.
+// Departure from Fuchs, Kedem and Uselton: nodes whose sums exceed that of a known path are left out, which
+// changes no result, because steps have no cost below zero; of greatest_volume only the blame is limited.
 #include "brep/contour/tile.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <compare>
 #include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <unordered_map>
 
 #include "brep/mesh/error.h"
 #include "brep/mesh/short_text.h"
@@ -63,19 +69,15 @@ std::vector<glm::dvec2> in_unit_square(const std::vector<glm::dvec2>& points) {
 class Blame {
  public:
   Blame(const Ring& lower, const Ring& upper, const SpanClearance& sides,
-        const std::vector<std::array<std::uint32_t, 3>>& avoided)
-      : m_(lower.points_mm.size()), n_(upper.points_mm.size()), of_(m_ * n_) {
-    constexpr int most_sides = 6;
-    const double reach_mm = reach_of(lower, upper);
-    for (std::size_t i = 0; i < m_; ++i)
-      for (std::size_t j = 0; j < n_; ++j) {
-        const glm::dvec2 &a = lower.points_mm[i], &b = upper.points_mm[j];
-        const int crossed = glm::distance(a, b) > reach_mm ? most_sides : sides.crossed(a, b, most_sides);
-        const bool is_beside = starts_inside(lower, i, b) != starts_inside(upper, j, a);
-        of_[i * n_ + j] = static_cast<std::uint8_t>(crossed > 0 ? 1 + crossed : is_beside ? 0 : 1);
-      }
-    if (avoided.empty()) return;
-    for (std::vector<int>& of_step : of_step_) of_step.assign(m_ * n_, 0);
+        const std::vector<std::array<std::uint32_t, 3>>& avoided, std::vector<std::uint8_t>& scores)
+      : lower_(lower),
+        upper_(upper),
+        sides_(sides),
+        m_(lower.points_mm.size()),
+        n_(upper.points_mm.size()),
+        reach_mm_(reach_of(lower, upper)),
+        of_(scores) {
+    of_.resize(m_ * n_, unknown);
     for (const auto& face : avoided) {
       const Step step = face[2] < m_ ? along_upper : along_lower;
       const std::size_t i = step == along_lower ? face[0] : face[2];
@@ -84,15 +86,57 @@ class Blame {
     }
   }
 
-  /// The score of the span between two points; numbers beyond the rings' ends continue at their starts.
-  int operator()(std::size_t i, std::size_t j) const { return of_[i % m_ * n_ + j % n_]; }
+  /// The score of the span between two points; numbers beyond the rings' ends continue at their starts. Not for
+  /// two threads at once, because scores are computed when they are first needed.
+  int operator()(std::size_t i, std::size_t j) const {
+    std::uint8_t& score = of_[i % m_ * n_ + j % n_];
+    if (score == unknown) score = scored(i % m_, j % n_);
+    return score;
+  }
+  /// The lowest score of a span at each lower and each upper point.
+  std::array<std::vector<int>, 2> least() const {
+    return {least_of(m_, n_, [&](std::size_t i, std::size_t j) { return (*this)(i, j); }),
+            least_of(n_, m_, [&](std::size_t j, std::size_t i) { return (*this)(i, j); })};
+  }
   /// The score of a step from a span: that of the step's triangle and of the span that it leads to.
   int of(std::size_t i, std::size_t j, Step step) const {
     const int of_span = (*this)(i + (step == along_lower), j + (step == along_upper));
-    return of_span + (of_step_[step].empty() ? 0 : of_step_[step][i % m_ * n_ + j % n_]);
+    if (of_step_[step].empty()) return of_span;
+    const auto avoided = of_step_[step].find(i % m_ * n_ + j % n_);
+    return of_span + (avoided == of_step_[step].end() ? 0 : avoided->second);
   }
 
  private:
+  static constexpr std::uint8_t unknown = 255;
+
+  /// The lowest score at each point of one ring, sought up to the first 0 from the point of the other ring that
+  /// the point before it had found.
+  template <typename Score>
+  static std::vector<int> least_of(std::size_t count, std::size_t others, const Score& score) {
+    std::vector<int> least(count, unknown);
+    std::size_t near = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      std::size_t found = near;
+      for (std::size_t away = 0; 2 * away <= others && least[k] > 0; ++away)
+        for (const std::size_t other : {(near + away) % others, (near + others - away) % others}) {
+          const int here = score(k, other);
+          if (here >= least[k]) continue;
+          least[k] = here;
+          found = other;
+        }
+      near = found;
+    }
+    return least;
+  }
+
+  std::uint8_t scored(std::size_t i, std::size_t j) const {
+    constexpr int most_sides = 6;
+    const glm::dvec2 &a = lower_.points_mm[i], &b = upper_.points_mm[j];
+    const int crossed = glm::distance(a, b) > reach_mm_ ? most_sides : sides_.crossed(a, b, most_sides);
+    const bool is_beside = starts_inside(lower_, i, b) != starts_inside(upper_, j, a);
+    return static_cast<std::uint8_t>(crossed > 0 ? 1 + crossed : is_beside ? 0 : 1);
+  }
+
   static double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
   /// Twice the largest distance from a point to the nearest point of the other ring, plus the longest side.
@@ -132,9 +176,12 @@ class Blame {
     return cross(in, out) > 0.0 ? left_of_in && left_of_out : left_of_in || left_of_out;
   }
 
+  const Ring &lower_, &upper_;
+  const SpanClearance& sides_;
   std::size_t m_, n_;
-  std::vector<std::uint8_t> of_;
-  std::array<std::vector<int>, 2> of_step_;  ///< empty if no triangle is to be avoided
+  double reach_mm_;
+  std::vector<std::uint8_t>& of_;
+  std::array<std::unordered_map<std::size_t, int>, 2> of_step_;  ///< of triangles to be avoided
 };
 
 /// Among the pairs of points with the lowest score, the pair that is nearest after both rings are scaled to
@@ -146,7 +193,9 @@ std::array<std::size_t, 2> start_of(const Ring& lower, const Ring& upper, const 
   for (std::size_t i = 0; i < a.size(); ++i)
     for (std::size_t j = 0; j < b.size(); ++j) {
       const glm::dvec2 d = b[j] - a[i];
-      const std::pair here{blame != nullptr ? (*blame)(i, j) : 0, glm::dot(d, d)};
+      const double square = glm::dot(d, d);
+      if (std::pair{0, square} >= least) continue;
+      const std::pair here{blame != nullptr ? (*blame)(i, j) : 0, square};
       if (here >= least) continue;
       least = here;
       start = {i, j};
@@ -183,164 +232,22 @@ std::vector<Step> greedy_steps(const Ring& lower, const Ring& upper, std::array<
 /// A path once around both rings from node (0, start), as its last column in each row.
 struct Path {
   std::size_t start = 0;
-  double cost = 0.0;
   std::vector<std::size_t> last;
 
   std::size_t first(std::size_t row) const { return row == 0 ? start : last[row - 1]; }
 };
 
-/// The path of least cost among all starts (Fuchs, Kedem and Uselton 1977).
-class LeastPath {
- public:
-  /// With `blame`, the least cost among the paths with the lowest sum of scores; `start` is the pair's start
-  /// in its rings.
-  LeastPath(const Pair& pair, TileCost cost, const Blame* blame = nullptr,
-            const std::array<std::size_t, 2>& start = {0, 0})
-      : m_(pair.m()), n_(pair.n()) {
-    const glm::dvec3 tip = pair.lower.front();
-    // A step's own span is the one that it leads to: c to b along the lower ring, a to c along the upper one.
-    const auto cost_of = [&](const Triangle& t, Step step) {
-      if (cost == TileCost::shortest_span) return glm::distance(step == along_lower ? t.b : t.a, t.c);
-      return cost == TileCost::least_area ? 0.5 * glm::length(t.normal())
-                                          : -glm::dot(t.a - tip, t.normal()) / 6.0;
-    };
-    for (const Step step : {along_lower, along_upper}) {
-      costs_[step].resize((m_ + 1) * (n_ + 1));
-      for (std::size_t i = 0; i + (step == along_lower) <= m_; ++i)
-        for (std::size_t j = 0; j + (step == along_upper) <= n_; ++j)
-          costs_[step][i * (n_ + 1) + j] = cost_of(pair.triangle(i, j, step), step);
-    }
-    if (blame == nullptr) return;
-    // An upper bound on the difference between the costs of two strips.
-    double dearest = 0.0;
-    for (const std::vector<double>& costs : costs_)
-      for (const double cost_of_one : costs) dearest = std::max(dearest, std::abs(cost_of_one));
-    const double weight = 2.0 * dearest * static_cast<double>(m_ + n_);
-    for (const Step step : {along_lower, along_upper})
-      for (std::size_t i = 0; i + (step == along_lower) <= m_; ++i)
-        for (std::size_t j = 0; j + (step == along_upper) <= n_; ++j)
-          costs_[step][i * (n_ + 1) + j] += weight * blame->of(start[0] + i, start[1] + j, step);
+Path path_of(const std::vector<Step>& steps, std::size_t start) {
+  Path path{start, {}};
+  std::size_t column = start;
+  for (const Step step : steps) {
+    if (step == along_upper)
+      ++column;
+    else
+      path.last.push_back(column);
   }
-
-  /// The least path from (0, 0) between two other paths.
-  Path find_between(const Path& low, const Path& high) const { return from(0, &low, &high); }
-
-  /// The path of least cost from (0, 0) to (m, n).
-  Path find_from_start() const { return from(0, nullptr, nullptr); }
-
-  Path find() const {
-    const Path low = from(0, nullptr, nullptr);
-    Path high = low, best = low;
-    high.start += n_;
-    for (std::size_t& column : high.last) column += n_;
-    search(low, high, best);
-    return best;
-  }
-
-  /// The path of least cost from (0, 0) to (m, n) whose strip is a surface, which means that its steps along
-  /// the upper ring start at two or more points of the lower ring. Any other strip contains a span twice.
-  /// With three points on each ring such a path exists.
-  std::vector<Step> surface_steps() const {
-    // The points of the lower ring at which the steps along the upper ring have started so far.
-    enum Held : std::uint8_t { nowhere, at_start, here, behind, at_two, held_count };
-    constexpr double far = std::numeric_limits<double>::infinity();
-    struct Came {
-      Step step = along_lower;
-      Held from = nowhere;
-    };
-    const auto after = [&](Held held, std::size_t row, Step step) {
-      if (step == along_lower) return held == here ? behind : held;
-      const bool is_start = row == 0 || row == m_;
-      if (held == nowhere) return is_start ? at_start : here;
-      if (held == at_start) return is_start ? at_start : at_two;
-      return held == here ? here : at_two;
-    };
-    std::vector<std::array<double, held_count>> least((m_ + 1) * (n_ + 1));
-    std::vector<std::array<Came, held_count>> came(least.size());
-    for (auto& node : least) node.fill(far);
-    least[0][nowhere] = 0.0;
-    for (std::size_t i = 0; i <= m_; ++i)
-      for (std::size_t j = 0; j <= n_; ++j)
-        for (const Step step : {along_lower, along_upper}) {
-          if (step == along_lower ? i == m_ : j == n_) continue;
-          const std::size_t at = i * (n_ + 1) + j, to = at + (step == along_lower ? n_ + 1 : 1);
-          for (std::uint8_t h = 0; h < held_count; ++h) {
-            const double total = least[at][h] + costs_[step][at];
-            const Held held = after(static_cast<Held>(h), i, step);
-            if (!(total < least[to][held])) continue;
-            least[to][held] = total;
-            came[to][held] = {step, static_cast<Held>(h)};
-          }
-        }
-    std::vector<Step> steps;
-    Held held = at_two;
-    for (std::size_t i = m_, j = n_; i > 0 || j > 0;) {
-      const Came& last = came[i * (n_ + 1) + j][held];
-      steps.push_back(last.step);
-      --(last.step == along_lower ? i : j);
-      held = last.from;
-    }
-    return {steps.rbegin(), steps.rend()};
-  }
-
- private:
-  /// Columns beyond n continue at the ring's start.
-  double cost(std::size_t i, std::size_t j, Step step) const {
-    return costs_[step][i * (n_ + 1) + (j < n_ ? j : j - n_)];
-  }
-
-  void search(const Path& low, const Path& high, Path& best) const {
-    if (high.start - low.start < 2) return;
-    const Path middle = from((low.start + high.start) / 2, &low, &high);
-    if (middle.cost < best.cost || (middle.cost == best.cost && middle.start < best.start)) best = middle;
-    search(low, middle, best);
-    search(middle, high, best);
-  }
-
-  /// The path of least cost from a start; it stays between `low` and `high` if these are given.
-  Path from(std::size_t start, const Path* low, const Path* high) const {
-    const auto begin = [&](std::size_t i) { return low ? std::max(low->first(i), start) : start; };
-    const auto end = [&](std::size_t i) { return high ? std::min(high->last[i], start + n_) : start + n_; };
-    std::vector<std::vector<Step>> came(m_ + 1);
-    std::vector<double> row, above;
-    for (std::size_t i = 0; i <= m_; ++i) {
-      above.swap(row);
-      row.assign(end(i) - begin(i) + 1, std::numeric_limits<double>::infinity());
-      came[i].assign(row.size(), along_upper);
-      for (std::size_t j = begin(i); j <= end(i); ++j) {
-        double& least = row[j - begin(i)];
-        if (i == 0 && j == start) least = 0.0;
-        if (j > begin(i)) least = std::min(least, row[j - 1 - begin(i)] + cost(i, j - 1, along_upper));
-        if (i == 0 || j < begin(i - 1) || j > end(i - 1)) continue;
-        const double by_lower = above[j - begin(i - 1)] + cost(i - 1, j, along_lower);
-        if (by_lower >= least) continue;
-        least = by_lower;
-        came[i][j - begin(i)] = along_lower;
-      }
-    }
-    Path path{start, row.back(), std::vector<std::size_t>(m_ + 1)};
-    path.last[m_] = start + n_;
-    for (std::size_t i = m_, j = start + n_; i > 0;) {
-      if (came[i][j - begin(i)] == along_upper) {
-        --j;
-        continue;
-      }
-      path.last[--i] = j;
-    }
-    return path;
-  }
-
-  std::size_t m_, n_;
-  std::array<std::vector<double>, 2> costs_;  ///< cost of each step from (i, j), at i * (n + 1) + j
-};
-
-std::vector<Step> steps_of(const Path& path) {
-  std::vector<Step> steps;
-  for (std::size_t i = 0; i < path.last.size(); ++i) {
-    if (i > 0) steps.push_back(along_lower);
-    steps.insert(steps.end(), path.last[i] - path.first(i), along_upper);
-  }
-  return steps;
+  path.last.push_back(column);
+  return path;
 }
 
 /// The span at which a path's strip degenerates into two cones: all steps along one ring start at one point
@@ -366,80 +273,351 @@ struct Band {
   std::size_t end(std::size_t row) const { return high.last[row]; }
 };
 
-/// All columns.
+/// All columns of paths from any start.
 Band all_of(const Pair& pair) {
   const std::size_t rows = pair.m() + 1;
-  return {{0, 0.0, std::vector<std::size_t>(rows, 0)}, {0, 0.0, std::vector<std::size_t>(rows, pair.n())}};
+  return {{0, std::vector<std::size_t>(rows, 0)}, {0, std::vector<std::size_t>(rows, 2 * pair.n())}};
 }
 
 /// The columns within `reach` of those of a path of steps from (0, 0).
-Band about(const std::vector<Step>& steps, const Pair& pair, std::size_t reach) {
-  Band band = all_of(pair);
-  std::size_t row = 0, column = 0;
-  for (const Step step : steps) {
-    if (step == along_upper) {
-      ++column;
-      continue;
-    }
-    band.high.last[row] = std::min(pair.n(), column + reach);
-    band.low.last[row++] = column - std::min(column, reach);
-  }
+Band about(const std::vector<Step>& steps, std::size_t reach) {
+  Band band{path_of(steps, 0), path_of(steps, 0)};
+  for (std::size_t& column : band.low.last) column -= std::min(column, reach);
+  for (std::size_t& column : band.high.last) column += reach;
   return band;
 }
 
-/// The path from (0, 0) within a band with the least sum of angles. A node has a sum for each step that may
-/// have led to it, as an angle is between the triangle of that step and the next.
-std::vector<Step> least_angle_steps(const Pair& pair, const Band& band,
-                                    std::array<std::size_t, 2> start = {0, 0}, const Blame* blame = nullptr) {
-  const std::size_t m = pair.m(), n = pair.n();
-  // An upper bound on the sum of a strip's angles.
-  const double weight = 4.0 * static_cast<double>(m + n);
-  constexpr double far = std::numeric_limits<double>::infinity();
-  using Sums = std::array<double, 2>;
-  std::vector<Sums> row(n + 1, {far, far}), above;
-  std::vector<std::array<Step, 2>> came((m + 1) * (n + 1));
-  for (std::size_t i = 0; i <= m; ++i) {
-    above.swap(row);
-    row.assign(n + 1, {far, far});
-    for (std::size_t j = band.begin(i); j <= band.end(i); ++j) {
-      if (i == 0 && j == 0) {
-        row[0] = {0.0, 0.0};
-        continue;
-      }
-      for (const Step step : {along_lower, along_upper}) {
-        if (step == along_lower ? i == 0 : j == 0) continue;
-        const std::size_t from_i = step == along_lower ? i - 1 : i, from_j = step == along_lower ? j : j - 1;
-        const Sums& from = step == along_lower ? above[j] : row[j - 1];
-        const Triangle here = pair.triangle(from_i, from_j, step);
-        const double blamed =
-            blame != nullptr ? weight * blame->of(start[0] + from_i, start[1] + from_j, step) : 0.0;
-        for (const Step before : {along_lower, along_upper}) {
-          if (from[before] == far) continue;
-          double total = from[before] + blamed;
-          if (from_i > 0 || from_j > 0) {
-            const Triangle last = before == along_lower ? pair.triangle(from_i - 1, from_j, before)
-                                                        : pair.triangle(from_i, from_j - 1, before);
-            total += angle_between(last.normal(), here.normal());
+/// What a path costs: first the blame of its spans, then the sum of its costs.
+struct Sum {
+  int blame = 0;
+  double cost = 0.0;
+  std::partial_ordering operator<=>(const Sum&) const = default;
+};
+constexpr Sum no_limit{std::numeric_limits<int>::max(), std::numeric_limits<double>::infinity()};
+
+/// A path of least sum from a start.
+struct Found {
+  Sum sum;
+  std::size_t start = 0;
+  std::vector<Step> steps;
+};
+
+/// Finds paths of least sum between two rings.
+class LeastPath {
+ public:
+  /// `start` is the pair's start in its rings.
+  LeastPath(const Pair& pair, TileCost cost, const std::array<std::size_t, 2>& start,
+            const Blame* blame = nullptr)
+      : pair_(pair), cost_(cost), start_(start), blame_(blame), m_(pair.m()), n_(pair.n()) {}
+
+  /// The path of least sum from (0, 0), which no path near these steps from (0, 0) can exceed.
+  Found find_from_start(const std::vector<Step>& steps_near) {
+    bound_rest();
+    constexpr std::size_t reach = 8;
+    const Sum known = from(0, about(steps_near, reach), no_limit)->sum;
+    const Band all = all_of(pair_);
+    // Most strips need little blame, and few nodes are reached with little.
+    const int least = least_rest(0, 0, 0).blame;
+    for (int more = 0; least + more < known.blame; more = std::max(1, 4 * more))
+      if (auto found = from(0, all, {least + more, no_limit.cost})) return *std::move(found);
+    return *from(0, all, limit(known));
+  }
+
+  /// The path of least sum from (0, 0) in a band that holds one.
+  Found find_in(const Band& band) { return *from(0, band, no_limit); }
+
+  /// The path of least sum among all starts.
+  Found find(const std::vector<Step>& steps_near) {
+    Found best = find_from_start(steps_near);
+    const Path low = path_of(best.steps, 0);
+    Path high = low;
+    high.start += n_;
+    for (std::size_t& column : high.last) column += n_;
+    search({low, high}, 0, n_, best);
+    return best;
+  }
+
+  /// The path of least sum from (0, 0) to (m, n) whose strip is a surface, which means that its steps along
+  /// the upper ring start at two or more points of the lower ring. Any other strip contains a span twice.
+  /// With three points on each ring such a path exists. For costs of single triangles.
+  std::vector<Step> surface_steps() const {
+    // The points of the lower ring at which the steps along the upper ring have started so far.
+    enum Held : std::uint8_t { nowhere, at_start, here, behind, at_two, held_count };
+    struct Came {
+      Step step = along_lower;
+      Held from = nowhere;
+    };
+    const auto after = [&](Held held, std::size_t row, Step step) {
+      if (step == along_lower) return held == here ? behind : held;
+      const bool is_start = row == 0 || row == m_;
+      if (held == nowhere) return is_start ? at_start : here;
+      if (held == at_start) return is_start ? at_start : at_two;
+      return held == here ? here : at_two;
+    };
+    std::array<Sum, held_count> unreached;
+    unreached.fill(no_limit);
+    std::vector<std::array<Sum, held_count>> row(n_ + 1, unreached), next(n_ + 1, unreached);
+    std::vector<std::array<Came, held_count>> came((m_ + 1) * (n_ + 1));
+    row[0][nowhere] = {};
+    for (std::size_t i = 0; i <= m_; ++i) {
+      for (std::size_t j = 0; j <= n_; ++j)
+        for (const Step step : {along_lower, along_upper}) {
+          if (step == along_lower ? i == m_ : j == n_) continue;
+          const Triangle triangle = pair_.triangle(i, j, step);
+          const Sum own{blame_of(i, j, step), own_cost(triangle, step, triangle.normal())};
+          auto& to = step == along_lower ? next[j] : row[j + 1];
+          for (std::uint8_t h = 0; h < held_count; ++h) {
+            if (row[j][h] == no_limit) continue;
+            const Sum total{row[j][h].blame + own.blame, row[j][h].cost + own.cost};
+            const Held held = after(static_cast<Held>(h), i, step);
+            if (!(total < to[held])) continue;
+            to[held] = total;
+            came[(i + (step == along_lower)) * (n_ + 1) + j + (step == along_upper)][held] = {
+                step, static_cast<Held>(h)};
           }
-          if (total >= row[j][step]) continue;
-          row[j][step] = total;
-          came[i * (n + 1) + j][step] = before;
         }
+      row.swap(next);
+      std::fill(next.begin(), next.end(), unreached);
+    }
+    std::vector<Step> steps;
+    Held held = at_two;
+    for (std::size_t i = m_, j = n_; i > 0 || j > 0;) {
+      const Came& last = came[i * (n_ + 1) + j][held];
+      steps.push_back(last.step);
+      --(last.step == along_lower ? i : j);
+      held = last.from;
+    }
+    return {steps.rbegin(), steps.rend()};
+  }
+
+ private:
+  /// A node within the limit, with the best path to it by each last step, as an angle is between two triangles.
+  struct Node {
+    std::size_t column = 0;
+    std::array<Sum, 2> sums{no_limit, no_limit};
+    std::array<glm::dvec3, 2> normals{};  ///< of the last steps' triangles
+    bool is_start = false;
+    std::uint8_t came = 0;  ///< bit s: the step before last step s was along the upper ring
+  };
+
+  /// The nodes that a search has reached. Each row is a few runs of columns.
+  struct Reached {
+    struct Run {
+      std::size_t column, node;
+    };
+    std::vector<std::vector<Run>> rows;
+    std::vector<std::uint8_t> came;  ///< of each node
+
+    void add(const Node& node) {
+      std::vector<Run>& runs = rows.back();
+      if (runs.empty() || came.size() - runs.back().node != node.column - runs.back().column)
+        runs.push_back({node.column, came.size()});
+      came.push_back(node.came);
+    }
+    std::uint8_t came_to(std::size_t row, std::size_t column) const {
+      const std::vector<Run>& runs = rows[row];
+      const auto after = std::upper_bound(runs.begin(), runs.end(), column,
+                                          [](std::size_t c, const Run& run) { return c < run.column; });
+      return came[(after - 1)->node + column - (after - 1)->column];
+    }
+  };
+
+  /// The last step that wins where sums are equal.
+  Step preferred() const { return cost_ == TileCost::least_angle ? along_lower : along_upper; }
+
+  /// A limit for sums at nodes of paths that end with at most this sum.
+  Sum limit(const Sum& end) const {
+    return {end.blame, cost_ == TileCost::greatest_volume ? no_limit.cost : end.cost};
+  }
+
+  /// Sums up the least blame and the least cost of a step to each row and to each column, apart from angles and
+  /// volumes, which have no bound.
+  void bound_rest() {
+    std::array least{std::vector<Sum>(m_, no_limit), std::vector<Sum>(n_, no_limit)};
+    if (blame_ != nullptr) {
+      const auto [of_lower, of_upper] = blame_->least();
+      // The step from row i leads to row i + 1.
+      for (std::size_t i = 0; i < m_; ++i) least[0][i].blame = of_lower[(start_[0] + i + 1) % m_];
+      for (std::size_t j = 0; j < n_; ++j) least[1][j].blame = of_upper[(start_[1] + j + 1) % n_];
+    }
+    const bool is_bounded = cost_ == TileCost::least_area || cost_ == TileCost::shortest_span;
+    for (std::size_t i = 0; i < m_ && is_bounded; ++i)
+      for (std::size_t j = 0; j < n_; ++j)
+        for (const Step step : {along_lower, along_upper}) {
+          const Triangle triangle = pair_.triangle(i, j, step);
+          double& cost = least[step][step == along_lower ? i : j].cost;
+          cost = std::min(cost, own_cost(triangle, step, triangle.normal()));
+        }
+    const auto summed = [&](const std::vector<Sum>& steps, std::size_t count) {
+      std::vector<Sum> sums(count + 1);
+      for (std::size_t k = 0; k < count; ++k) {
+        const Sum& step = steps[k % steps.size()];
+        sums[k + 1] = {sums[k].blame + (blame_ != nullptr ? step.blame : 0),
+                       sums[k].cost + (is_bounded ? step.cost : 0.0)};
       }
+      return sums;
+    };
+    to_row_ = summed(least[0], m_);
+    to_column_ = summed(least[1], 2 * n_);
+  }
+
+  /// A lower bound of the sum of the steps from a node to the end of a path from a start: one step leads to each
+  /// row and one to each column.
+  Sum least_rest(std::size_t i, std::size_t j, std::size_t start) const {
+    if (to_row_.empty()) return {};
+    const Sum &row = to_row_[i], &column = to_column_[j], &last_row = to_row_[m_];
+    const Sum& last_column = to_column_[start + n_];
+    return {last_row.blame - row.blame + last_column.blame - column.blame,
+            last_row.cost - row.cost + last_column.cost - column.cost};
+  }
+
+  int blame_of(std::size_t i, std::size_t j, Step step) const {
+    return blame_ != nullptr ? blame_->of(start_[0] + i, start_[1] + j, step) : 0;
+  }
+
+  /// A triangle's cost apart from angles.
+  double own_cost(const Triangle& t, Step step, const glm::dvec3& normal) const {
+    switch (cost_) {
+      // A step's own span is the one that it leads to: from b along the lower ring, from a along the upper one.
+      case TileCost::shortest_span:
+        return glm::distance(step == along_lower ? t.b : t.a, t.c);
+      case TileCost::least_area:
+        return 0.5 * glm::length(normal);
+      case TileCost::greatest_volume:
+        return -glm::dot(t.a - pair_.lower.front(), normal) / 6.0;
+      case TileCost::least_angle:
+        return 0.0;
+    }
+    assert(false);
+    return 0.0;
+  }
+
+  /// What a search looks for: a path from (0, start) with at most this sum.
+  struct Aim {
+    std::size_t start;
+    Sum most;
+  };
+
+  /// Improves the paths to a node by those that lead through its neighbour (i, from.column).
+  void arrive(Node& to, const Node& from, std::size_t i, Step step, const Aim& aim) const {
+    const std::size_t j = from.column < n_ ? from.column : from.column - n_;
+    const int blame = blame_of(i, j, step);
+    const Sum rest = least_rest(i + (step == along_lower), to.column, aim.start);
+    // Steps whose own cost is not needed to refuse them: no cost is below zero where the limit has one.
+    const Sum& least = std::min(from.sums[0], from.sums[1]);
+    if (Sum{least.blame + blame + rest.blame, least.cost + rest.cost} > aim.most) return;
+    const Triangle triangle = pair_.triangle(i, j, step);
+    const glm::dvec3 normal = triangle.normal();
+    const double cost = own_cost(triangle, step, normal);
+    to.normals[step] = normal;
+    for (const Step before : {preferred(), preferred() == along_lower ? along_upper : along_lower}) {
+      if (from.sums[before] == no_limit) continue;
+      Sum total{from.sums[before].blame + blame, from.sums[before].cost + cost};
+      const auto is_better = [&] {
+        return total < to.sums[step] && Sum{total.blame + rest.blame, total.cost + rest.cost} <= aim.most;
+      };
+      // Angles only add to it.
+      if (!is_better()) continue;
+      if (cost_ == TileCost::least_angle && !from.is_start)
+        total.cost += angle_between(from.normals[before], normal);
+      if (!is_better()) continue;
+      to.sums[step] = total;
+      to.came = static_cast<std::uint8_t>((to.came & ~(1u << step)) | (unsigned{before} << step));
     }
   }
-  std::vector<Step> steps;
-  Step step = row[n][along_lower] <= row[n][along_upper] ? along_lower : along_upper;
-  for (std::size_t i = m, j = n; i > 0 || j > 0;) {
-    steps.push_back(step);
-    const Step before = came[i * (n + 1) + j][step];
-    --(step == along_lower ? i : j);
-    step = before;
-  }
-  return {steps.rbegin(), steps.rend()};
-}
 
-/// About 1 GB: 17 bytes per pair of points, or 2 for the least angle.
+  /// The path of least sum from (0, start) to (m, start + n) in a band. None if at any of its nodes its sum so
+  /// far, with the least of the rest, exceeds `most`.
+  std::optional<Found> from(std::size_t start, const Band& band, const Sum& most) {
+    // Sums in another order differ by rounding, a part of 2^-53 for each of their terms.
+    const double rounding = 0x1p-50 * static_cast<double>(m_ + n_);
+    reached_count_ = 0;
+    const Aim aim{start, {most.blame, most.cost + rounding * std::abs(most.cost)}};
+    if (least_rest(0, start, start) > aim.most) return {};
+    if (blame_ != nullptr && (*blame_)(start_[0], start_[1] + start) > most.blame) return {};
+    Reached reached;
+    std::vector<Node> row, above;
+    for (std::size_t i = 0; i <= m_; ++i) {
+      above.swap(row);
+      row.clear();
+      reached.rows.emplace_back();
+      const std::size_t begin = std::max(band.begin(i), start), end = std::min(band.end(i), start + n_);
+      auto lower =
+          std::lower_bound(above.begin(), above.end(), begin,
+                           [](const Node& node, std::size_t column) { return node.column < column; });
+      if (i == 0) {
+        row.push_back({start});
+        row.back().is_start = true;
+        row.back().sums[preferred()] = {};
+        reached.add(row.back());
+      }
+      // From the last column, or the next one of the row above.
+      for (bool goes_on = i == 0;;) {
+        Node node;
+        const bool by_upper = goes_on && row.back().column < end;
+        const bool by_lower = lower != above.end() && lower->column <= end &&
+                              (!by_upper || lower->column <= row.back().column + 1);
+        if (!by_upper && !by_lower) break;
+        node.column = by_lower ? lower->column : row.back().column + 1;
+        if (by_upper && node.column == row.back().column + 1) arrive(node, row.back(), i, along_upper, aim);
+        if (by_lower) arrive(node, *lower++, i - 1, along_lower, aim);
+        goes_on = node.sums[along_lower] != no_limit || node.sums[along_upper] != no_limit;
+        if (!goes_on) continue;
+        row.push_back(node);
+        reached.add(node);
+      }
+      reached_count_ = reached.came.size();
+      if (row.empty()) return {};
+    }
+    if (row.back().column != start + n_) return {};
+    const std::array<Sum, 2>& sums = row.back().sums;
+    const Step other = preferred() == along_lower ? along_upper : along_lower;
+    Step step = sums[preferred()] <= sums[other] ? preferred() : other;
+    Found found{sums[step], start, {}};
+    for (std::size_t i = m_, j = start + n_; i > 0 || j > start;) {
+      found.steps.push_back(step);
+      const Step before = (reached.came_to(i, j) >> step & 1u) != 0 ? along_upper : along_lower;
+      --(step == along_lower ? i : j);
+      step = before;
+    }
+    std::reverse(found.steps.begin(), found.steps.end());
+    return found;
+  }
+
+  /// Improves the best path by those between two others that start after one column and before another.
+  void search(const Band& between, std::size_t after, std::size_t before, Found& best) {
+    if (before - after < 2) return;
+    const std::size_t middle = (after + before) / 2;
+    auto found = from(middle, between, limit(best.sum));
+    // Failed searches narrow none of those between. Once they have reached a quarter of all nodes, the start's own
+    // best path does.
+    if (!found && (failed_count_ += reached_count_) > m_ * n_ / 4) {
+      failed_count_ = 0;
+      found = from(middle, between, no_limit);
+    }
+    if (!found) {
+      search(between, after, middle, best);
+      search(between, middle, before, best);
+      return;
+    }
+    const Path path = path_of(found->steps, middle);
+    if (found->sum < best.sum || (found->sum == best.sum && middle < best.start)) best = *std::move(found);
+    search({between.low, path}, after, middle, best);
+    search({path, between.high}, middle, before, best);
+  }
+
+  const Pair& pair_;
+  TileCost cost_;
+  std::array<std::size_t, 2> start_;
+  const Blame* blame_;
+  std::size_t m_, n_;
+  std::size_t reached_count_ = 0;        ///< nodes of the last search
+  std::size_t failed_count_ = 0;         ///< nodes of failed searches since the last without a limit
+  std::vector<Sum> to_row_, to_column_;  ///< the least from the first row and column; empty for none
+};
+
+/// About 1 GB: a byte per pair of points, of which many are left out, and one for each span's score; for paths
+/// from each start at most 14.
 std::size_t most_pairs(TileCost cost) {
   return std::size_t{1} << (cost == TileCost::least_angle ? 29 : 26);
 }
@@ -479,44 +657,45 @@ std::vector<std::array<std::uint32_t, 3>> faces_of(const Ring& lower, const Ring
   return faces;
 }
 
+/// The best strip among all starts for costs of single triangles, else from the start, with the blame if any.
+std::vector<std::array<std::uint32_t, 3>> best_strip(const Ring& lower, const Ring& upper, TileCost cost,
+                                                     const std::array<std::size_t, 2>& start,
+                                                     const Blame* blame) {
+  const std::vector<Step> greedy = greedy_steps(lower, upper, start, blame);
+  const Pair pair{turned(lower, start[0]), turned(upper, start[1])};
+  LeastPath paths(pair, cost, start, blame);
+  const bool any_start = cost == TileCost::least_area || cost == TileCost::greatest_volume;
+  const Found found = any_start ? paths.find(greedy) : paths.find_from_start(greedy);
+  const std::size_t m = lower.points_mm.size(), n = upper.points_mm.size();
+  const std::array<std::size_t, 2> from{start[0], (start[1] + found.start) % n};
+  if (blame == nullptr || cost == TileCost::least_angle) return faces_of(lower, upper, from, found.steps);
+  const auto neck = neck_of(path_of(found.steps, 0), n);
+  if (!neck) return faces_of(lower, upper, from, found.steps);
+  const std::array<std::size_t, 2> at{(from[0] + (*neck)[0]) % m, (from[1] + (*neck)[1]) % n};
+  const Pair of_neck{turned(lower, at[0]), turned(upper, at[1])};
+  return faces_of(lower, upper, at, LeastPath(of_neck, cost, at, blame).surface_steps());
+}
+
 }  // namespace
 
 std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& upper, TileCost cost) {
   check(lower, upper, cost);
-  if (cost == TileCost::least_area || cost == TileCost::greatest_volume) {
-    const Path path = LeastPath({turned(lower, 0), turned(upper, 0)}, cost).find();
-    return faces_of(lower, upper, {0, path.start}, steps_of(path));
-  }
   const std::array<std::size_t, 2> start = start_of(lower, upper);
   if (cost == TileCost::shortest_span)
     return faces_of(lower, upper, start, greedy_steps(lower, upper, start));
-  const Pair pair{turned(lower, start[0]), turned(upper, start[1])};
-  return faces_of(lower, upper, start, least_angle_steps(pair, all_of(pair)));
+  return best_strip(lower, upper, cost, start, nullptr);
 }
 
 std::vector<std::array<std::uint32_t, 3>> tile_clear(
     const Ring& lower, const Ring& upper, TileCost cost, const SpanClearance& sides,
-    const std::vector<std::array<std::uint32_t, 3>>& avoided) {
+    std::vector<std::uint8_t>& scores, const std::vector<std::array<std::uint32_t, 3>>& avoided) {
   check(lower, upper, cost);
-  const Blame blame(lower, upper, sides, avoided);
-  if (cost == TileCost::least_area || cost == TileCost::greatest_volume) {
-    const Path path = LeastPath({turned(lower, 0), turned(upper, 0)}, cost, &blame).find();
-    const auto neck = neck_of(path, upper.points_mm.size());
-    if (!neck) return faces_of(lower, upper, {0, path.start}, steps_of(path));
-    const Pair pair{turned(lower, (*neck)[0]), turned(upper, (*neck)[1])};
-    return faces_of(lower, upper, *neck, LeastPath(pair, cost, &blame, *neck).surface_steps());
-  }
+  const Blame blame(lower, upper, sides, avoided, scores);
   const std::array<std::size_t, 2> start = start_of(lower, upper, &blame);
   const bool has_room = lower.points_mm.size() * upper.points_mm.size() <= most_pairs(TileCost::least_area);
   if (cost == TileCost::shortest_span && (avoided.empty() || !has_room))
     return faces_of(lower, upper, start, greedy_steps(lower, upper, start, &blame));
-  const Pair pair{turned(lower, start[0]), turned(upper, start[1])};
-  if (cost == TileCost::least_angle)
-    return faces_of(lower, upper, start, least_angle_steps(pair, all_of(pair), start, &blame));
-  const LeastPath spans(pair, cost, &blame, start);
-  const Path path = spans.find_from_start();
-  return faces_of(lower, upper, start,
-                  neck_of(path, upper.points_mm.size()) ? spans.surface_steps() : steps_of(path));
+  return best_strip(lower, upper, cost, start, &blame);
 }
 
 std::vector<std::array<std::uint32_t, 3>> tile_near(const Ring& lower, const Ring& upper, TileCost cost,
@@ -526,11 +705,7 @@ std::vector<std::array<std::uint32_t, 3>> tile_near(const Ring& lower, const Rin
   const std::vector<Step> shortest = greedy_steps(lower, upper, start);
   if (cost == TileCost::shortest_span || band == 0) return faces_of(lower, upper, start, shortest);
   const Pair pair{turned(lower, start[0]), turned(upper, start[1])};
-  const Band within = about(shortest, pair, band);
-  const std::vector<Step> steps = cost == TileCost::least_angle
-                                      ? least_angle_steps(pair, within)
-                                      : steps_of(LeastPath(pair, cost).find_between(within.low, within.high));
-  return faces_of(lower, upper, start, steps);
+  return faces_of(lower, upper, start, LeastPath(pair, cost, start).find_in(about(shortest, band)).steps);
 }
 
 }  // namespace octotomy::brep

@@ -31,8 +31,9 @@ struct Ring {
 /// shifted shapes are matched by shape; least_angle is optimal among the strips through this span. A strip
 /// may cross itself if the rings differ much. Throws std::invalid_argument if a ring has fewer than three
 /// points or the lower one is not lower, Error (Resource) if tables would take more than a gigabyte. Cost: m
-/// n time for the start alone; m n log n time and 17 m n bytes for the best of all strips; 2 m n bytes for
-/// least_angle. Source: the papers named above.
+/// n time with a small factor, plus that of the pairs of points that may be on the best strip: few for least_area
+/// between similar rings, all for least_angle and greatest_volume; at worst m n log n, and 2 m n bytes. Source: the
+/// papers named above.
 std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& upper, TileCost cost);
 
 /// The best strip by the cost among those near the strip of shortest spans: from the lower ring's point i, its
@@ -51,10 +52,11 @@ std::vector<std::array<std::uint32_t, 3>> tile_near(const Ring& lower, const Rin
 /// shortest_span minimises the sum of its spans instead of choosing step by step, because a single step does
 /// not show which triangles follow; rings too long for the tables are still tiled step by step. If the best
 /// strip by least_area or greatest_volume is two cones that meet at one span, which is no surface, the best
-/// surface that contains this span is returned. Throws and costs as tile(), plus a test of each span against
-/// the sides near it.
+/// surface that contains this span is returned. `scores` keeps a byte per pair of points from one call for the
+/// same rings and sides to the next; empty at first. Throws and costs as tile(), plus a test against the sides
+/// near it of each span that a good strip may contain.
 std::vector<std::array<std::uint32_t, 3>> tile_clear(
     const Ring& lower, const Ring& upper, TileCost cost, const SpanClearance& sides,
-    const std::vector<std::array<std::uint32_t, 3>>& avoided = {});
+    std::vector<std::uint8_t>& scores, const std::vector<std::array<std::uint32_t, 3>>& avoided = {});
 
 }  // namespace octotomy::brep

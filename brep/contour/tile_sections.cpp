@@ -120,7 +120,8 @@ class Strips {
         strips_(surface.groups.size()),
         sides_(slab.lower, slab.upper),
         attempts_(surface.groups.size(), first_attempt(cost)),
-        avoided_(surface.groups.size()) {
+        avoided_(surface.groups.size()),
+        scores_(surface.groups.size()) {
     for (std::size_t g = 0; g < strips_.size(); ++g) {
       if (!is_pair(surface.groups[g])) continue;
       strips_[g] = strip_of(g);
@@ -202,10 +203,13 @@ class Strips {
     return cost_ == TileCost::least_area && attempt > shortest_attempt;
   }
 
-  FaceList attempted(const Ring& below, const Ring& above, int attempt, const FaceList& avoided) const {
+  FaceList attempted(const Ring& below, const Ring& above, std::size_t g) {
+    const int attempt = attempts_[g];
     const std::size_t points = std::max(below.points_mm.size(), above.points_mm.size());
     if (attempt == 0) return tile(below, above, cost_);
-    if (attempt <= last_clear_attempt) return tile_clear(below, above, cost_, sides_, avoided);
+    if (attempt <= last_clear_attempt)
+      return tile_clear(below, above, cost_, sides_, scores_[g], avoided_[g]);
+    scores_[g] = {};
     if (attempt <= shortest_attempt) return tile_near(below, above, cost_, band(points, attempt));
     return attempt < most_attempts ? tile_near(below, above, TileCost::least_area, eighth(points))
                                    : tile(below, above, TileCost::least_area);
@@ -271,10 +275,10 @@ class Strips {
             point_count(slab_.lower) + first_of(slab_.upper, group.upper[0])};
   }
 
-  FaceList strip_of(std::size_t g) const {
+  FaceList strip_of(std::size_t g) {
     const Place place = place_of(surface_.groups[g]);
     const Ring below{place.lower.points_mm, slab_.low_mm}, above{place.upper.points_mm, slab_.high_mm};
-    FaceList strip = attempted(below, above, attempts_[g], avoided_[g]);
+    FaceList strip = attempted(below, above, g);
     for (auto& face : strip)
       for (std::uint32_t& v : face) v = v < place.m ? place.of_lower + v : place.of_upper + (v - place.m);
     return strip;
@@ -314,8 +318,9 @@ class Strips {
   std::optional<double> most_span_mm_;
   std::vector<FaceList> strips_;  ///< of each group; empty where overlay()'s stands
   SpanClearance sides_;
-  std::vector<int> attempts_;      ///< of each group, after the first
-  std::vector<FaceList> avoided_;  ///< of each group, in the numbers of its rings
+  std::vector<int> attempts_;                      ///< of each group, after the first
+  std::vector<FaceList> avoided_;                  ///< of each group, in the numbers of its rings
+  std::vector<std::vector<std::uint8_t>> scores_;  ///< of each group's spans, for further clear attempts
 };
 
 Tiled tile_slab(const Slab& slab, const TileSectionsOptions& options) {

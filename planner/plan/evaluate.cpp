@@ -24,6 +24,7 @@
 #include "planner/operation/object/certify.h"
 #include "planner/operation/object/import.h"
 #include "planner/operation/object/provenance.h"
+#include "planner/operation/object/tile.h"
 #include "planner/operation/table/fault.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/same_patient.h"
@@ -170,7 +171,7 @@ class Evaluator {
   }
 
   void read_scans() {
-    if (plan_.scans.empty()) set_universe(universe_of(import_boxes(), plan_.voxel_mm));
+    if (plan_.scans.empty()) set_universe(universe_of(boxes_of_steps(), plan_.voxel_mm));
     for (const std::string& name : scans_in_use()) {
       report("read " + name, 0.0);
       const ScanSource& source = plan_.scans.at(name);
@@ -217,13 +218,17 @@ class Evaluator {
     }
   }
 
-  /// The boxes of all meshes that steps import, wanted or not, so that the universe is always the same.
-  std::vector<voxel::Box> import_boxes() {
+  /// The boxes of all meshes that steps import and of all tiled contours, wanted or not, so that the universe is
+  /// always the same.
+  std::vector<voxel::Box> boxes_of_steps() {
     const Stopwatch watch(result_.timings, "read");
     std::vector<voxel::Box> boxes;
     for (const Step& step : plan_.steps)
-      if (is_import(step.action))
-        name_step_in_errors(step.id, [&] { boxes.push_back(import_box(step.action, plan_.folder)); });
+      if (is_import(step.action) || is_tile(step.action))
+        name_step_in_errors(step.id, [&] {
+          boxes.push_back(is_tile(step.action) ? tile_box(step.action, plan_.folder)
+                                               : import_box(step.action, plan_.folder));
+        });
     return boxes;
   }
 

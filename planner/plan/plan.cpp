@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "planner/operation/object/import.h"
+#include "planner/operation/object/tile.h"
 #include "planner/operation/table/fault.h"
 #include "planner/operation/table/field_json.h"
 #include "planner/operation/table/json.h"
@@ -88,8 +89,7 @@ std::map<std::string, ScanSource> scans_of(const Keys& top) {
   if (!value->is_object() || value->empty())
     refuse("scans",
            "must name at least one scan, as {\"ct\": {\"path\": \"head.nrrd\"}}; a plan of imported meshes "
-           "alone "
-           "leaves it out");
+           "and tiled contours alone leaves it out");
   for (const auto& [name, entry] : value->items()) {
     const Keys keys(entry, "scans, " + name,
                     {"path", "sha256", "series", "join", "slices", "frame", "unit", "spacing_mm", "raw",
@@ -215,11 +215,12 @@ Plan parse_plan(const std::string& json, const std::filesystem::path& folder) {
   if (!steps.is_array() || steps.empty()) refuse("steps", "must be a list of at least one step");
   Scope scope(names_of(plan.scans), folder);
   for (const SortedJson& step : steps) plan.steps.push_back(step_of(step, plan.steps.size(), scope));
-  const auto is_imported = [](const Step& step) { return is_import(step.action); };
-  if (plan.scans.empty() && std::none_of(plan.steps.begin(), plan.steps.end(), is_imported))
-    refuse(
-        "scans",
-        "must name at least one scan, as {\"ct\": {\"path\": \"head.nrrd\"}}, where no step imports a mesh");
+  const auto needs_no_scan = [](const Step& step) { return is_import(step.action) || is_tile(step.action); };
+  if (plan.scans.empty() && std::none_of(plan.steps.begin(), plan.steps.end(), needs_no_scan))
+    refuse("scans",
+           "must name at least one scan, as {\"ct\": {\"path\": \"head.nrrd\"}}, where no step imports a "
+           "mesh or "
+           "tiles contours");
   plan.landmarks = scope.landmarks();
   plan.lps_from_head = scope.lps_from_head();
   return plan;

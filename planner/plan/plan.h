@@ -34,7 +34,7 @@ struct Plan {
   std::string text;                         ///< the JSON from which it was read
   std::filesystem::path file;               ///< empty if the plan was not read from a file
   std::filesystem::path folder;             ///< folder of the plan
-  std::map<std::string, ScanSource> scans;  ///< none if all of its objects come from imported meshes
+  std::map<std::string, ScanSource> scans;  ///< none if all objects come from imported meshes and contours
   /// Edge of the universe's voxels. None: as fine as the scan, at most 512 a side; without scans a 128th of
   /// the longest imported mesh.
   std::optional<double> voxel_mm;

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // An object from contours on parallel slices, typed, drawn in the page or of a file. The voxel kernel interpolates
 // the slices' distances, the mesh kernel tiles them.
+#include "planner/operation/object/tile.h"
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "brep/contour/sections_between.h"
 #include "planner/operation/file/contour_findings.h"
@@ -20,6 +23,8 @@
 
 namespace octotomy::planner {
 namespace {
+
+constexpr const char* tile_name = "tile";
 
 struct Tile {
   struct Slice {
@@ -159,8 +164,36 @@ void bound(const Tile& tile, const BoundBench& bench, Object& made) {
 
 }  // namespace
 
+bool is_tile(const Action& action) {
+  return action.operation().name == tile_name;
+}
+
+voxel::Box tile_box(const Action& action, const std::filesystem::path& folder) {
+  const Tile& tile = *static_cast<const Tile*>(action.value());
+  std::vector<std::string> findings;
+  const voxel::SliceMask mask = drawn_in(tile, folder, findings);
+  const auto& slices = mask.slices;
+  const std::size_t last = slices.size() - 1;
+  constexpr double far = std::numeric_limits<double>::infinity();
+  voxel::Box box{glm::dvec3(far), glm::dvec3(-far)};
+  for (std::size_t s = 0; s <= last; ++s) {
+    // Half way to the neighbours, or as far beyond an end.
+    const double below_mm = slices[s == 0 ? 1 : s].position_mm - slices[s == 0 ? 0 : s - 1].position_mm;
+    const double above_mm =
+        slices[s == last ? last : s + 1].position_mm - slices[s == last ? last - 1 : s].position_mm;
+    for (const auto& polygon : slices[s].polygons_mm)
+      for (const glm::dvec2& p : polygon)
+        for (const double by_mm : {-0.5 * below_mm, 0.5 * above_mm}) {
+          const glm::dvec3 at =
+              p.x * mask.view.right + p.y * mask.view.up + (slices[s].position_mm + by_mm) * mask.view.look;
+          box = {glm::min(box.low_mm, at), glm::max(box.high_mm, at)};
+        }
+  }
+  return box;
+}
+
 Operation tile_operation() {
-  return Describe<Tile>("tile", "Makes an object from contours on parallel slices.", Makes::Object)
+  return Describe<Tile>(tile_name, "Makes an object from contours on parallel slices.", Makes::Object)
       .takes(field("view", &Tile::view,
                    "The view of the scan as it lies in which the contours are drawn; it looks across their "
                    "slices.")

@@ -32,7 +32,7 @@ SampleWindow parse_sample_window(const std::string& text) {
   const auto colon = text.find(':');
   const std::string high = colon == std::string::npos ? "" : text.substr(colon + 1);
   const std::optional<double> low_value = number_in(text.substr(0, colon)), high_value = number_in(high);
-  if (!low_value || (!high.empty() && !high_value))
+  if (colon == std::string::npos || !low_value || (!high.empty() && !high_value))
     throw std::runtime_error("'" + text + "' is no window: give LOW:HIGH or LOW:, for example 300:3000, " +
                              "or a tissue" + suggestion(text, tissue_names()));
   if (high_value && *high_value < *low_value)

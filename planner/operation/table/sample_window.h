@@ -19,7 +19,7 @@ struct SampleWindow {
   double high_or_infinity() const { return high.value_or(std::numeric_limits<double>::infinity()); }
 };
 
-/// Reads LOW:HIGH, LOW: or LOW, or a tissue's name (voxel/filter/tissue.h). Throws std::runtime_error with an
+/// Reads LOW:HIGH or LOW:, or a tissue's name (voxel/filter/tissue.h). Throws std::runtime_error with an
 /// example or the nearest tissue.
 SampleWindow parse_sample_window(const std::string& text);
 

@@ -202,6 +202,12 @@ TEST(Tile, RefusesRingsWhoseTablesWouldNotFitTheMemory) {
     }
 }
 
+std::vector<std::array<std::uint32_t, 3>> clear(const Ring& lower, const Ring& upper, TileCost cost,
+                                                const SpanClearance& sides) {
+  std::vector<std::uint8_t> scores;
+  return tile_clear(lower, upper, cost, sides, scores);
+}
+
 TEST(TileClear, KeepsToTheAreaBetweenTheRingsWhateverTheCost) {
   // A ring with a deep bay around another ring that follows it: the strip of greatest volume closes the bay.
   const auto bay = [](double out, double z) {
@@ -224,14 +230,14 @@ TEST(TileClear, KeepsToTheAreaBetweenTheRingsWhateverTheCost) {
       }
     return count;
   };
-  for (const TileCost cost : all_costs) EXPECT_EQ(crossed(tile_clear(lower, upper, cost, sides)), 0);
-  const auto clear = tile_clear(lower, upper, TileCost::greatest_volume, sides);
+  for (const TileCost cost : all_costs) EXPECT_EQ(crossed(clear(lower, upper, cost, sides)), 0);
+  const auto best = clear(lower, upper, TileCost::greatest_volume, sides);
   EXPECT_GT(crossed(tile(lower, upper, TileCost::greatest_volume)), 0) << "the bay matters";
   // Among the clear strips it is the best by its cost, as far as the other strips can show.
   for (const TileCost cost : all_costs) {
-    const auto other = tile_clear(lower, upper, cost, sides);
-    EXPECT_GE(sums_of(lower, upper, clear).cones, sums_of(lower, upper, other).cones * (1 - 1e-12));
-    EXPECT_LE(sums_of(lower, upper, tile_clear(lower, upper, TileCost::least_area, sides)).area,
+    const auto other = clear(lower, upper, cost, sides);
+    EXPECT_GE(sums_of(lower, upper, best).cones, sums_of(lower, upper, other).cones * (1 - 1e-12));
+    EXPECT_LE(sums_of(lower, upper, clear(lower, upper, TileCost::least_area, sides)).area,
               sums_of(lower, upper, other).area * (1 + 1e-12));
   }
 }
@@ -248,9 +254,9 @@ TEST(Tile, TheBestClearStripIsASurfaceWhereTwoConesHaveLessArea) {
   const Ring lower = ellipse(1.0, 1.0, 4, 0.0), upper = ellipse(0.9, 1.1, 6, 5.0, {1.2, 0.1});
   const SpanClearance sides({{lower.points_mm}}, {{upper.points_mm}});
   EXPECT_TRUE(has_double_span(tile(lower, upper, TileCost::least_area))) << "the cones matter";
-  const auto clear = tile_clear(lower, upper, TileCost::least_area, sides);
-  EXPECT_EQ(clear.size(), 10u);
-  EXPECT_FALSE(has_double_span(clear));
+  const auto best = clear(lower, upper, TileCost::least_area, sides);
+  EXPECT_EQ(best.size(), 10u);
+  EXPECT_FALSE(has_double_span(best));
 }
 
 TEST(Tile, TrianglesToAvoidAreAvoidedByEachCostWhereOthersAreAsClear) {
@@ -258,9 +264,11 @@ TEST(Tile, TrianglesToAvoidAreAvoidedByEachCostWhereOthersAreAsClear) {
   const Ring lower = wobbly(random, 0.0), upper = wobbly(random, 1.5);
   const SpanClearance sides({{lower.points_mm}}, {{upper.points_mm}});
   for (const TileCost cost : all_costs) {
-    const auto before = tile_clear(lower, upper, cost, sides);
+    std::vector<std::uint8_t> scores;
+    const auto before = tile_clear(lower, upper, cost, sides, scores);
+    EXPECT_EQ(tile_clear(lower, upper, cost, sides, scores), before) << "with all scores that were kept";
     const std::vector<std::array<std::uint32_t, 3>> avoided(8, before[3]);
-    const auto after = tile_clear(lower, upper, cost, sides, avoided);
+    const auto after = tile_clear(lower, upper, cost, sides, scores, avoided);
     EXPECT_EQ(after.size(), before.size());
     EXPECT_EQ(std::count(after.begin(), after.end(), before[3]), 0) << static_cast<int>(cost);
     EXPECT_FALSE(has_double_span(after)) << static_cast<int>(cost);

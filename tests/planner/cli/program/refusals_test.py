@@ -37,6 +37,8 @@ STEPS = [
     ({"do": "measure", "points_mm": ["menton", [0, 0, 0]]}, "landmarks"),
     ({"do": "measure", "points_mm": [[0, 0, 0], [0, 0, 0], [3, 0, 0]]}, "points_mm"),
     ({"do": "register", "object": "ball", "onto": "ball", "by": "correlation"}, "'ct'"),
+    ({"do": "tile", "contours": [{"position_mm": z, "polygons_mm": [[[0, 0], [5, 0], [0, 5]]]} for z in (0, 1e-9)]}, "slice 2"),
+    ({"do": "contours", "scan": "ct", "slice_windows": ["0.5=250"], "path": "c.json"}, "'250'"),
 ]
 # A verb's words, and what the line names.
 VERBS = [
@@ -88,6 +90,8 @@ VERBS = [
     ("segment ct.nrrd --clusters 9 -o s.octree", "--clusters"),
     ("segment ct.nrrd --window 0: --class 2 -o s.octree", "--class"),
     ("convert ct.nrrd -o dd --dicom --source nofolder", "nofolder"),
+    ("contours ct.nrrd --window 250 -o c.json", "'250'"),
+    ("contours ct.nrrd --slice-window 0.5=250 -o c.json", "'250'"),
 ]
 
 

@@ -118,6 +118,7 @@ TEST(ContoursStep, WindowsAndPixelsThatCannotBeAreRefusedInALine) {
   };
   expect(R"("slice_windows": ["250:"])", "POSITION=LOW:HIGH");
   expect(R"("slice_windows": ["30=bonny"])", "'bonny'");
+  expect(R"("slice_windows": ["30=250"])", "'250' is no window: give LOW:HIGH or LOW:");
   expect(R"("around_mm": [[0, 0, 0]])", "'tolerance'");
   expect(R"("around_mm": [[0, 0, 0]], "window": "0:", "tolerance": 5)", "leave 'window' out");
   expect(R"("window": "0:", "tolerance": 5)", "add 'around_mm'");

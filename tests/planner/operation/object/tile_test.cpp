@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/object/tile.h"
+
 #include <cmath>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -48,6 +50,26 @@ TEST(TileStep, TwoCirclesAreAFrustumInBothKernels) {
   EXPECT_EQ(tiled.definition, "2 contours in view inferior, tiled");
   EXPECT_EQ(tiled.mesh.lineage, "tiles between contours");
   EXPECT_GE(tiled.mesh.details["tiled_sections"].get<int>(), 17);
+}
+
+TEST(TileStep, APlanOfContoursAloneNeedsNoScan) {
+  const ScratchFolder folder;
+  const Plan plan =
+      parse_plan(R"({"octotomy_plan": 1, "name": "p", "universe": {"voxel_mm": 0.5}, "steps": [)" +
+                     tile(cone, R"(, "end_mm": 4)") + "]}",
+                 folder.path());
+  const Evaluation evaluation = evaluate(plan);
+  expect_certified(evaluation.object("t"), frustum_mm3(12.2, 6.4, 16.0, 4.0), 0.01);
+  const voxel::Box box = tile_box(plan.steps[0].action, folder.path());
+  glm::dvec3 low_mm(1e9), high_mm(-1e9);
+  for (const glm::dvec3& p : evaluation.object("t").mesh.within->triangles().points_mm) {
+    low_mm = glm::min(low_mm, p);
+    high_mm = glm::max(high_mm, p);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(box.low_mm[axis], low_mm[axis], 0.05);
+    EXPECT_NEAR(box.high_mm[axis], high_mm[axis], 0.05);
+  }
 }
 
 TEST(TileStep, AnObliqueViewTurnsTheFrustum) {

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <optional>
 
 #include "planner/operation/table/json.h"
+#include "tests/planner/procedure/template/on_the_head.h"
 #include "tests/voxel/scratch_folder.h"
 #include "verify/phantom/head_phantom.h"
 #include "voxel/scan/write_scene.h"
@@ -12,22 +14,15 @@
 namespace octotomy::planner {
 namespace {
 
-const std::vector<brep::Landmark> jaw{{"split_front_left", {39, -46, -80}},
-                                      {"split_front_right", {-39, -46, -80}},
-                                      {"split_back_left", {46.5, -25, -45}},
-                                      {"split_back_right", {-46.5, -25, -45}},
-                                      {"lower_incisor", {0, -84, -61}},
-                                      {"lower_molar_left", {27, -54, -61}},
-                                      {"lower_molar_right", {-27, -54, -61}},
-                                      {"lingula_left", {48, -22, -45}},
-                                      {"lingula_right", {-48, -22, -45}},
-                                      {"border_left", {33, -55, -91}},
-                                      {"border_right", {-33, -55, -91}},
-                                      {"menton", {0, -82, -101}},
-                                      {"pogonion", {0, -87, -93}}};
-const std::vector<brep::Landmark> chin{{"foramen_left", {22, -74, -82}}, {"foramen_right", {-22, -74, -82}},
-                                       {"border_left", {33, -55, -91}},  {"border_right", {-33, -55, -91}},
-                                       {"pogonion", {0, -87, -93}},      {"menton", {0, -82, -101}}};
+/// The landmarks of the head phantom that a procedure needs.
+std::vector<brep::Landmark> landmarks_of(const Procedure& procedure) {
+  std::vector<brep::Landmark> wanted = tests::head_landmarks();
+  std::erase_if(wanted, [&](const brep::Landmark& mark) {
+    return std::none_of(procedure.landmarks.begin(), procedure.landmarks.end(),
+                        [&](const ProcedureLandmark& each) { return each.name == mark.name; });
+  });
+  return wanted;
+}
 
 /// The head phantom in voxels of 2 mm, and a plan of a procedure on it.
 class Chain : public testing::Test {
@@ -47,19 +42,10 @@ class Chain : public testing::Test {
     made.folder = folder_.path();
     return made;
   }
-  /// The landmarks of the jaw and the chin that a procedure needs.
-  std::vector<brep::Landmark> of(const Procedure& procedure) const {
-    std::vector<brep::Landmark> taken;
-    for (const ProcedureLandmark& wanted : procedure.landmarks)
-      for (const auto* list : {&jaw, &chin})
-        for (const brep::Landmark& mark : *list)
-          if (mark.name == wanted.name && (taken.empty() || taken.back().name != mark.name))
-            taken.push_back(mark);
-    return taken;
-  }
   Plan planned(const char* name, std::map<std::string, double> values) const {
     const Procedure procedure = read_procedure(name);
-    return parse_plan(plan_of(procedure, input(of(procedure), std::move(values))).dump(), folder_.path());
+    return parse_plan(plan_of(procedure, input(landmarks_of(procedure), std::move(values))).dump(),
+                      folder_.path());
   }
   Evaluation evaluated(const Plan& plan) const {
     EvaluateOptions options;
@@ -68,7 +54,7 @@ class Chain : public testing::Test {
   }
   Chained after(const Plan& plan, const char* name, std::map<std::string, double> values) const {
     const Procedure procedure = read_procedure(name);
-    return chained(plan, evaluated(plan), procedure, input(of(procedure), std::move(values)));
+    return chained(plan, evaluated(plan), procedure, input(landmarks_of(procedure), std::move(values)));
   }
   Plan read(const Chained& made) const { return parse_plan(made.plan.dump(), folder_.path()); }
 
@@ -195,9 +181,10 @@ TEST(ChainedSteps, AreKnownByTheProceduresNameAndTheirOwn) {
 
 TEST_F(Chain, WhatCannotBeChainedIsRefusedWithAReason) {
   const auto refusal = [&](const Plan& plan, const char* name, std::map<std::string, double> values,
-                           std::vector<brep::Landmark> landmarks = chin) {
+                           std::optional<std::vector<brep::Landmark>> landmarks = {}) {
     try {
-      chained(plan, evaluated(plan), read_procedure(name), input(std::move(landmarks), std::move(values)));
+      if (!landmarks) landmarks = landmarks_of(read_procedure("genioplasty"));
+      chained(plan, evaluated(plan), read_procedure(name), input(*landmarks, std::move(values)));
     } catch (const std::runtime_error& error) {
       return std::string(error.what());
     }
@@ -207,7 +194,7 @@ TEST_F(Chain, WhatCannotBeChainedIsRefusedWithAReason) {
   EXPECT_NE(refusal(first, "genioplasty", {{"bone_low", 200}}).find("bone_low changes nothing"),
             std::string::npos);
   EXPECT_NE(refusal(first, "genioplasty", {{"forward", 2}}).find("forward_mm"), std::string::npos);
-  EXPECT_NE(refusal(first, "genioplasty", {}, {{"menton", {0, -80, -101}}}).find("away in the plan"),
+  EXPECT_NE(refusal(first, "genioplasty", {}, {{{"menton", {0, -80, -101}}}}).find("away in the plan"),
             std::string::npos);
   EXPECT_NE(refusal(first, "le_fort_i", {}).find("lacks landmarks"), std::string::npos);
   const Plan bone = parse_plan(R"({"octotomy_plan": 1, "name": "b", "scans": {"ct": {"path": "head.nrrd"}},
