@@ -119,12 +119,21 @@ export interface LandmarkGuess {
   point_mm: Vec3;
   uncertainty_mm: number;
 }
+export interface ProcedureValue {
+  name: string;
+  unit: string;
+  default: number;
+  says: string;
+  low: number;
+  high: number;
+}
 export interface ProcedureSays {
   name: string;
   says: string;
   landmarks: {name: string; says: string; scan?: string}[];
   scans: {name: string; says: string}[];
-  values: {name: string; unit: string; default: number; says: string; low: number; high: number}[];
+  values: ProcedureValue[];
+  options: {name: string; says: string; values: ProcedureValue[]}[];  // further steps that a person may choose
 }
 export interface Tissue {
   name: string;

@@ -27,6 +27,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+Json json_of(const std::vector<ProcedureValue>& values) {
+  Json json = Json::array();
+  for (const ProcedureValue& value : values)
+    json.push_back({{"name", value.name},
+                    {"unit", unit_of_name(value.name)},
+                    {"default", value.preset},
+                    {"says", value.says},
+                    {"low", value.least},
+                    {"high", value.most}});
+  return json;
+}
+
 Json procedures_json() {
   Json list = Json::array();
   for (const std::string& name : procedures()) {
@@ -35,19 +47,16 @@ Json procedures_json() {
               {"says", procedure.says},
               {"landmarks", Json::array()},
               {"scans", Json::array()},
-              {"values", Json::array()}};
+              {"values", json_of(procedure.values)},
+              {"options", Json::array()}};
     for (const ProcedureLandmark& landmark : procedure.landmarks)
       json["landmarks"].push_back(
           {{"name", landmark.name}, {"says", landmark.says}, {"scan", landmark.scan}});
     for (const ProcedureScan& scan : procedure.scans)
       json["scans"].push_back({{"name", scan.name}, {"says", scan.says}});
-    for (const ProcedureValue& value : procedure.values)
-      json["values"].push_back({{"name", value.name},
-                                {"unit", unit_of_name(value.name)},
-                                {"default", value.preset},
-                                {"says", value.says},
-                                {"low", value.least},
-                                {"high", value.most}});
+    for (const ProcedureOption& option : procedure.options)
+      json["options"].push_back(
+          {{"name", option.name}, {"says", option.says}, {"values", json_of(option.values)}});
     list.push_back(std::move(json));
   }
   return list;
@@ -266,15 +275,36 @@ Json without_steps_of(const Procedure& procedure, const Json& plan) {
   return kept;
 }
 
+/// Whether a plan has steps with the names of all of these.
+bool has_all(const Json& steps, const Json& plan) {
+  return std::all_of(steps.begin(), steps.end(), [&](const Json& own) {
+    return std::any_of(plan.at("steps").begin(), plan.at("steps").end(),
+                       [&](const Json& step) { return step["id"] == own["id"]; });
+  });
+}
+
 /// The object on which the procedure would act after others, in the plan without its own steps. None if it
 /// would be the plan's first procedure, or if the plan contains its own steps unchained; these are then
 /// replaced.
 std::optional<std::string> acted_on(const Procedure& procedure, const Json& whole, const Plan& before) {
-  const bool stands_alone = std::all_of(procedure.steps.begin(), procedure.steps.end(), [&](const Json& own) {
-    return std::any_of(whole.at("steps").begin(), whole.at("steps").end(),
-                       [&](const Json& step) { return step["id"] == own["id"]; });
-  });
-  return stands_alone ? std::nullopt : outcome_of(before);
+  return has_all(procedure.steps, whole) ? std::nullopt : outcome_of(before);
+}
+
+/// Removes the steps of options that the plan has and the user does not choose any more.
+Json without_other_options(const Procedure& procedure, const std::vector<std::string>& chosen,
+                           const Json& plan) {
+  Json kept = plan;
+  for (const ProcedureOption& option : procedure.options) {
+    if (std::find(chosen.begin(), chosen.end(), option.name) != chosen.end() || !has_all(option.steps, plan))
+      continue;
+    Json others = Json::array();
+    for (const Json& step : kept["steps"])
+      if (std::none_of(option.steps.begin(), option.steps.end(),
+                       [&](const Json& own) { return own["id"] == step["id"]; }))
+        others.push_back(step);
+    kept["steps"] = std::move(others);
+  }
+  return kept;
 }
 
 Procedure known_procedure(const Json& said) {
@@ -300,14 +330,16 @@ Json acts_on(Session& session, const Json& said, const Watched&) {
 /// Adds a procedure's steps: in place of its earlier ones, after another procedure's result, or as the plan's
 /// first.
 Json procedure(Session& session, const Json& said, const Watched& watched) {
-  const Procedure procedure = known_procedure(said);
+  const Procedure known = known_procedure(said);
+  const auto options = said.value("with", std::vector<std::string>{});
+  const Procedure procedure = with_options(known, options);
   const auto [text, whole, folder] = session.with_document([](Document& document) {
     return std::tuple{document.plan()->text, Json(document.json()), document.path().parent_path()};
   });
   ProcedureInput input = input_of(said, whole, procedure);
   input.folder = folder;
   const Plan before = parse_plan(without_steps_of(procedure, whole).dump(), folder);
-  const std::optional<std::string> outcome = acted_on(procedure, whole, before);
+  const std::optional<std::string> outcome = acted_on(known, whole, before);
   Json made;
   std::vector<std::string> added, carried;
   if (outcome) {
@@ -324,8 +356,8 @@ Json procedure(Session& session, const Json& said, const Watched& watched) {
   } else {
     input.voxel_mm = before.voxel_mm.value_or(1.0);
     const Json alone = plan_of(procedure, input);
-    made = whole;
-    made["steps"] = joined(whole["steps"], alone.at("steps"), whole["scans"].begin().key());
+    made = without_other_options(known, options, whole);
+    made["steps"] = joined(made["steps"], alone.at("steps"), whole["scans"].begin().key());
     for (const Json& step : alone.at("steps")) added.push_back(step.at("id"));
   }
   Json ids = Json::array();

@@ -26,10 +26,24 @@ struct ProcedureText {
   fs::path scan, donor, after, out, report;
   Certify certify = Certify::Now;
   std::vector<fs::path> landmarks;
-  std::vector<std::string> values;
+  std::vector<std::string> values, options;
   double voxel_mm = 1.0;
   bool anonymous = false;
 };
+
+Json json_of(const std::vector<ProcedureValue>& values,
+             std::vector<std::pair<std::string, std::string>>& rows) {
+  Json json = Json::array();
+  for (const ProcedureValue& value : values) {
+    json.push_back({{"name", value.name},
+                    {"says", value.says},
+                    {"preset", value.preset},
+                    {"least", value.least},
+                    {"most", value.most}});
+    rows.emplace_back("--set " + value.name + "=" + plain(value.preset), value.says);
+  }
+  return json;
+}
 
 /// Prints the inputs of a procedure, or the names of all procedures.
 int explain(const Program& program, const ProcedureText& text) {
@@ -48,7 +62,7 @@ int explain(const Program& program, const ProcedureText& text) {
   const Procedure procedure = read_procedure(text.name);
   json["name"] = procedure.name;
   json["says"] = procedure.says;
-  json["landmarks"] = json["values"] = Json::array();
+  json["landmarks"] = Json::array();
   std::vector<std::pair<std::string, std::string>> rows;
   for (const ProcedureLandmark& landmark : procedure.landmarks) {
     json["landmarks"].push_back({{"name", landmark.name}, {"says", landmark.says}});
@@ -58,13 +72,12 @@ int explain(const Program& program, const ProcedureText& text) {
     json["scans"].push_back({{"name", scan.name}, {"says", scan.says}});
     rows.emplace_back("--" + scan.name, scan.says);
   }
-  for (const ProcedureValue& value : procedure.values) {
-    json["values"].push_back({{"name", value.name},
-                              {"says", value.says},
-                              {"preset", value.preset},
-                              {"least", value.least},
-                              {"most", value.most}});
-    rows.emplace_back("--set " + value.name + "=" + plain(value.preset), value.says);
+  json["values"] = json_of(procedure.values, rows);
+  json["options"] = Json::array();
+  for (const ProcedureOption& option : procedure.options) {
+    rows.emplace_back("--with " + option.name, option.says);
+    json["options"].push_back(
+        {{"name", option.name}, {"says", option.says}, {"values", json_of(option.values, rows)}});
   }
   program.say(json, procedure.says + "\n" + lines(rows));
   return done;
@@ -104,7 +117,7 @@ ProcedureInput input_of(const ProcedureText& text) {
 
 /// The procedure's plan, alone or after another one's; sets `carried` to the landmarks that went with a piece.
 Json planned(Program& program, const ProcedureText& text, std::vector<std::string>& carried) {
-  const Procedure procedure = read_procedure(text.name);
+  const Procedure procedure = with_options(read_procedure(text.name), text.options);
   const ProcedureInput input = input_of(text);
   if (text.after.empty()) return plan_of(procedure, input);
   const Plan before = rebased(read_plan(text.after), input.folder);
@@ -158,7 +171,7 @@ void add_procedure(Program& program) {
       "  octotomy procedure le_fort_i --scan head.nrrd --landmarks marks.mrk.json --set forward_mm=6 "
       "--set up_mm=2 -o my.plan.json\n"
       "  octotomy procedure fibula_flap --scan head.nrrd --landmarks jaw.json --donor leg.nrrd "
-      "--landmarks leg.json -o flap.plan.json\n"
+      "--landmarks leg.json --with guides -o flap.plan.json\n"
       "  octotomy procedure genioplasty --after my.plan.json --landmarks chin.json --set forward_mm=4 "
       "-o both.plan.json",
       [&program, text] { return procedure(program, *text); });
@@ -181,6 +194,14 @@ void add_procedure(Program& program) {
       ->take_all()
       ->allow_extra_args(false)
       ->type_name("NAME=NUMBER");
+  verb.add_option(
+          "--with", text->options,
+          "An option of the procedure: further steps, such as guides for a flap's cuts and a plate; may be "
+          "repeated")
+      ->expected(1)
+      ->take_all()
+      ->allow_extra_args(false)
+      ->type_name("OPTION");
   verb.add_option("--voxel", text->voxel_mm, "Edge of the plan's voxels, mm; default 1")
       ->check(above_zero())
       ->excludes("--after");

@@ -13,6 +13,7 @@ namespace {
 struct FlapScan : FlapFields {
   ScanName scan;
   int segment = 1;
+  bool uncut = false;
 };
 
 /// Samples up to this distance beyond a segment's cuts are included, so that the bone continues through its
@@ -26,21 +27,29 @@ void check(const FlapScan& step, const FieldLocation& place) {
     place.at("segment").refuse("is beyond the curve, which has " + std::to_string(count) + " segments");
 }
 
-/// The box, in the donor's scan, of a segment's bone and its continuation.
-voxel::Box box_of(const FlapPlan& plan, const FlapSegment& segment) {
+/// The same beyond the outer cuts of the uncut bone, on which a guide sits.
+constexpr double beyond_uncut_mm = 25.0;
+
+/// The box, in the donor's scan, of the bone from one segment to another and its continuation.
+voxel::Box box_of(const FlapPlan& plan, const FlapSegment& first, const FlapSegment& last, double beyond_mm) {
   const glm::dvec3 along = glm::normalize(plan.donor_to_mm - plan.donor_from_mm);
-  const double over_mm = 0.5 * (segment.longest_mm - segment.length_mm) + beyond_cuts_mm;
-  const glm::dvec3 a = segment.donor_start.point_mm - along * over_mm,
-                   b = segment.donor_end.point_mm + along * over_mm;
+  const auto over_mm = [&](const FlapSegment& segment) {
+    return 0.5 * (segment.longest_mm - segment.length_mm) + beyond_mm;
+  };
+  const glm::dvec3 a = first.donor_start.point_mm - along * over_mm(first),
+                   b = last.donor_end.point_mm + along * over_mm(last);
   const glm::dvec3 aside(flap_corner_mm(plan.reach_mm) + beyond_cuts_mm);
   return {glm::min(a, b) - aside, glm::max(a, b) + aside};
 }
 
 MadeScan made(const FlapScan& step, const ScanBench& bench) {
   const FlapPlan plan = plan_of(step);
-  const FlapSegment segment = flap_segments(plan)[static_cast<std::size_t>(step.segment - 1)];
+  const std::vector<FlapSegment> segments = flap_segments(plan);
+  const FlapSegment& segment = segments[static_cast<std::size_t>(step.segment - 1)];
   const voxel::Scene& scene = bench.samples(step.scan.name);
-  const voxel::VoxelRange range = voxel::range_within(scene.lattice, box_of(plan, segment));
+  const voxel::VoxelRange range = voxel::range_within(
+      scene.lattice, step.uncut ? box_of(plan, segments.front(), segments.back(), beyond_uncut_mm)
+                                : box_of(plan, segment, segment, beyond_cuts_mm));
   if (range.is_empty())
     throw std::runtime_error("segment " + std::to_string(step.segment) +
                              " lies outside of the donor's scan: check the donor's points");
@@ -68,6 +77,10 @@ Operation flap_scan_operation() {
   return std::move(entry)
       .takes(field("scan", &FlapScan::scan, "The donor's scan.").required())
       .takes(field("segment", &FlapScan::segment, "The number of the segment, from 1.").from(1).to(8))
+      .takes(
+          field("uncut", &FlapScan::uncut,
+                "Takes all bone that the flap uses, as before the cuts, to where this segment lies; a guide "
+                "sits on it."))
       .example(R"({"id": "fibula_1", "do": "flap_scan", "scan": "ct", "segment": 1,
         "curve": [[-30, -60, -80], [0, -80, -85], [30, -60, -80]],
         "donor": [[30, 12, 90], [33, 15, -90]], "face": [45, 12, 90]})")

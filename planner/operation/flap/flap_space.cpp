@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Spaces that cut a free flap: eight-sided beams along segments, mitred at their corners.
+#include "planner/operation/flap/flap_space.h"
+
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <stdexcept>
 
 #include "planner/operation/flap/fields.h"
 #include "planner/operation/table/number_format.h"
@@ -17,6 +20,7 @@ struct FlapSpace : FlapFields {
   int number = 1;
   double slab_mm = 2.0;
   double aside_mm = 18.0;
+  std::optional<int> uncut_at;
 };
 
 constexpr int sides = 8;
@@ -43,13 +47,33 @@ BeamSegment slab_about(const FlapPlane& cut, const glm::dvec3& across, double sl
   return {{cut.point_mm - half, cut.normal}, {cut.point_mm + half, cut.normal}, cut.normal, aside};
 }
 
+/// The motion from where a segment is placed to where its uncut bone lies; none: the space is not there.
+std::optional<glm::dmat4> uncut_from_placed(const FlapSpace& space,
+                                            const std::vector<FlapSegment>& segments) {
+  if (!space.uncut_at) return std::nullopt;
+  const auto motion = [&](int number) -> const glm::dmat4& {
+    return segments.at(static_cast<std::size_t>(number - 1)).placed_from_donor;
+  };
+  return motion(*space.uncut_at) * glm::inverse(motion(space.number));
+}
+
+BeamSegment moved(const BeamSegment& piece, const glm::dmat4& motion) {
+  const glm::dmat3 turn(motion);
+  const auto plane = [&](const FlapPlane& cut) {
+    return FlapPlane{glm::dvec3(motion * glm::dvec4(cut.point_mm, 1.0)), turn * cut.normal};
+  };
+  return {plane(piece.start), plane(piece.end), turn * piece.along, turn * piece.across};
+}
+
 Beam beam_of(const FlapSpace& space) {
   const std::vector<FlapSegment> segments = segments_of(space);
   const auto piece = [](const FlapSegment& one) {
     return BeamSegment{one.start, one.end, one.along, one.across};
   };
   if (space.part == "segment")
-    return {{piece(segments.at(static_cast<std::size_t>(space.number - 1)))}, space.reach_mm};
+    return {{moved(piece(segments.at(static_cast<std::size_t>(space.number - 1))),
+                   uncut_from_placed(space, segments).value_or(glm::dmat4(1.0)))},
+            space.reach_mm};
   if (space.part == "osteotomy") {
     const auto cut = static_cast<std::size_t>(space.number - 1);
     const bool is_last = cut == segments.size();
@@ -71,6 +95,8 @@ void check(const FlapSpace& space, const FieldLocation& place) {
   if (space.part != "resection" && static_cast<std::size_t>(space.number) > most)
     place.at("number").refuse("is beyond the curve, which has " + std::to_string(most) + " of part '" +
                               space.part + "'");
+  if (space.uncut_at && static_cast<std::size_t>(*space.uncut_at) > segments)
+    place.at("uncut_at").refuse("is beyond the curve, which has " + std::to_string(segments) + " segments");
   if (space.part != "resection") return;
   FlapFields wide = space;
   wide.reach_mm = space.aside_mm;
@@ -88,7 +114,7 @@ std::string definition(const FlapSpace& space, const Objects&) {
   if (space.part == "resection")
     return "all that lies within " + plain(space.aside_mm) + " mm beside the flap's curve";
   return (space.part == "segment" ? "between the cuts of segment " : "a slab about osteotomy ") +
-         std::to_string(space.number);
+         std::to_string(space.number) + (space.uncut_at ? " on the uncut donor" : "");
 }
 
 voxel::Expression voxels_of(const BeamSegment& piece, double reach_mm) {
@@ -177,7 +203,55 @@ void bound(const FlapSpace& space, const BoundBench&, Object& made) {
   if (made.mesh.whole) made.walls = {{made.id, *made.mesh.whole}};
 }
 
+const FlapSpace* space_of(const Action* maker) {
+  const FlapSpace* space = maker == nullptr ? nullptr : maker->get_if<FlapSpace>();
+  return space == nullptr || space->part == "osteotomy" ? nullptr : space;
+}
+
 }  // namespace
+
+std::vector<FlapCut> flap_cuts(const Action& maker) {
+  const FlapSpace* space = space_of(&maker);
+  if (space == nullptr) return {};
+  const Beam beam = beam_of(*space);
+  const bool is_resection = space->part == "resection";
+  const double outwards = is_resection ? -1.0 : 1.0;
+  const auto cut = [&](const FlapPlane& plane, double sign) {
+    return FlapCut{plane.point_mm, sign * outwards * plane.normal, space->kerf_mm,
+                   flap_corner_mm(beam.reach_mm), is_resection};
+  };
+  return {cut(beam.pieces.front().start, -1.0), cut(beam.pieces.back().end, 1.0)};
+}
+
+FlapPlace flap_place(const Action* maker, const std::string& name, double share) {
+  const FlapSpace* space = space_of(maker);
+  if (space == nullptr)
+    throw std::runtime_error("'" + name +
+                             "' is no space of a flap's segment or resection: name a flap_space step");
+  const FlapPlan plan = plan_of(*space);
+  if (space->part == "segment") {
+    if (share < 0.0 || share > 1.0)
+      throw std::runtime_error("'share' is " + plain(share) + ", beside segment " +
+                               std::to_string(space->number) +
+                               ": give 0 at its first cut to 1 at its second");
+    const std::vector<FlapSegment> segments = segments_of(*space);
+    const FlapSegment& segment = segments.at(static_cast<std::size_t>(space->number - 1));
+    return {glm::mix(segment.start.point_mm, segment.end.point_mm, share), segment.along, space->reach_mm,
+            uncut_from_placed(*space, segments)};
+  }
+  if (plan.stumps_mm.empty())
+    throw std::runtime_error("'" + name +
+                             "' has no 'stumps', so no place in the bone that stays is known: add them");
+  if (share < -1.0 || share > 2.0 || (share > 0.0 && share < 1.0))
+    throw std::runtime_error("'share' is " + plain(share) +
+                             ", in the resected bone or behind the stumps' points: give -1 to 0 before the "
+                             "first cut, or 1 to 2 behind the last");
+  const bool is_first = share <= 0.0;
+  const glm::dvec3 cut_mm = is_first ? plan.curve_mm.front() : plan.curve_mm.back(),
+                   stump_mm = plan.stumps_mm[is_first ? 0 : 1];
+  return {glm::mix(cut_mm, stump_mm, is_first ? -share : share - 1.0), glm::normalize(stump_mm - cut_mm),
+          space->aside_mm, std::nullopt};
+}
 
 Operation flap_space_operation() {
   Describe<FlapSpace> entry(
@@ -199,6 +273,13 @@ Operation flap_space_operation() {
       .takes(field("aside_mm", &FlapSpace::aside_mm, "How far the resection reaches beside the curve.")
                  .greater_than(0)
                  .to(80))
+      .takes(field("uncut_at", &FlapSpace::uncut_at,
+                   "For a segment: the space of its cuts on the uncut donor bone, which flap_scan places at "
+                   "this segment with 'uncut'. Default: where the segment itself is placed.")
+                 .from(1)
+                 .to(8)
+                 .read_if<FlapSpace>([](const FlapSpace& space) { return space.part == "segment"; },
+                                     "applies only to 'part': 'segment': leave it out"))
       .example(R"({"id": "wedge_1", "do": "flap_space", "part": "segment", "number": 1,
         "curve": [[-30, -60, -80], [0, -80, -85], [30, -60, -80]],
         "donor": [[30, 12, 90], [33, 15, -90]], "face": [45, 12, 90]})")

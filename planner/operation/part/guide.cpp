@@ -54,6 +54,7 @@ struct Guide {
   std::optional<glm::dvec3> direction;
   std::vector<Mark> points;
   double radius_mm = 10.0;
+  std::optional<double> ends_mm;
   std::optional<DrawnSite> region;
   double reach_mm = 25.0;
   double clearance_mm = 0.25, thickness_mm = 3.0;
@@ -84,10 +85,13 @@ constexpr double room_mm = 1.0;
 constexpr double below_mm = 5.0;
 
 void check(const Guide& guide, const FieldLocation& place) {
-  if (guide.points.empty() == !guide.region)
-    place.refuse(guide.region
-                     ? "says its region twice, by 'points' and by 'region': keep one of them"
-                     : "the region is missing: add 'points' on the bone, or 'region', drawn in a view");
+  if (!guide.points.empty() && guide.region)
+    place.refuse("says its region twice, by 'points' and by 'region': keep one of them");
+  if (guide.points.empty() && !guide.region && guide.screws.empty())
+    place.refuse(
+        "the region is missing: add 'points' on the bone, 'region', drawn in a view, or 'screws', whose "
+        "heads are "
+        "points");
   if (guide.region && guide.region->polygons_mm.size() != 1)
     place.at("region").refuse("must be one polygon: a guide is one piece");
   const auto check_view = [&](const std::string& view, const FieldLocation& at) {
@@ -107,10 +111,10 @@ void check(const Guide& guide, const FieldLocation& place) {
   if (place.scope == nullptr) return;
   for (std::size_t i = 0; i < guide.cuts.size(); ++i) {
     const std::string& maker = place.scope->maker_of(guide.cuts[i].name).name;
-    if (maker != "saw" && maker != "mask")
+    if (maker != "saw" && maker != "mask" && maker != "flap_space")
       place.at("cuts[" + std::to_string(i) + "]")
           .refuse("'" + guide.cuts[i].name + "' was made by '" + maker +
-                  "': name a saw step or a mask whose walls are cuts");
+                  "': name a saw step, a mask whose walls are cuts or a flap's space");
   }
 }
 
@@ -148,13 +152,15 @@ Guide settle(const Guide& asked, const SettleBench& bench) {
   Guide made = asked;
   std::vector<glm::dvec3> points_mm;
   for (const Mark& mark : asked.points) points_mm.push_back(mark_mm(mark, bench.objects));
+  if (points_mm.empty() && !asked.region)
+    for (const ObjectName& name : asked.screws) points_mm.push_back(screw_axis(name.name, bench).head_mm);
   const double shell_mm = asked.clearance_mm + asked.thickness_mm;
   const double before_mm =
       shell_mm + room_mm +
       std::max(asked.cuts.empty() ? 0.0 : asked.slot_depth_mm,
                asked.screws.empty() ? 0.0 : asked.sleeve_height_mm + asked.sleeve_wall_mm);
   made.site = guide_site({asked.object.name, asked.side, asked.direction, points_mm, asked.radius_mm,
-                          asked.region, asked.reach_mm, before_mm, shell_mm + room_mm},
+                          asked.ends_mm, asked.region, asked.reach_mm, before_mm, shell_mm + room_mm},
                          bench);
   const GuideSite& site = made.site;
   const SlotsAsked slots{site.base,
@@ -342,13 +348,21 @@ Operation guide_operation() {
                  .direction())
       .takes(field("points", &Guide::points,
                    "Points on the bone, in their order along it, about which the guide lies: [x, y, z] or "
-                   "landmarks."))
+                   "landmarks. Default, without a region: the heads of the screws."))
       .takes(field("radius_mm", &Guide::radius_mm,
                    "How far the guide reaches about the line through the points, as it is put on.")
                  .from(3.0)
                  .to(60.0)
                  .read_if<Guide>([](const Guide& guide) { return !guide.region; },
                                  "applies only to 'points': leave it out"))
+      .takes(
+          field("ends_mm", &Guide::ends_mm,
+                "How far the guide extends beyond the first and the last of several points. Default: by the "
+                "radius.")
+              .from(0.0)
+              .to(60.0)
+              .read_if<Guide>([](const Guide& guide) { return !guide.region; },
+                              "applies only to 'points': leave it out"))
       .takes(record("region", &Guide::region, "In place of the points, a region drawn in a view.",
                     {field("view", &DrawnSite::view, "The view in which the region is drawn.").required(),
                      field("polygons_mm", &DrawnSite::polygons_mm,
@@ -369,10 +383,12 @@ Operation guide_operation() {
                 "The thickness of the base; 3 is usual, and 1 the least that is stiff enough to lead a saw.")
               .from(1.0)
               .to(10.0))
-      .takes(field("cuts", &Guide::cuts,
-                   "Saw steps and masks of this plan whose cuts get slots; of a mask the walls that cut bone "
-                   "in the region.")
-                 .in_plans_only())
+      .takes(
+          field("cuts", &Guide::cuts,
+                "Saw steps, masks and flaps' spaces of this plan whose cuts get slots; of a mask the walls "
+                "that cut bone in the region, of a flap's segment both cuts, of its resection those in the "
+                "region.")
+              .in_plans_only())
       .takes(field("kerf_mm", &Guide::kerf_mm,
                    "The width of the saw's cut for masks, which state none; saw steps have their own.")
                  .from(0.1)

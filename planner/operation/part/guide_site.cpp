@@ -75,9 +75,10 @@ std::vector<glm::dvec2> disc(const glm::dvec2& middle_mm, double radius_mm) {
   return outline_mm;
 }
 
-std::vector<glm::dvec2> outline_about(const std::vector<glm::dvec2>& points_mm, double radius_mm) {
+std::vector<glm::dvec2> outline_about(const std::vector<glm::dvec2>& points_mm, double radius_mm,
+                                      double ends_mm) {
   if (points_mm.size() == 1) return disc(points_mm[0], radius_mm);
-  return band_outline(longer_by(points_mm, radius_mm), 2.0 * radius_mm);
+  return band_outline(longer_by(points_mm, ends_mm), 2.0 * radius_mm);
 }
 
 struct ViewBox {
@@ -114,8 +115,10 @@ void draw_outlines(const SiteAsked& asked, const SettleBench& bench, GuideSite& 
         throw std::runtime_error("points " + std::to_string(i) + " and " + std::to_string(i + 1) +
                                  " lie behind each other, seen along the direction in which the " +
                                  asked.part + " is put on: leave one out");
-    site.base.outline_mm = outline_about(frame.points_mm, asked.radius_mm);
-    site.near.outline_mm = outline_about(frame.points_mm, asked.radius_mm + asked.margin_mm);
+    const double ends_mm = asked.ends_mm.value_or(asked.radius_mm);
+    site.base.outline_mm = outline_about(frame.points_mm, asked.radius_mm, ends_mm);
+    site.near.outline_mm =
+        outline_about(frame.points_mm, asked.radius_mm + asked.margin_mm, ends_mm + asked.margin_mm);
   }
   site.near.frame = frame;
   site.base.low_mm = site.near.low_mm = 0.0;

@@ -27,6 +27,8 @@ struct SiteAsked {
   std::optional<glm::dvec3> direction;
   std::vector<glm::dvec3> points_mm;  ///< where nothing is drawn
   double radius_mm = 10.0;            ///< of the region about the points
+  std::optional<double> ends_mm;      ///< how far it extends beyond the first and last of several points;
+                                      ///< none: by the radius
   std::optional<DrawnSite> drawn;
   double reach_mm = 25.0;      ///< behind the region's foremost bone
   double before_mm = 5.0;      ///< how far the guide goes before the bone

@@ -17,6 +17,7 @@
 
 #include "brep/mesh/distance.h"
 #include "brep/shape/saw.h"
+#include "planner/operation/flap/flap_space.h"
 #include "planner/operation/object/mask.h"
 #include "planner/operation/object/saw.h"
 #include "planner/operation/table/number_format.h"
@@ -398,6 +399,71 @@ std::vector<SawSlot> slots_of_saw(const std::string& cut, const Saw& saw, const 
   return {std::move(*found.slot)};
 }
 
+std::string misses(const std::string& cut) {
+  return cut +
+         "misses the guide: no bone of the region lies on it, so move 'points' to the cut or leave it out of "
+         "'cuts'";
+}
+
+std::string too_short(const std::string& cut, double met_mm, const SlotsAsked& asked) {
+  return cut + "meets the bone of the guide's region along " + three_figures(met_mm) +
+         " mm, too little for a slot with walls of " + three_figures(asked.end_mm) +
+         " mm at its ends: make the region larger, or 'slot_end_mm' smaller";
+}
+
+/// The slots of a flap's cuts. The saw goes in within the plane of a cut, as near as possible to the way in which
+/// the guide is put on, and takes its kerf on one side of the plane. Cuts of the resection that miss the region
+/// belong to another guide.
+std::vector<SawSlot> slots_of_flap(const std::string& cut, const std::vector<FlapCut>& cuts,
+                                   const SlotsAsked& asked, double& longest_mm) {
+  std::vector<SawSlot> slots;
+  for (std::size_t i = 0; i < cuts.size(); ++i) {
+    const FlapCut& plane = cuts[i];
+    const std::string says = "cut " + std::to_string(i + 1) + " of '" + cut + "' ";
+    if (!(plane.kerf_mm > 0.0))
+      throw std::runtime_error("'kerf_mm' of '" + cut + "' is 0: a slot needs the width of the saw's cut");
+    const glm::dvec3 within = asked.along - plane.away * glm::dot(asked.along, plane.away);
+    const ArchFrame& frame = asked.base.frame;
+    const glm::dvec3 middle_mm = plane.point_mm + 0.5 * plane.kerf_mm * plane.away;
+    const auto beside_mm = [&](const glm::dvec2& p_mm, double depth_mm) {
+      return p_mm.x * frame.right + p_mm.y * frame.up + depth_mm * frame.look - middle_mm;
+    };
+    bool is_before = false, is_behind = false;
+    double half_mm = 1.0;
+    const bool is_led = glm::length(within) >= std::cos(glm::radians(most_oblique_deg));
+    const glm::dvec3 direction = is_led ? glm::normalize(within) : asked.along,
+                     across = glm::cross(plane.away, direction);
+    for (const glm::dvec2& p_mm : asked.base.outline_mm)
+      for (const double depth_mm : {asked.base.low_mm, asked.base.high_mm}) {
+        const glm::dvec3 from_mm = beside_mm(p_mm, depth_mm);
+        (glm::dot(from_mm, plane.away) < 0.0 ? is_before : is_behind) = true;
+        half_mm = std::max(half_mm, 1.0 + std::abs(glm::dot(from_mm, across)));
+      }
+    SlotFound found;
+    if (is_before && is_behind) {
+      if (!is_led)
+        throw std::runtime_error(
+            says + "lies more than " + three_figures(most_oblique_deg) +
+            " degrees off the way in which the guide is put on: no guide on this side leads "
+            "the saw, so choose another 'side'");
+      const Line line{middle_mm - half_mm * across, middle_mm + half_mm * across};
+      std::vector<CutSample> samples = along_line(line, direction, asked);
+      for (CutSample& sample : samples)
+        if (sample.on == On::Bone && glm::distance(sample.bone_mm, middle_mm) > plane.reach_mm)
+          sample.on = On::Beside;
+      found = slot_along_line(line, direction, samples, asked);
+    }
+    longest_mm = std::max(longest_mm, found.met_mm);
+    if (found.slot) {
+      found.slot->kerf_mm = plane.kerf_mm;
+      slots.push_back(std::move(*found.slot));
+    } else if (found.met_mm > 0.0 || !plane.is_of_resection) {
+      throw std::runtime_error(found.met_mm > 0.0 ? too_short(says, found.met_mm, asked) : misses(says));
+    }
+  }
+  return slots;
+}
+
 }  // namespace
 
 brep::Solid Blade::solid(double width_mm) const {
@@ -421,17 +487,17 @@ std::vector<SawSlot> slots_of(const std::string& cut, const SlotsAsked& asked, c
   else if (const Mask* mask = maker == nullptr ? nullptr : maker->get_if<Mask>())
     slots = slots_of_mask(with_files_read(*mask, bench.folder, bench.objects.lps_from_head),
                           bench.objects.lps_from_head, asked, longest_mm);
+  else if (const std::vector<FlapCut> cuts = maker == nullptr ? std::vector<FlapCut>() : flap_cuts(*maker);
+           !cuts.empty())
+    slots = slots_of_flap(cut, cuts, asked, longest_mm);
   else
-    throw std::runtime_error("'" + cut + "' is no cut: name a saw step or a mask whose walls are cuts");
-  if (slots.empty() && longest_mm <= 0.0)
-    throw std::runtime_error("the cut '" + cut +
-                             "' misses the guide: no bone of the region lies on it, so move 'points' to the "
-                             "cut or leave it out of 'cuts'");
+    throw std::runtime_error(
+        "'" + cut +
+        "' is no cut: name a saw step, a mask whose walls are cuts, or a flap's space of a "
+        "segment or resection");
+  const std::string says = "the cut '" + cut + "' ";
   if (slots.empty())
-    throw std::runtime_error("the cut '" + cut + "' meets the bone of the guide's region along " +
-                             three_figures(longest_mm) + " mm, too little for a slot with walls of " +
-                             three_figures(asked.end_mm) +
-                             " mm at its ends: make the region larger, or 'slot_end_mm' smaller");
+    throw std::runtime_error(longest_mm > 0.0 ? too_short(says, longest_mm, asked) : misses(says));
   for (SawSlot& slot : slots) slot.cut = cut;
   return slots;
 }

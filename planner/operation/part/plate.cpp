@@ -87,6 +87,9 @@ void check(const Plate& plate, const FieldLocation& place) {
   } catch (const voxel::InvalidInput& error) {
     place.at("side").refuse(error.what());
   }
+  if (std::max(plate.points.size(), plate.points.empty() ? plate.screws.size() : 0) < 2)
+    place.at("points").refuse(
+        "has fewer than two points: add points on the bone, or 'screws', whose heads are points");
   if (plate.rounding_mm > 0.45 * plate.thickness_mm)
     place.at("rounding_mm").refuse("is more than 0.45 of 'thickness_mm': nothing of the sides would be left");
   if (plate.rounding_mm > 0.3 * plate.width_mm)
@@ -193,6 +196,9 @@ Plate settle(const Plate& asked, const SettleBench& bench) {
   site.side = asked.side;
   site.direction = asked.direction;
   for (const Mark& mark : asked.points) site.points_mm.push_back(mark_mm(mark, bench.objects));
+  if (asked.points.empty())
+    for (const ObjectName& name : asked.screws)
+      site.points_mm.push_back(screw_axis(name.name, bench).head_mm);
   site.radius_mm = 0.5 * asked.width_mm;
   site.reach_mm = asked.reach_mm;
   site.before_mm = asked.thickness_mm + asked.clearance_mm + plate_room_mm;
@@ -500,11 +506,11 @@ Operation plate_operation() {
       .takes(field("direction", &Plate::direction,
                    "The direction in which the plate is put on, LPS. Default: straight from the side.")
                  .direction())
-      .takes(field("points", &Plate::points,
-                   "Two or more points on the bone, in their order along the plate, which ends in half discs "
-                   "about the first and the last: [x, y, z] or landmarks.")
-                 .required()
-                 .from(2))
+      .takes(
+          field("points", &Plate::points,
+                "Two or more points on the bone, in their order along the plate, which ends in half discs "
+                "about the first and the last: [x, y, z] or landmarks. Default: the heads of the screws, in "
+                "their order."))
       .takes(field("width_mm", &Plate::width_mm, "The plate's width.").from(3.0).to(20.0))
       .takes(field("thickness_mm", &Plate::thickness_mm,
                    "The plate's thickness; 2.5 is usual for plates that bear the jaw's load.")

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A screw's axis, and how far the screw stays from what it must not touch: roots, a nerve's canal, saw cuts.
 // Each kernel measures on its own answer to those objects; the mesh's distance is the one that counts.
+//
+// A screw of a flap is found from the axis of its segment, where that is placed: from the side, square to the axis.
+// On the uncut bone it lies where the segment's motion brings it to that place.
 #include "planner/operation/part/screw.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <optional>
@@ -11,6 +15,7 @@
 #include "brep/measure/gap.h"
 #include "brep/shape/prism.h"
 #include "brep/shape/saw.h"
+#include "planner/operation/flap/flap_space.h"
 #include "planner/operation/measure/gap.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/object/mask.h"
@@ -20,7 +25,9 @@
 #include "planner/operation/table/operation.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/saw_blade.h"
+#include "voxel/space/error.h"
 #include "voxel/space/rounded.h"
+#include "voxel/space/view.h"
 
 namespace octotomy::planner {
 namespace {
@@ -29,13 +36,22 @@ namespace {
 constexpr double on_surface_mm = 3.0;
 
 void check(const Screw& screw, const FieldLocation& place) {
+  if (screw.flap && (screw.at || screw.direction))
+    place.at("flap").refuse("states the axis a second time: leave out 'flap', or 'at' and 'direction'");
+  if (!screw.flap && !screw.at) place.at("at").refuse("is missing: add it, or 'flap'");
+  if (!screw.flap && !screw.direction) place.at("direction").refuse("is missing: add it, or 'flap'");
+  try {
+    voxel::parse_view(screw.side);
+  } catch (const voxel::InvalidInput& error) {
+    place.at("side").refuse(error.what());
+  }
   if (place.scope == nullptr) return;
   for (std::size_t i = 0; i < screw.cuts.size(); ++i) {
     const std::string& maker = place.scope->maker_of(screw.cuts[i].name).name;
-    if (maker != "saw" && maker != "mask")
+    if (maker != "saw" && maker != "mask" && maker != "flap_space")
       place.at("cuts[" + std::to_string(i) + "]")
           .refuse("'" + screw.cuts[i].name + "' was made by '" + maker +
-                  "': name a saw step or a mask whose walls are cuts");
+                  "': name a saw step, a mask whose walls are cuts or a flap's space");
   }
   for (const ObjectName& object : screw.away_from)
     if (object.name == screw.object.name)
@@ -96,8 +112,7 @@ std::vector<ScrewClear> clearances(const Screw& screw, const SettleBench& bench)
       bone.voxel.octree.universe(),
       voxel::Expression(voxel::Cylinder{screw.head_mm, screw.tip_mm, 0.5 * screw.diameter_mm}));
   std::vector<ScrewClear> found = clear_of_objects(
-      {{}, {}, screw.head_mm, glm::normalize(screw.direction), screw.diameter_mm, screw.length_mm},
-      screw.away_from, bench);
+      {{}, {}, screw.head_mm, *screw.direction, screw.diameter_mm, screw.length_mm}, screw.away_from, bench);
   for (const ObjectName& name : screw.cuts) {
     const Object& object = bench.objects.at(name.name);
     const Action* maker = bench.maker_of ? bench.maker_of(name.name) : nullptr;
@@ -129,19 +144,76 @@ void report(const Screw& screw, const std::vector<ScrewClear>& clearances, const
   }
 }
 
+/// The point at which a line enters bone from outside, between two places on it. Throws std::runtime_error if no
+/// bone of the object lies there.
+glm::dvec3 entry_mm(const std::string& name, const brep::Solid& bone, const glm::dvec3& from_mm,
+                    const glm::dvec3& to_mm) {
+  constexpr double sample_mm = 0.1;  // walls thinner than this hold no screw
+  const int count = std::max(1, static_cast<int>(std::ceil(glm::distance(from_mm, to_mm) / sample_mm)));
+  std::vector<glm::dvec3> places_mm;
+  for (int i = 0; i <= count; ++i)
+    places_mm.push_back(glm::mix(from_mm, to_mm, static_cast<double>(i) / count));
+  const std::vector<std::uint8_t> inside = bone.tree().inside(places_mm);
+  const auto first = std::find(inside.begin(), inside.end(), std::uint8_t{1});
+  if (first == inside.end())
+    throw std::runtime_error("no bone of '" + name + "' lies between " + voxel::rounded(from_mm) + " and " +
+                             voxel::rounded(to_mm) +
+                             " mm, where the screw would enter it: change 'share', or choose another 'side'");
+  if (first == inside.begin())
+    throw std::runtime_error(
+        "bone of '" + name + "' reaches farther than " + three_figures(glm::distance(from_mm, to_mm)) +
+        " mm from the flap's axis on the side of the screw: give its flap_space more reach");
+  const auto at = static_cast<std::size_t>(first - inside.begin());
+  glm::dvec3 outer_mm = places_mm[at - 1], inner_mm = places_mm[at];
+  constexpr int halvings = 20;  // to a millionth of the step
+  for (int i = 0; i < halvings; ++i) {
+    const glm::dvec3 middle_mm = 0.5 * (outer_mm + inner_mm);
+    (bone.tree().is_inside(middle_mm) ? inner_mm : outer_mm) = middle_mm;
+  }
+  return 0.5 * (outer_mm + inner_mm);
+}
+
+/// A screw's head and direction at the place of the bone in which it sits.
+struct Placed {
+  glm::dvec3 head_mm{0.0};
+  glm::dvec3 along{0.0, 1.0, 0.0};  ///< unit
+};
+
+Placed placed(const Screw& asked, const SettleBench& bench) {
+  if (!asked.flap) return {mark_mm(*asked.at, bench.objects), glm::normalize(*asked.direction)};
+  const Action* maker = bench.maker_of ? bench.maker_of(asked.flap->name) : nullptr;
+  const FlapPlace place = flap_place(maker, asked.flap->name, asked.share);
+  const glm::dvec3 look = bench.objects.lps_from_head * voxel::parse_view(asked.side).look;
+  const glm::dvec3 square = look - place.along * glm::dot(look, place.along);
+  constexpr double least_across = 0.5;
+  if (glm::length(square) < least_across)
+    throw std::runtime_error("the view from '" + asked.side +
+                             "' looks along the flap's axis, to less than 30 degrees: choose another 'side'");
+  const glm::dvec3 along = glm::normalize(square);
+  const glm::dmat4 motion = place.uncut_from_placed.value_or(glm::dmat4(1.0));
+  const auto here_mm = [&](double depth_mm) {
+    return glm::dvec3(motion * glm::dvec4(place.on_axis_mm + depth_mm * along, 1.0));
+  };
+  return {entry_mm(asked.object.name, bench.object(asked.object.name), here_mm(-place.reach_mm),
+                   here_mm(place.reach_mm)),
+          glm::dmat3(motion) * along};
+}
+
 Screw settle(const Screw& asked, const SettleBench& bench) {
   const Stopwatch watch(bench.timings, "screw");
   Screw made = asked;
   const brep::Solid& bone = bench.object(asked.object.name);
   if (bone.empty()) throw std::runtime_error("'" + asked.object.name + "' is empty: no screw holds in it");
-  made.head_mm = mark_mm(asked.at, bench.objects);
+  const Placed at = placed(asked, bench);
+  made.head_mm = at.head_mm;
+  made.direction = at.along;
   std::uint32_t start = 0;
   const double off_mm = bone.tree().distance_mm(made.head_mm, start);
   if (off_mm > on_surface_mm)
     throw std::runtime_error("the point " + voxel::rounded(made.head_mm) + " mm lies " +
                              three_figures(off_mm) + " mm off the surface of '" + asked.object.name +
                              "': give a point on that surface");
-  made.tip_mm = made.head_mm + asked.length_mm * glm::normalize(asked.direction);
+  made.tip_mm = made.head_mm + asked.length_mm * at.along;
   bench.details = {
       {"head_mm", to_json(made.head_mm)}, {"tip_mm", to_json(made.tip_mm)}, {"off_surface_mm", off_mm}};
   // Samples the axis. If no sample lies in bone, the screw points out of it.
@@ -239,11 +311,11 @@ ScrewAxis screw_axis(const std::string& name, const SettleBench& bench) {
   if (screw == nullptr)
     throw std::runtime_error("'" + name + "' is no screw: name a screw step, or a screw that was moved");
   const glm::dmat4 image = object.image ? object.image->image_from_object : glm::dmat4(1.0);
-  const glm::dvec3 head_mm = mark_mm(screw->at, bench.objects);
+  const Placed at = placed(*screw, bench);
   return {name,
           screw->object.name,
-          glm::dvec3(image * glm::dvec4(head_mm, 1.0)),
-          glm::dmat3(image) * glm::normalize(screw->direction),
+          glm::dvec3(image * glm::dvec4(at.head_mm, 1.0)),
+          glm::dmat3(image) * at.along,
           screw->diameter_mm,
           screw->length_mm};
 }
@@ -272,14 +344,32 @@ std::optional<double> hole_off_mm(const brep::Solid& solid, const ScrewAxis& axi
 }
 
 Operation screw_operation() {
+  constexpr auto of_flap = [](const Screw& screw) { return screw.flap.has_value(); };
+  const char* const needs_flap = "applies only to 'flap': leave it out";
   return Describe<Screw>("screw", "Places a screw: its axis goes with the bone, to guides and plates.",
                          Makes::Object)
       .takes(field("object", &Screw::object, "The bone or piece in which the screw sits.").required())
-      .takes(field("at", &Screw::at, "Where its axis meets the bone's surface: [x, y, z] or a landmark.")
-                 .required())
+      .takes(field("at", &Screw::at, "Where its axis meets the bone's surface: [x, y, z] or a landmark."))
       .takes(field("direction", &Screw::direction, "The direction from the screw's head to its tip, LPS.")
-                 .required()
                  .direction())
+      .takes(field(
+          "flap", &Screw::flap,
+          "In place of these, the flap_space step of a segment or of the resection: the screw meets its "
+          "axis, square to it, from the side."))
+      .takes(
+          field("share", &Screw::share,
+                "Where on that axis: 0 at a segment's first cut to 1 at its second. Of the resection, in the "
+                "bone that stays: -1 at the first stump's point to 0 at the first cut, and 1 at the last cut "
+                "to 2 at the last stump's point.")
+              .from(-1.0)
+              .to(2.0)
+              .read_if<Screw>(of_flap, needs_flap))
+      .takes(
+          field(
+              "side", &Screw::side,
+              "The side from which it is screwed in, where the segment is placed: anterior, posterior, left, "
+              "right, superior, inferior, or AZ,EL in degrees; of the head as it is held.")
+              .read_if<Screw>(of_flap, needs_flap))
       .takes(field("diameter_mm", &Screw::diameter_mm,
                    "The outer diameter; 2 is usual for plates of the midface.")
                  .from(0.8)
@@ -290,8 +380,9 @@ Operation screw_operation() {
                  .to(60.0))
       .takes(field("away_from", &Screw::away_from,
                    "Objects that the screw must not touch, such as roots or the nerve's canal."))
-      .takes(field("cuts", &Screw::cuts,
-                   "Saw steps and masks of this plan whose cuts the screw must stay away from."))
+      .takes(
+          field("cuts", &Screw::cuts,
+                "Saw steps, masks and flaps' spaces of this plan whose cuts the screw must stay away from."))
       .takes(
           field("least_mm", &Screw::least_mm,
                 "The least distance to these; nearer ones are findings. The default is a project's choice.")
@@ -300,6 +391,7 @@ Operation screw_operation() {
       .example(R"({"id": "left_1", "do": "screw", "object": "maxilla", "at": [18, -80, -34],
         "direction": [0, 1, 0], "length_mm": 5, "cuts": ["sawn"]})")
       .tool()
+      .of_head()
       .check(check)
       .settle(settle)
       .object(definition, voxels, triangles, bound);

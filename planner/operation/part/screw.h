@@ -15,9 +15,13 @@
 namespace octotomy::planner {
 
 struct Screw {
-  ObjectName object;  ///< the bone or piece in which it sits
-  Mark at;            ///< where its axis meets the surface
-  glm::dvec3 direction{0.0, 1.0, 0.0};
+  ObjectName object;       ///< the bone or piece in which it sits
+  std::optional<Mark> at;  ///< where its axis meets the surface
+  std::optional<glm::dvec3> direction;
+  std::optional<ObjectName> flap;  ///< in place of both: a space of a flap, whose axis the screw's axis meets
+  double share = 0.5;              ///< where on the flap's axis
+  std::string side =
+      "inferior";  ///< a view of the head: from there it is screwed in where the bone is placed
   double diameter_mm = 2.0, length_mm = 6.0;
   std::vector<ObjectName> away_from, cuts;
   double least_mm = 1.0;

@@ -266,7 +266,8 @@ bool is_chained_step_of(const Procedure& procedure, const std::string& id) {
   if (const std::size_t digits = own.find_first_not_of("0123456789");
       digits != 0 && digits != std::string::npos && own[digits] == '_')
     own = own.substr(digits + 1);
-  return std::any_of(procedure.steps.begin(), procedure.steps.end(),
+  const Procedure whole = with_all_options(procedure);
+  return std::any_of(whole.steps.begin(), whole.steps.end(),
                      [&](const Json& step) { return step.at("id") == own; });
 }
 

@@ -18,7 +18,7 @@ namespace octotomy::planner {
 /// has. None: the plan has no such step.
 std::optional<std::string> outcome_of(const Plan& plan);
 
-/// Whether chained() named this step for the procedure.
+/// Whether chained() named this step for the procedure, with or without its options.
 bool is_chained_step_of(const Procedure& procedure, const std::string& id);
 
 struct Chained {

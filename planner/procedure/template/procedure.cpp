@@ -133,6 +133,50 @@ double number_at(const SortedJson& entry, const char* key, const std::string& wh
   return number_of(need(entry, key, where), where + ", " + key);
 }
 
+std::vector<ProcedureValue> values_in(const SortedJson& list, const std::string& where) {
+  std::vector<ProcedureValue> values;
+  for (const SortedJson& entry : list) {
+    const std::string at = where + "[" + std::to_string(values.size()) + "]";
+    check_keys(entry, at, {"name", "says", "preset", "least", "most"});
+    values.push_back({word_of(need(entry, "name", at), at), word_of(need(entry, "says", at), at),
+                      number_at(entry, "preset", at), number_at(entry, "least", at),
+                      number_at(entry, "most", at)});
+  }
+  if (values.size() > most_values)
+    throw std::runtime_error(where + ": has more than " + std::to_string(most_values) +
+                             ", which nobody types without a mistake: derive some by formulas");
+  return values;
+}
+
+void need_steps(const Json& owner, const std::string& where) {
+  if (!owner.contains("steps") || !owner["steps"].is_array() || owner["steps"].empty())
+    throw std::runtime_error(where + ": must be a list of at least one step");
+}
+
+/// Reads the options, whose values and steps must have names of their own.
+void add_options(const Json& list, Procedure& procedure) {
+  for (const Json& entry : list) {
+    const std::string where = "options[" + std::to_string(procedure.options.size()) + "]";
+    const SortedJson plain = entry;
+    check_keys(plain, where, {"name", "says", "values", "steps"});
+    ProcedureOption option{word_of(need(plain, "name", where), where),
+                           word_of(need(plain, "says", where), where),
+                           values_in(need(plain, "values", where), where + ", values"), Json::array()};
+    need_steps(entry, where + ", steps");
+    option.steps = entry["steps"];
+    const Procedure before = with_all_options(procedure);
+    for (const ProcedureValue& value : option.values)
+      for (const ProcedureValue& known : before.values)
+        if (known.name == value.name)
+          throw std::runtime_error(where + ": value '" + value.name + "' stands twice: rename one");
+    for (const Json& step : option.steps)
+      for (const Json& known : before.steps)
+        if (known.value("id", "") == step.value("id", ""))
+          throw std::runtime_error(where + ": step '" + step.value("id", "") + "' stands twice: rename one");
+    procedure.options.push_back(std::move(option));
+  }
+}
+
 }  // namespace
 
 void need_scans(const Procedure& procedure, const std::map<std::string, Json>& given, const Json& known) {
@@ -150,7 +194,7 @@ Procedure parse_procedure(const std::string& text) {
   const Json root = parse_json<Json>(text);
   const SortedJson plain = root;
   check_keys(plain, "procedure",
-             {"procedure", "says", "acts_on", "outcome", "landmarks", "scans", "values", "steps"});
+             {"procedure", "says", "acts_on", "outcome", "landmarks", "scans", "values", "steps", "options"});
   Procedure procedure;
   procedure.name = word_of(need(plain, "procedure", "procedure"), "procedure");
   procedure.says = word_of(need(plain, "says", "procedure"), "says");
@@ -174,18 +218,8 @@ Procedure parse_procedure(const std::string& text) {
       procedure.scans.push_back(
           {word_of(need(entry, "name", where), where), word_of(need(entry, "says", where), where)});
     }
-  for (const SortedJson& entry : need(plain, "values", "procedure")) {
-    const std::string where = "values[" + std::to_string(procedure.values.size()) + "]";
-    check_keys(entry, where, {"name", "says", "preset", "least", "most"});
-    procedure.values.push_back({word_of(need(entry, "name", where), where),
-                                word_of(need(entry, "says", where), where), number_at(entry, "preset", where),
-                                number_at(entry, "least", where), number_at(entry, "most", where)});
-  }
-  if (procedure.values.size() > most_values)
-    throw std::runtime_error("values: has more than " + std::to_string(most_values) +
-                             ", which nobody types without a mistake: derive some by formulas");
-  if (!root.contains("steps") || !root["steps"].is_array() || root["steps"].empty())
-    throw std::runtime_error("steps: must be a list of at least one step");
+  procedure.values = values_in(need(plain, "values", "procedure"), "values");
+  need_steps(root, "steps");
   for (std::size_t i = 0; i < root["steps"].size(); ++i) {
     const Json& step = root["steps"][i];
     if (step.contains("of"))
@@ -193,6 +227,7 @@ Procedure parse_procedure(const std::string& text) {
     else
       procedure.steps.push_back(step);
   }
+  if (root.contains("options")) add_options(root["options"], procedure);
   for (const auto& [key, into] :
        {std::pair("acts_on", &procedure.acts_on), std::pair("outcome", &procedure.outcome)}) {
     if (!plain.contains(key)) continue;
@@ -202,6 +237,28 @@ Procedure parse_procedure(const std::string& text) {
       throw std::runtime_error(std::string(key) + ": no step is called '" + *into + "'");
   }
   return procedure;
+}
+
+Procedure with_options(const Procedure& procedure, const std::vector<std::string>& names) {
+  std::vector<std::string> known;
+  for (const ProcedureOption& option : procedure.options) known.push_back(option.name);
+  for (const std::string& name : names)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw std::runtime_error("procedure " + procedure.name + " has no option '" + name + "'" +
+                               (known.empty() ? ": it has none" : suggestion(name, known)));
+  Procedure whole = procedure;
+  for (const ProcedureOption& option : procedure.options) {
+    if (std::find(names.begin(), names.end(), option.name) == names.end()) continue;
+    whole.values.insert(whole.values.end(), option.values.begin(), option.values.end());
+    for (const Json& step : option.steps) whole.steps.push_back(step);
+  }
+  return whole;
+}
+
+Procedure with_all_options(const Procedure& procedure) {
+  std::vector<std::string> names;
+  for (const ProcedureOption& option : procedure.options) names.push_back(option.name);
+  return with_options(procedure, names);
 }
 
 Procedure read_procedure(const std::string& name_or_path) {

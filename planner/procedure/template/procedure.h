@@ -29,6 +29,14 @@ struct ProcedureScan {
   std::string says;
 };
 
+/// Further values and steps of a procedure, which the user may choose, such as guides for its cuts.
+struct ProcedureOption {
+  std::string name;
+  std::string says;
+  std::vector<ProcedureValue> values;
+  nlohmann::ordered_json steps = nlohmann::ordered_json::array();
+};
+
 /// An operation defined by landmarks and entered values; its steps contain formulas.
 struct Procedure {
   std::string name;
@@ -41,9 +49,10 @@ struct Procedure {
   std::string acts_on = {};
   /// The step with the result, on which a further procedure acts.
   std::string outcome = {};
+  std::vector<ProcedureOption> options = {};
 };
 
-/// The largest number of values of a procedure.
+/// The largest number of values of a procedure, and of each of its options.
 inline constexpr std::size_t most_values = 12;
 
 /// Reads a procedure's JSON. Throws std::runtime_error with the position in it.
@@ -53,6 +62,12 @@ Procedure parse_procedure(const std::string& json);
 Procedure read_procedure(const std::string& name_or_path);
 /// Names of the program's procedures.
 std::vector<std::string> procedures();
+
+/// The procedure with the values and steps of some of its options, in the order of its file. Throws
+/// std::runtime_error, with the nearest name, for an option that it does not have.
+Procedure with_options(const Procedure& procedure, const std::vector<std::string>& names);
+/// The procedure with all its options.
+Procedure with_all_options(const Procedure& procedure);
 
 /// Checks the scans given in addition to the patient's: the procedure must use each of them, and each scan
 /// that it uses must be given or in `known`. Throws std::runtime_error, with the scan's definition.

@@ -8,16 +8,18 @@ import {open_picker} from "./files";
 import {button, Child, el} from "../base/html";
 import {label_of} from "../panel/schema_form";
 import {ask_for_landmarks} from "../tool/point_tools";
-import {PlanState, ProcedureSays} from "../protocol";
+import {PlanState, ProcedureSays, ProcedureValue} from "../protocol";
 import {on_leaving_plan, set, state} from "../state";
 import {Vec3} from "../base/vector";
 
 const values: {[name: string]: number} = {};
+const chosen_options = new Set<string>();  // "fibula_flap.guides"
 let pending_procedure: string|null = null;
 on_leaving_plan(() => {
   pending_procedure = null;
   // Values such as a threshold or an advancement belong to one patient.
   for (const name of Object.keys(values)) delete values[name];
+  chosen_options.clear();
 });
 
 /// Shows a procedure's landmarks and values, and adds its steps to the plan.
@@ -43,6 +45,46 @@ export function open_procedure(name?: string): void {
 /// `before` is the object with which an earlier procedure of the plan ends; this one acts on it.
 function procedure_form(dialog: Dialog, chosen: ProcedureSays, before: string|null): Child {
   const placed = new Map((state.plan?.landmarks ?? []).map((mark) => [mark.name, mark.point]));
+  const is_chosen = (option: string): boolean => chosen_options.has(`${chosen.name}.${option}`);
+  const value_of = (one: ProcedureValue): number => values[`${chosen.name}.${one.name}`] ?? one.default;
+  const value_fields = (list: ProcedureValue[]): HTMLElement =>
+      el("div", {class: "grid-2"},
+         list.map(
+             (one) => el(
+                 "label", {class: "field", "data-tip": `${one.says}. From ${one.low} to ${one.high}.`},
+                 el("span", {}, label_of(one.name)), el("input", {
+                   type: "number",
+                   step: "any",
+                   min: one.low,
+                   max: one.high,
+                   name: one.name,
+                   value: value_of(one),
+                   onchange: (event: Event) => {
+                     values[`${chosen.name}.${one.name}`] = Number((event.target as HTMLInputElement).value);
+                   }
+                 }),
+                 el("i", {}, one.unit))));
+  const option_fields = (option: ProcedureSays["options"][number]): Child => {
+    const fields = value_fields(option.values);
+    fields.hidden = !is_chosen(option.name);
+    return [
+      el("label", {class: "check"}, el("input", {
+           type: "checkbox",
+           name: option.name,
+           checked: is_chosen(option.name),
+           onchange: (event: Event) => {
+             const key = `${chosen.name}.${option.name}`;
+             fields.hidden = !(event.target as HTMLInputElement).checked;
+             if (fields.hidden)
+               chosen_options.delete(key);
+             else
+               chosen_options.add(key);
+           }
+         }),
+         `With ${option.says}`),
+      fields
+    ];
+  };
   const lacks_scan = chosen.scans.some((scan) => !scans()[scan.name]);
   const missing = chosen.landmarks.filter((mark) => !placed.has(mark.name));
   const place = (): void => {
@@ -53,12 +95,15 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays, before: string|nu
   const perform = async(): Promise<void> => {
     const landmarks: {[mark: string]: Vec3} = {};
     for (const mark of chosen.landmarks) landmarks[mark.name] = placed.get(mark.name)!;
-    const set_values = Object.fromEntries(
-        chosen.values.map((one) => [one.name, values[`${chosen.name}.${one.name}`] ?? one.default]));
+    const options = chosen.options.filter((one) => is_chosen(one.name));
+    const set_values =
+        Object.fromEntries([chosen, ...options].flatMap((part) => part.values).map((one) => [one.name, value_of(one)]));
     const shown = objects_of_plan().flatMap((object) => (object.id ? [object.id] : []));
     dialog.close();
     const planned: (PlanState&{made?: string[]})|null =
-        await change_plan("procedure", {name: chosen.name, landmarks, values: set_values});
+        await change_plan(
+            "procedure",
+            {name: chosen.name, landmarks, values: set_values, with: options.map((one) => one.name)});
     if (!planned) return;
     // The new pieces replace the objects shown before, until the procedure is undone.
     const made = planned.made ?? [];
@@ -89,23 +134,8 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays, before: string|nu
                `Place ${missing.length} landmarks`, "Click them one after the other in the panes", place,
                {class: "primary"})) :
         [
-          el("div", {class: "grid-2"},
-             chosen.values.map(
-                 (one) =>
-                     el("label", {class: "field", "data-tip": `${one.says}. From ${one.low} to ${one.high}.`},
-                        el("span", {}, label_of(one.name)), el("input", {
-                          type: "number",
-                          step: "any",
-                          min: one.low,
-                          max: one.high,
-                          name: one.name,
-                          value: values[`${chosen.name}.${one.name}`] ?? one.default,
-                          onchange: (event: Event) => {
-                            values[`${chosen.name}.${one.name}`] =
-                                Number((event.target as HTMLInputElement).value);
-                          }
-                        }),
-                        el("i", {}, one.unit)))),
+          value_fields(chosen.values),
+          chosen.options.map(option_fields),
           el("div", {class: "row end"},
              button(
                  "Plan it", "Adds the procedure's steps to the plan", () => void perform(),

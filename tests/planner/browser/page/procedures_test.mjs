@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Operations by landmarks on the UNC head, from opening the scan to a certified report, counted: a bilateral sagittal split,
-// and a jaw rebuilt of a fibula whose scan is given beside the head's. OCTOTOMY_SHARED_DATA names the folder of the
+// and a jaw rebuilt of a fibula whose scan is given beside the head's, alone and with its guides and plate. OCTOTOMY_SHARED_DATA names the folder of the
 // reference scans; OCTOTOMY_PICTURES a folder for pictures to look at.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -107,8 +107,12 @@ test('a bilateral sagittal split takes at most 100 actions', { skip }, async (co
   assert.deepEqual(one.problems, []);
 });
 
-test('a jaw rebuilt of a fibula takes at most 300 actions', { skip }, async (context) => {
-  const { folder, one, plan, began } = await opened(context, (place) => execFileSync(program, ['phantom', 'leg', '-o', path.join(place, 'leg.nrrd')]));
+const flap_values = { start_mm: 20, aside_mm: 20, least_mm3: 200 };
+
+/// The form of a fibula flap, with its donor's scan, landmarks and values.
+async function flap_form(context) {
+  const window = await opened(context, (place) => execFileSync(program, ['phantom', 'leg', '-o', path.join(place, 'leg.nrrd')]));
+  const { one, plan } = window;
   await one.click(one.page.locator('.bar').getByRole('button', { name: 'Procedure' }));
   await one.click('fibula flap');
   await one.click("Choose the donor's scan");
@@ -119,14 +123,21 @@ test('a jaw rebuilt of a fibula takes at most 300 actions', { skip }, async (con
   await one.at_rest();
   await picture(one, 'donor');
   await place(one, plan, donor_marks, leg_spacing_mm);
-  const values = { start_mm: 20, aside_mm: 20, least_mm3: 200 };
-  for (const [name, value] of Object.entries(values)) {
+  for (const [name, value] of Object.entries(flap_values)) {
     await one.page.locator(`dialog input[name="${name}"]`).fill(String(value));
     one.actions++;
   }
+  return window;
+}
+
+/// The options with which the command line writes the same flap.
+const flap_options = (folder) => ['--donor', path.join(folder, 'leg.nrrd'), ...Object.entries(flap_values).flatMap(([name, value]) => ['--set', `${name}=${value}`])];
+
+test('a jaw rebuilt of a fibula takes at most 300 actions', { skip }, async (context) => {
+  const { folder, one, plan, began } = await flap_form(context);
   await one.click('Plan it');
   await one.until(() => plan().steps.some((step) => step.id === 'rebuilt'), 'the plan');
-  same_as_command(folder, 'fibula_flap', plan(), ['--donor', path.join(folder, 'leg.nrrd'), ...Object.entries(values).flatMap(([name, value]) => ['--set', `${name}=${value}`])]);
+  same_as_command(folder, 'fibula_flap', plan(), flap_options(folder));
   await one.press('Shift+1');
   await one.shows(1, 'segment_2');
   await picture(one, 'flap');
@@ -136,5 +147,28 @@ test('a jaw rebuilt of a fibula takes at most 300 actions', { skip }, async (con
   await picture(one, 'flap_certified');
   console.log(`fibula flap: ${one.actions} actions, ${((Date.now() - began) / 1000).toFixed(0)} s`);
   assert.ok(one.actions <= 300, `${one.actions} actions`);
+  assert.deepEqual(one.problems, []);
+});
+
+test('guides and a plate for a flap take two more actions, and go away with their tick', { skip }, async (context) => {
+  const { folder, one, plan } = await flap_form(context);
+  const before = one.actions, width = one.page.locator('dialog input[name="plate_width_mm"]'), tick = one.page.locator('dialog input[name="guides"]');
+  const has = (id) => plan().steps.some((step) => step.id === id);
+  assert.equal(await width.isVisible(), false);
+  await one.click(tick);
+  await width.waitFor();
+  await picture(one, 'flap_guides_form', false);
+  await one.click('Plan it');
+  await one.until(() => has('plate_prints'), 'the guides');
+  same_as_command(folder, 'fibula_flap', plan(), [...flap_options(folder), '--with', 'guides']);
+  console.log(`fibula flap with guides and plate: ${one.actions} actions`);
+  assert.equal(one.actions, before + 2);
+  await one.click(one.page.locator('.bar').getByRole('button', { name: 'Procedure' }));
+  await one.click('fibula flap');
+  await one.click(tick);
+  await one.click('Plan it');
+  await one.until(() => !has('plate') && !has('cuts_1'), 'a plan without guides');
+  assert.ok(has('rebuilt'));
+  same_as_command(folder, 'fibula_flap', plan(), flap_options(folder));
   assert.deepEqual(one.problems, []);
 });

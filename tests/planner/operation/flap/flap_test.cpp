@@ -145,5 +145,111 @@ TEST(FlapSteps, RefusalsPointAtThePlace) {
             std::string::npos);
 }
 
+/// The uncut fibula at the place of segment 1, the cuts of both segments on it, a screw in the middle of each,
+/// and those screws where the segments are placed; then further steps.
+Plan uncut_plan(const tests::ScratchFolder& folder, const std::string& more) {
+  voxel::write_scene(bar_scene(), folder / "bar.nrrd");
+  voxel::write_scene(verify::leg_phantom(), folder / "leg.nrrd");
+  const std::string same = std::string(flap_fields) + still_face;
+  std::string steps =
+      R"({"id": "jaw", "do": "window", "scan": "ct", "low": 300},
+         {"id": "gone", "do": "flap_space", "part": "resection", "aside_mm": 12, )" +
+      same + R"(}, {"id": "uncut", "do": "flap_scan", "scan": "leg", "segment": 1, "uncut": true, )" + same +
+      R"(}, {"id": "fibula", "do": "window", "low": 300, "scan": "uncut"})";
+  for (const char* n : {"1", "2"}) {
+    const std::string i(n);
+    steps += R"(, {"id": "cuts_)" + i + R"(", "do": "flap_space", "uncut_at": 1, "number": )" + i + ", " +
+             same + R"(}, {"id": "screw_)" + i + R"(", "do": "screw", "object": "fibula", "flap": "cuts_)" +
+             i + R"(", "cuts": ["cuts_)" + i + R"("]}, {"id": "moved_)" + i +
+             R"(", "do": "flap_move", "object": "screw_)" + i + R"(", "segment": "cuts_)" + i + R"("})";
+  }
+  return parse_plan(R"({"octotomy_plan": 1, "name": "flap", "scans": {"ct": {"path": "bar.nrrd"},
+      "leg": {"path": "leg.nrrd"}}, "universe": {"voxel_mm": 1.0}, "steps": [)" +
+                        steps + (more.empty() ? "" : ", " + more) + "]}",
+                    folder.path());
+}
+
+TEST(FlapSteps, AGuideOnTheUncutBoneHasASlotForEachCutAndScrewsGoAlongWithTheirSegments) {
+  const tests::ScratchFolder folder;
+  const Plan plan = uncut_plan(
+      folder,
+      R"({"id": "guide", "do": "guide", "object": "fibula", "side": "inferior", "radius_mm": 8, "ends_mm": 24,
+          "reach_mm": 10, "cuts": ["cuts_1", "cuts_2"], "slot_depth_mm": 8, "slot_end_mm": 2.5,
+          "screws": ["screw_1", "screw_2"]},
+         {"id": "goes_on", "do": "seating", "object": "guide", "against": ["fibula"], "seen_from": "inferior"})");
+  EvaluateOptions quick;
+  quick.certify = false;
+  const Evaluation made = evaluate(plan, quick);
+  // The bone's face, 8.5 mm off its axis, is turned downwards in both segments.
+  for (const auto& [screw, x_mm] : {std::pair("moved_1", -15.0), {"moved_2", 15.0}}) {
+    const Object& object = made.object(screw);
+    ASSERT_TRUE(object.mesh.whole) << screw;
+    glm::dvec3 low(0.0);
+    double lowest_mm = 1e9;
+    for (const glm::dvec3& p_mm : object.mesh.whole->triangles().points_mm)
+      if (p_mm.z < lowest_mm) low = p_mm, lowest_mm = p_mm.z;
+    EXPECT_NEAR(low.x, x_mm, 1.1) << screw;
+    EXPECT_NEAR(low.y, 2.0, 1.1) << screw;
+    EXPECT_NEAR(low.z, -8.5, 0.15) << screw;
+  }
+  const Json& details = made.object("guide").mesh.details;
+  ASSERT_EQ(details.at("slots").size(), 4u) << details.dump(1);
+  for (const Json& slot : details.at("slots")) EXPECT_NEAR(slot.at("width_mm").get<double>(), 1.2, 1e-9);
+  ASSERT_EQ(details.at("holes").size(), 2u);
+  // Triangles of guides lie within a 24th of their cells of 1 mm, on the mean. Goals of 0.01 mm are of plates.
+  constexpr double mean_mm = 1.0 / 24.0;
+  for (const Json& hole : details.at("holes")) {
+    ASSERT_FALSE(hole.at("off_axis_mm").is_null()) << details.dump(1);
+    EXPECT_LT(hole.at("off_axis_mm").get<double>(), mean_mm);
+  }
+  // A saw that takes its kerf outside of segment 1: a point of the first cut's plane is beside the slot by less
+  // than half its width, and the middle of the slot lies before the segment.
+  const brep::SurfaceTree& guide = made.object("guide").mesh.within->tree();
+  const glm::dvec3 along = glm::normalize(glm::dvec3(30, -16, 0)), cut_mm(-30, 10, -10);
+  EXPECT_FALSE(guide.is_inside(cut_mm - 1.0 * along));
+  EXPECT_TRUE(guide.is_inside(cut_mm + 1.0 * along));
+  const Json measured = measurements_json(plan, made);
+  EXPECT_EQ(measured.back().at("verdict"), "PASS") << measured.dump(1);
+}
+
+TEST(FlapSteps, GuidesAndScrewsThatCannotBeAreRefusedInASentence) {
+  const auto expect_refused = [](const std::string& more, const std::string& words) {
+    const tests::ScratchFolder folder;
+    EvaluateOptions quick;
+    quick.certify = false;
+    try {
+      evaluate(uncut_plan(folder, more), quick);
+      ADD_FAILURE() << "accepted: " << more;
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  };
+  const auto guide = [](const std::string& fields) {
+    return R"({"id": "guide", "do": "guide", "object": "fibula", "side": "inferior", "reach_mm": 10, )" +
+           fields + "}";
+  };
+  const auto screw = [](const std::string& fields) {
+    return R"({"id": "s", "do": "screw", "object": "fibula", )" + fields + "}, ";
+  };
+  expect_refused(guide(R"("screws": ["screw_1"], "cuts": ["cuts_2"])"), "of 'cuts_2' misses the guide");
+  expect_refused(
+      screw(R"("flap": "cuts_1", "share": 0.96)") +
+          guide(R"("screws": ["s", "screw_1"], "ends_mm": 24, "slot_end_mm": 2.5, "cuts": ["cuts_1"])"),
+      "the sleeve of 's' runs through the slot of 'cuts_1'");
+  expect_refused(guide(R"("screws": ["screw_1"], "least_wall_mm": 0.1)"), "least_wall_mm: must be from 0.3");
+  expect_refused(guide(R"("cuts": ["cuts_1"])"), "the region is missing");
+  expect_refused(screw(R"("flap": "cuts_1", "at": [0, 0, 0])") + guide(R"("screws": ["s"])"),
+                 "states the axis a second time");
+  expect_refused(screw(R"("flap": "cuts_1", "share": -0.5)") + guide(R"("screws": ["s"])"),
+                 "beside segment 1");
+  expect_refused(screw(R"("flap": "gone", "share": -0.5)") + guide(R"("screws": ["s"])"), "has no 'stumps'");
+  expect_refused(screw(R"("flap": "jaw")") + guide(R"("screws": ["s"])"), "is no space of a flap's");
+  expect_refused(
+      screw(R"("at": [0, 0, 0], "direction": [0, 0, 1], "share": 0.2)") + guide(R"("screws": ["s"])"),
+      "applies only to 'flap'");
+  expect_refused(R"({"id": "m", "do": "flap_move", "object": "screw_1", "segment": "gone"})",
+                 "is no space on the uncut donor bone");
+}
+
 }  // namespace
 }  // namespace octotomy::planner

@@ -37,7 +37,53 @@ TEST(Procedure, EachOfTheProgramMakesAPlanThatReadsAndTakesFewValues) {
     const Plan read = parse_plan(plan.dump(), ".");
     EXPECT_EQ(plan.dump().find("\"="), std::string::npos) << name << " keeps a formula";
     EXPECT_EQ(read.landmarks.size(), head_landmarks().size());
+    const Json whole = plan_of(with_all_options(procedure), input);
+    EXPECT_EQ(whole.dump().find("\"="), std::string::npos) << name << " keeps a formula";
+    std::size_t more = 0;
+    for (const ProcedureOption& option : procedure.options) {
+      EXPECT_LE(option.values.size(), most_values) << name;
+      more += option.steps.size();
+    }
+    EXPECT_EQ(whole.at("steps").size(), plan.at("steps").size() + more) << name;
   }
+}
+
+TEST(Procedure, AnOptionAddsItsValuesAndStepsAndIsKnownByItsName) {
+  const Procedure flap = read_procedure("fibula_flap");
+  ProcedureInput input = head_input();
+  input.further_scans["donor"] = {{"path", "leg.nrrd"}};
+  input.values = {{"plate_width_mm", 8}};
+  EXPECT_THROW(plan_of(flap, input), std::runtime_error);
+  const Json plan = plan_of(with_options(flap, {"guides"}), input);
+  for (const Json& step : plan.at("steps"))
+    if (step.at("id") == "plate") {
+      EXPECT_EQ(step.at("width_mm"), 8.0);
+      EXPECT_EQ(step.at("screws").size(), 10u);
+    }
+  const auto refused = [](const auto& act) {
+    try {
+      act();
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(refused([&] { with_options(flap, {"guide"}); }).find("did you mean 'guides'?"),
+            std::string::npos);
+  EXPECT_NE(refused([&] { with_options(read_procedure("le_fort_ii"), {"guides"}); }).find("it has none"),
+            std::string::npos);
+  const auto parsed = [&](const std::string& value, const std::string& step) {
+    return refused([&] {
+      parse_procedure(R"({"procedure": "mine", "says": "Mine.", "landmarks": [], "values": [{"name": "a_mm",
+          "says": "A.", "preset": 1, "least": 0, "most": 2}], "steps": [{"id": "one"}], "options": [{"name": "o",
+          "says": "O.", "values": [{"name": ")" +
+                      value + R"(", "says": "B.", "preset": 1, "least": 0, "most": 2}], "steps": [{"id": ")" +
+                      step + R"("}]}]})");
+    });
+  };
+  EXPECT_EQ(parsed("b_mm", "two"), "");
+  EXPECT_NE(parsed("a_mm", "two").find("value 'a_mm' stands twice"), std::string::npos);
+  EXPECT_NE(parsed("b_mm", "one").find("step 'one' stands twice"), std::string::npos);
 }
 
 TEST(Procedure, TypedValuesAndLandmarksBecomeThePlansNumbers) {

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planner/operation/table/scope.h"
+
+// What guides, screws and motions read of a step that made the space of a free flap.
+namespace octotomy::planner {
+
+class Action;
+
+/// A cut at an end of such a space, LPS. Points p of the cut: dot(away, p - point_mm) = 0.
+struct FlapCut {
+  glm::dvec3 point_mm{0.0};      ///< on the axis of the flap or donor
+  glm::dvec3 away{0, 0, 1};      ///< unit: to the side on which the saw takes its kerf
+  double kerf_mm = 1.0;          ///< the saw's width
+  double reach_mm = 12.0;        ///< no bone farther from point_mm is cut
+  bool is_of_resection = false;  ///< the cut at one end of the resection, not of a segment
+};
+/// The cuts at both ends of a segment's space, or of the resection's. The kerf of a segment lies outside of it,
+/// that of the resection within. None: the step made no such space.
+std::vector<FlapCut> flap_cuts(const Action& maker);
+
+/// A place on the axis of a flap, and the motion from where a segment is placed to where its uncut bone lies.
+struct FlapPlace {
+  glm::dvec3 on_axis_mm{0.0};  ///< where the segment is placed, LPS
+  glm::dvec3 along{0, 0, 1};   ///< unit: the axis there
+  double reach_mm = 12.0;      ///< the bone's surface is at most this far from the axis
+  /// LPS to LPS, rigid; none: the space is where the segment is placed, or of bone that stays.
+  std::optional<glm::dmat4> uncut_from_placed;
+};
+/// The place at a share of the way between both cuts of a segment's space, 0 to 1. For the resection's space: in
+/// the bone that stays, from -1 at the first stump's point to 0 at the first cut, or from 1 at the last cut to
+/// 2 at the last stump's point. Throws std::runtime_error, which says what is out of range, for another share, a
+/// resection without stumps, or a step that made no such space; `name` is the step's, for the message.
+FlapPlace flap_place(const Action* maker, const std::string& name, double share);
+
+}  // namespace octotomy::planner
