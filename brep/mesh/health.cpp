@@ -382,9 +382,11 @@ void tell(const Triangles& triangles, Health& health, const Offenders& offenders
             " mm3: turn its triangles over (first: " + "triangle " + std::to_string(offenders.misplaced) +
             place_of(triangles, offenders.misplaced) + ")");
   } else {
-    const std::string overlap = placed.overlapping == 0 ? "" : ", as shells that face outward overlap";
     say(Defect::MisplacedShell, health.misplaced_shells,
-        "shells that face the wrong way for the shells around them" + overlap, offenders.misplaced);
+        placed.overlapping == health.misplaced_shells
+            ? "shells that overlap: they lie within others that face outward, too"
+            : "shells that face the wrong way for the shells around them",
+        offenders.misplaced);
     if (is_placed && !(placed.volume_mm3 > 0.0))
       add(Defect::InsideOut, "the volume is " + std::to_string(placed.volume_mm3) +
                                  " mm3: the triangles face inward or enclose nothing");

@@ -322,7 +322,7 @@ Witness witness_of_parts(Witness whole) {
   return Witness([whole = std::move(whole)](const glm::dvec3& p_mm, double slack_mm,
                                             ReadingNeeds asked) -> Reading {
            const auto part = [](const AllowedSides& allowed) {
-             return allowed == certainly_in ? either_side : allowed;
+             return allowed == certainly_in ? either_by_choice : allowed;
            };
            const Reading reading = whole(p_mm, slack_mm, asked);
            return {part(reading.voxel), part(reading.mesh), reading.surfaces};
@@ -346,7 +346,7 @@ Witness witness_of_filled(Witness hollow) {
   return Witness([hollow = std::move(hollow)](const glm::dvec3& p_mm, double slack_mm,
                                               ReadingNeeds asked) -> Reading {
            const auto filled = [](const AllowedSides& allowed) {
-             return allowed == certainly_out ? either_side : allowed;
+             return allowed == certainly_out ? either_by_choice : allowed;
            };
            const Reading reading = hollow(p_mm, slack_mm, asked);
            return {filled(reading.voxel), filled(reading.mesh), reading.surfaces};

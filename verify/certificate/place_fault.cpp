@@ -9,7 +9,7 @@ PlaceFault fault_of(const Reading& reading, bool in_voxels, bool in_mesh) {
   const bool near = reading.voxel.near || reading.mesh.near;
   // If the witness decides for one kernel's interpolation and that kernel agrees with it, the difference is
   // no error: the kernels' interpolations differ there.
-  const bool told = reading.voxel != either_side || reading.mesh != either_side;
+  const bool told = !reading.voxel.is_open() || !reading.mesh.is_open();
   return in_voxels == in_mesh || near || told ? PlaceFault::None : PlaceFault::Apart;
 }
 

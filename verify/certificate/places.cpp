@@ -47,8 +47,9 @@ constexpr std::array<const char*, 7> clauses{
     "only one kernel has a part there",
     "walls or gaps thinner than a voxel were lost there by resampling"};
 
+/// A side that only the choice of parts leaves open was decided for the whole object by the kernel's own interpolation.
 bool is_lost(const Reading& reading, bool in_voxels, bool in_mesh) {
-  return in_voxels != in_mesh && reading.voxel == either_side && reading.mesh != either_side &&
+  return in_voxels != in_mesh && reading.voxel == either_side && !reading.mesh.is_open() &&
          reading.mesh.allows(in_mesh);
 }
 
@@ -268,7 +269,7 @@ bool hangs_on_no_face(const glm::ivec3& voxel, const voxel::Octree& octree, cons
       if (!is_within(neighbour, octree) || !lacking.contains(neighbour)) continue;
       const Reading reading =
           witness.allowed_sides(octree.universe().lattice().lps_mm(glm::dvec3(neighbour)));
-      if ((in_voxels ? reading.mesh : reading.voxel) == either_side) return false;
+      if ((in_voxels ? reading.mesh : reading.voxel).is_open()) return false;
     }
   return true;
 }

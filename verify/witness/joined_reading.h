@@ -7,17 +7,18 @@
 namespace octotomy::verify {
 
 inline AllowedSides negated(const AllowedSides& a) {
-  return {a.out, a.in, a.near};
+  return {a.out, a.in, a.near, a.chosen};
 }
 
 inline AllowedSides conjunction(const AllowedSides& a, const AllowedSides& b) {
-  const AllowedSides allowed{a.in && b.in, a.out || b.out, false};
-  return {allowed.in, allowed.out, allowed.in && allowed.out && ((a.near && b.in) || (b.near && a.in))};
+  const bool in = a.in && b.in, out = a.out || b.out;
+  return {in, out, in && out && ((a.near && b.in) || (b.near && a.in)), in && out && (a.chosen || b.chosen)};
 }
 
 /// Has a surface wherever one of the operands has one.
 inline AllowedSides exclusive(const AllowedSides& a, const AllowedSides& b) {
-  return {(a.in && b.out) || (a.out && b.in), (a.in && b.in) || (a.out && b.out), a.near || b.near};
+  return {(a.in && b.out) || (a.out && b.in), (a.in && b.in) || (a.out && b.out), a.near || b.near,
+          a.chosen || b.chosen};
 }
 
 inline Reading negated(const Reading& a) {

@@ -20,7 +20,11 @@ struct AllowedSides {
   bool in = false;    ///< inside is allowed
   bool out = false;   ///< outside is allowed
   bool near = false;  ///< a surface passes within rounding of the point
+  /// Both sides are allowed because parts of an object were chosen or its cavities filled, although the witness
+  /// decides the side of the whole object.
+  bool chosen = false;
 
+  bool is_open() const { return in && out && !near; }
   bool allows(bool inside) const { return inside ? in : out; }
   bool operator==(const AllowedSides&) const = default;
 };
@@ -30,6 +34,7 @@ inline constexpr AllowedSides certainly_out{false, true, false};
 inline constexpr AllowedSides on_surface{true, true, true};
 /// Away from any surface, and the witness cannot decide the side.
 inline constexpr AllowedSides either_side{true, true, false};
+inline constexpr AllowedSides either_by_choice{true, true, false, true};
 
 /// The allowed answers of each kernel at a point. They differ because the kernels interpolate differently.
 struct Reading {

@@ -68,7 +68,7 @@ std::vector<Spoiled> spoiled_solids() {
           {Defect::Degenerate, with_flat_triangle(), "without area"},
           {Defect::Duplicate, pillow, "with the same points"},
           {Defect::MisplacedShell, with({0.5, 0.5, 0.5}, {1, 1, 1}),
-           "face the wrong way for the shells around them, as shells that face outward overlap"},
+           "shells that overlap: they lie within others that face outward, too"},
           {Defect::SelfIntersection, with({1, 1, 1}, {3, 3, 3}), "pairs of triangles that intersect"}};
 }
 
