@@ -60,11 +60,11 @@ struct LaidToothScan {
 
 /// Lays a scan of teeth, open and with holes, onto a solid that shows the same teeth: by the points, then by the
 /// surfaces of the crowns, of which the farthest parts are trimmed. Patches of a quarter of the crowns are held
-/// back: their distances are the error. Both in LPS millimetres. Throws Error (Input or Geometry) in one sentence
-/// that states the cause: an unfitting unit; points that are too few, off their surface, on one line or fit
-/// only mirrored; a scan that does not match the teeth, as that of the other jaw; too little of the crowns;
-/// Stopped. The same bits on any number of threads. Cost: that of register_surfaces() with a start. Sources: as
-/// register_surfaces(); held-out patches are a cross-validation.
+/// back: their distances bound the error. Both in LPS millimetres. Throws Error (Input or Geometry) in one sentence
+/// that states the cause: a wrong unit; points that are too few, off their surface or fit only mirrored; a scan
+/// that does not match the teeth, as that of the other jaw; too little of the crowns. Throws std::invalid_argument
+/// if the points lie on one line, and Stopped. The same bits on any number of threads. Cost: that of
+/// register_surfaces() with a start. Sources: as register_surfaces(); held-out patches are a cross-validation.
 LaidToothScan lay_tooth_scan(const Mesh& scan, const Solid& fixed, const ToothPoints& points,
                              const ToothScanOptions& options);
 
