@@ -134,7 +134,7 @@ ToothScan settle(const ToothScan& asked, const SettleBench& bench) {
   if (const double sample_mm = std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z}); sample_mm > 0.0)
     options.sample_mm = sample_mm;
   else
-    bench.findings.push_back("'" + asked.object.name + "' comes from no scan: samples of " +
+    bench.findings.push_back("WARN error: '" + asked.object.name + "' comes from no scan: samples of " +
                              plain(options.sample_mm) + " mm are assumed for the error of its surface");
   options.scan = file_name(asked);
   options.fixed = "'" + asked.object.name + "'";
@@ -206,12 +206,11 @@ Operation tooth_scan_operation() {
              "tooth_scan",
              "Lays a scan of teeth onto an object and replaces the object's crowns by the scan's.",
              Makes::Object)
-      .takes(
-          field("object", &ToothScan::object,
-                "The object with the teeth: one jaw, because of the other jaw's teeth the scan would replace "
-                "what lies within 'reach_mm'.")
-              .required()
-              .positional("object"))
+      .takes(field("object", &ToothScan::object,
+                   "The object with the teeth: one jaw alone, because the scan would also replace what lies "
+                   "within 'reach_mm' of it on the other jaw's teeth.")
+                 .required()
+                 .positional("object"))
       .takes(field("path", &ToothScan::path,
                    std::string("The scan, which may be open, with holes and in any pose: ") +
                        brep::mesh_formats_read + ", relative to the plan's folder.")
@@ -249,9 +248,8 @@ Operation tooth_scan_operation() {
               .from(0.3)
               .to(5.0))
       .takes(field("reach_mm", &ToothScan::reach_mm,
-                   "What the object has within this distance of the scan is replaced; more where streaks "
-                   "stick out "
-                   "farther.")
+                   "What the object has within this distance of the scan is replaced; give more if streaks "
+                   "stick out farther.")
                  .from(0.5)
                  .to(8.0))
       .takes(
