@@ -116,7 +116,7 @@ void need_size(const Triangles& scan, const ToothScanOptions& options) {
   for (const auto& [unit, mm] : {std::pair("um", 0.001), {"cm", 10.0}, {"m", 1000.0}, {"inch", 25.4}})
     if (longest_mm * mm >= 2.0 * least_mm && longest_mm * mm <= 0.5 * most_mm)
       fits += (fits.empty() ? "" : " or ") + std::string(unit);
-  refuse(options.scan + " is " + short_text(longest_mm) + " mm long, which no row of teeth is: " +
+  refuse(options.scan + " is " + short_text(longest_mm) + " mm long, which fits no row of teeth: " +
          (fits.empty() ? "give a scan of teeth, and its unit" : "its unit is probably " + fits));
 }
 

@@ -50,8 +50,8 @@ struct LaidToothScan {
   std::size_t fitted_patches = 0;
   double matched_share = 0.0;  ///< of the held patches' samples, with a counterpart on the fixed surface
   double distance_mm = 0.0;    ///< root mean square distance of the held patches from the fixed surface
-  /// The root mean square distance of the scan, as it lies, from the true teeth is error_mm, give or take
-  /// half_width_mm, in 99 of 100 cases.
+  /// In 99 of 100 cases the root mean square distance of the scan's points, as laid, from where they truly are
+  /// differs from error_mm by at most half_width_mm.
   double error_mm = 0.0, half_width_mm = 0.0;
 
   /// The depth of a point below the tips.

@@ -302,7 +302,7 @@ LatticeValues values_about(const Size& size, const MixedField& field, double ste
   return lattice;
 }
 
-/// The surface between lattice points inside and outside. It is closed whatever the values are.
+/// The surface between lattice points inside and outside. It is closed for all values.
 Solid surface_of(const LatticeValues& lattice) {
   std::vector<EdgeTriangle> triangles;
   for (int z = 0; z + 1 < lattice.dims.z; ++z)
@@ -329,7 +329,7 @@ Solid surface_of(const LatticeValues& lattice) {
   return trusted_solid(std::move(surface), Proof::Construction);
 }
 
-/// Where the nearest point of the scan jumps, mixed distances do, too, and leave specks. They are taken out.
+/// Mixed distances jump where the nearest point of the scan does, and leave specks. Removes these.
 Solid without_specks(const Solid& solid, ScanBlend& made) {
   constexpr double least_mm3 = 2.0;
   const std::vector<Component>& parts = solid.components();

@@ -2,8 +2,8 @@
 // A screw's axis, and how far the screw stays from what it must not touch: roots, a nerve's canal, saw cuts.
 // Each kernel measures on its own answer to those objects; the mesh's distance is the one that counts.
 //
-// A screw of a flap is found from the axis of its segment, where that is placed: from the side, square to the axis.
-// On the uncut bone it lies where the segment's motion brings it to that place.
+// A flap's screw meets the axis of its segment, where the segment is placed, at a right angle and from a side of the
+// head. On the uncut bone it lies where the segment's motion brings it to that place.
 #include "planner/operation/part/screw.h"
 
 #include <algorithm>
