@@ -24,11 +24,11 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <optional>
 #include <tuple>
 
 #include "brep/align/register_landmarks.h"
 #include "brep/mesh/error.h"
+#include "brep/mesh/move.h"
 #include "brep/mesh/oriented_surface.h"
 #include "brep/mesh/sample_surface.h"
 #include "brep/mesh/short_text.h"
@@ -185,9 +185,7 @@ struct Distances {
 
 /// A sample has a counterpart if the foot lies within the fixed surface and both normals agree to 60 degrees.
 Distances distances_of(const Triangles& surface, const glm::dmat4& motion, const OrientedSurface& fixed) {
-  Triangles laid = surface;
-  for (glm::dvec3& p : laid.points_mm) p = through(motion, p);
-  const SurfaceSamples samples = sample_surface(laid, sample_every_mm);
+  const SurfaceSamples samples = sample_surface(moved(surface, motion), sample_every_mm);
   const std::vector<SignedFoot> feet = fixed.feet(samples.points_mm);
   Distances found;
   found.samples = feet.size();

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "brep/io/read_mesh.h"
+#include "brep/mesh/move.h"
 #include "brep/mesh/split_fans.h"
 #include "brep/mesh/triangles.h"
 #include "brep/shape/scan_blend.h"
@@ -141,13 +142,7 @@ ToothScan settle(const ToothScan& asked, const SettleBench& bench) {
   options.progress = {bench.progress.stop, bench.progress.report};
   made.laid =
       brep::lay_tooth_scan(scan, solid, {places_of(asked.points, bench.objects), asked.scan_points}, options);
-  brep::Mesh laid = scan;
-  for (const auto v : laid.vertices()) {
-    const brep::Mesh::Point& p = laid.point(v);
-    const glm::dvec4 q = made.laid.fixed_from_scan * glm::dvec4(p[0], p[1], p[2], 1.0);
-    laid.set_point(v, brep::Mesh::Point(q.x, q.y, q.z));
-  }
-  made.scan = std::make_shared<const brep::Mesh>(std::move(laid));
+  made.scan = std::make_shared<const brep::Mesh>(brep::moved(scan, made.laid.fixed_from_scan));
   made.about_mm = places_of(asked.crowns, bench.objects);
   report(made, bench);
   return made;
