@@ -5,16 +5,18 @@
 // 2 The crowns of the scan, from their tips to a depth, are divided into patches by a grid. A hash of the grid's
 //   cells holds back a quarter of them.
 // 3 The other patches are fitted to the object's surface near the points.
-// 4 The distances of the held patches from that surface: patches far beyond the others, where streaks or fillings
-//   hide the teeth, are left out. Those that are left bound the error.
+// 4 The distances of the held patches from that surface are measured. Patches much farther off than the others,
+//   where streaks or fillings hide the teeth, are left out. The remaining ones bound the error.
 //
 // The bound. With e the error of the scan at a point and c that of the object's surface, both along the normal, a
-// held patch shows d = e - c. The fit has not seen the patch, so that e and c are independent there but for what
-// all of the object's surface has in common, which the fit follows: at most a share of the samples' spacing. So
-// rms(e) is at most rms(d), widened by the chance of few patches, plus that share; and at least what rms(d)
-// exceeds the largest rms(c) by.
+// held patch shows d = e - c. The fit has not used the patch. So e and c are independent there, except for an offset
+// that the whole surface of the object shares: the fit follows it, and it is at most a share of the samples'
+// spacing. In squares, rms(e) is at most rms(d), widened because the patches are few, plus that share, and at least
+// rms(d) less the largest rms(c). Along the surface the error is not measured. In each of these two directions it
+// is between none and as much as along the normal, so that the upper bound counts three times.
 #include "brep/align/tooth_scan.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,11 +24,11 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <optional>
 #include <tuple>
 
 #include "brep/align/register_landmarks.h"
 #include "brep/mesh/error.h"
+#include "brep/mesh/move.h"
 #include "brep/mesh/oriented_surface.h"
 #include "brep/mesh/sample_surface.h"
 #include "brep/mesh/short_text.h"
@@ -43,8 +45,8 @@ constexpr double sample_every_mm = 0.4;
 /// The least share of the held patches that lies near the object's surface. Right scans of the head phantom's
 /// teeth reach 0.8, those of the other jaw less than 0.4.
 constexpr double least_matched = 0.55;
-/// The share of the samples' spacing by which the object's surface may be off on all teeth alike, and the largest
-/// root mean square of what it is off by. Isosurfaces of partial volumes keep both; see the bound above.
+/// Shares of the samples' spacing: by the first the object's surface may be off on all teeth alike; the second is the
+/// largest root mean square of its error. Isosurfaces of partial volumes keep both; see the bound above.
 constexpr double common_share = 0.05, own_share = 0.25;
 constexpr double deviations_99 = 2.58;
 
@@ -114,7 +116,7 @@ void need_size(const Triangles& scan, const ToothScanOptions& options) {
   for (const auto& [unit, mm] : {std::pair("um", 0.001), {"cm", 10.0}, {"m", 1000.0}, {"inch", 25.4}})
     if (longest_mm * mm >= 2.0 * least_mm && longest_mm * mm <= 0.5 * most_mm)
       fits += (fits.empty() ? "" : " or ") + std::string(unit);
-  refuse(options.scan + " is " + short_text(longest_mm) + " mm long, which no row of teeth is: " +
+  refuse(options.scan + " is " + short_text(longest_mm) + " mm long, which fits no row of teeth: " +
          (fits.empty() ? "give a scan of teeth, and its unit" : "its unit is probably " + fits));
 }
 
@@ -159,14 +161,19 @@ LandmarkFit by_points(const ToothPoints& points, const ToothScanOptions& options
          ": give the same places on both, in the same order");
 }
 
-/// The normal of the plane of best fit.
+/// The unit normal of the plane of least squares, which does not depend on the order of the points. Precondition:
+/// they do not lie on one line.
 glm::dvec3 normal_of(const std::vector<glm::dvec3>& points_mm) {
-  glm::dvec3 normal(0.0);
-  for (std::size_t i = 0; i < points_mm.size(); ++i)
-    normal += glm::cross(points_mm[i] - points_mm[0], points_mm[(i + 1) % points_mm.size()] - points_mm[0]);
-  const double length = glm::length(normal);
-  if (!(length > 0.0)) refuse("the points lie on one line: add one beside it");
-  return normal / length;
+  const glm::dvec3 middle_mm = std::accumulate(points_mm.begin(), points_mm.end(), glm::dvec3(0.0)) /
+                               static_cast<double>(points_mm.size());
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  for (const glm::dvec3& p : points_mm) {
+    const Eigen::Vector3d arm(p.x - middle_mm.x, p.y - middle_mm.y, p.z - middle_mm.z);
+    squares += arm * arm.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares);  // its eigenvalues ascend
+  const Eigen::Vector3d normal = solver.eigenvectors().col(0);
+  return glm::normalize(glm::dvec3(normal.x(), normal.y(), normal.z()));
 }
 
 /// The distances of a surface's samples from the fixed one.
@@ -178,9 +185,7 @@ struct Distances {
 
 /// A sample has a counterpart if the foot lies within the fixed surface and both normals agree to 60 degrees.
 Distances distances_of(const Triangles& surface, const glm::dmat4& motion, const OrientedSurface& fixed) {
-  Triangles laid = surface;
-  for (glm::dvec3& p : laid.points_mm) p = through(motion, p);
-  const SurfaceSamples samples = sample_surface(laid, sample_every_mm);
+  const SurfaceSamples samples = sample_surface(moved(surface, motion), sample_every_mm);
   const std::vector<SignedFoot> feet = fixed.feet(samples.points_mm);
   Distances found;
   found.samples = feet.size();

@@ -50,8 +50,8 @@ struct LaidToothScan {
   std::size_t fitted_patches = 0;
   double matched_share = 0.0;  ///< of the held patches' samples, with a counterpart on the fixed surface
   double distance_mm = 0.0;    ///< root mean square distance of the held patches from the fixed surface
-  /// The root mean square distance of the scan, as it lies, from the true teeth is error_mm, give or take
-  /// half_width_mm, in 99 of 100 cases.
+  /// In 99 of 100 cases the root mean square distance of the scan's points, as laid, from where they truly are
+  /// differs from error_mm by at most half_width_mm.
   double error_mm = 0.0, half_width_mm = 0.0;
 
   /// The depth of a point below the tips.
@@ -60,11 +60,11 @@ struct LaidToothScan {
 
 /// Lays a scan of teeth, open and with holes, onto a solid that shows the same teeth: by the points, then by the
 /// surfaces of the crowns, of which the farthest parts are trimmed. Patches of a quarter of the crowns are held
-/// back: their distances are the error. Both in LPS millimetres. Throws Error (Input or Geometry) in one sentence
-/// that states the cause: an unfitting unit; points that are too few, off their surface, on one line or fit
-/// only mirrored; a scan that does not match the teeth, as that of the other jaw; too little of the crowns;
-/// Stopped. The same bits on any number of threads. Cost: that of register_surfaces() with a start. Sources: as
-/// register_surfaces(); held-out patches are a cross-validation.
+/// back: their distances bound the error. Both in LPS millimetres. Throws Error (Input or Geometry) in one sentence
+/// that states the cause: a wrong unit; points that are too few, off their surface or fit only mirrored; a scan
+/// that does not match the teeth, as that of the other jaw; too little of the crowns. Throws std::invalid_argument
+/// if the points lie on one line, and Stopped. The same bits on any number of threads. Cost: that of
+/// register_surfaces() with a start. Sources: as register_surfaces(); held-out patches are a cross-validation.
 LaidToothScan lay_tooth_scan(const Mesh& scan, const Solid& fixed, const ToothPoints& points,
                              const ToothScanOptions& options);
 

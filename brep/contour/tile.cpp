@@ -503,7 +503,7 @@ class LeastPath {
     const std::size_t j = from.column < n_ ? from.column : from.column - n_;
     const int blame = blame_of(i, j, step);
     const Sum rest = least_rest(i + (step == along_lower), to.column, aim.start);
-    // Steps whose own cost is not needed to refuse them: no cost is below zero where the limit has one.
+    // Refuses a step before its own cost is computed: where costs have a limit, none is below zero.
     const Sum& least = std::min(from.sums[0], from.sums[1]);
     if (Sum{least.blame + blame + rest.blame, least.cost + rest.cost} > aim.most) return;
     const Triangle triangle = pair_.triangle(i, j, step);
@@ -516,7 +516,7 @@ class LeastPath {
       const auto is_better = [&] {
         return total < to.sums[step] && Sum{total.blame + rest.blame, total.cost + rest.cost} <= aim.most;
       };
-      // Angles only add to it.
+      // An angle adds to the cost and never lowers it.
       if (!is_better()) continue;
       if (cost_ == TileCost::least_angle && !from.is_start)
         total.cost += angle_between(from.normals[before], normal);
@@ -589,8 +589,8 @@ class LeastPath {
     if (before - after < 2) return;
     const std::size_t middle = (after + before) / 2;
     auto found = from(middle, between, limit(best.sum));
-    // Failed searches narrow none of those between. Once they have reached a quarter of all nodes, the start's own
-    // best path does.
+    // A failed search does not narrow the bands of later ones. Once failed searches have reached a quarter of all
+    // nodes, the start's own best path is found without a limit, because it narrows them.
     if (!found && (failed_count_ += reached_count_) > m_ * n_ / 4) {
       failed_count_ = 0;
       found = from(middle, between, no_limit);
@@ -616,8 +616,8 @@ class LeastPath {
   std::vector<Sum> to_row_, to_column_;  ///< the least from the first row and column; empty for none
 };
 
-/// About 1 GB: a byte per pair of points, of which many are left out, and one for each span's score; for paths
-/// from each start at most 14.
+/// About 1 GB. least_angle takes two bytes per pair of points: one for the path and one for the span's score. Paths
+/// from all starts take at most 14.
 std::size_t most_pairs(TileCost cost) {
   return std::size_t{1} << (cost == TileCost::least_angle ? 29 : 26);
 }

@@ -4,14 +4,14 @@
 //   border with the least of four lengths: the distance of the scan's nearest point from the scan's border, the
 //   height of the point above the depth, its distance within the radius of the chosen crowns, and what is left of
 //   the reach.
-// 2 In a box about the crowns the surface on which the mixed distances, (1 - w) solid + w scan, are 0: of cells of one
-//   size, six tetrahedra each, because mixed distances may jump where the nearest point of the scan does, and such cells
-//   close nevertheless. The box's walls end it. Blocks of cells far from the surface are passed over.
+// 2 In a box about the crowns: the surface on which the mixed distances, (1 - w) solid + w scan, are 0. It is made
+//   from cells of one size, of six tetrahedra each. Mixed distances may jump where the scan's nearest point does; the
+//   surface from such cells is closed nevertheless. It ends at the box's walls. Blocks of cells far from it are skipped.
 // 3 The solid less a slightly smaller box, united with that. Between both boxes the new surface lies a little
 //   within the solid, so that both cross each other nowhere but at the box.
 //
-// Mixed distances change faster than places do where the weight changes and the scan lies far from the solid: by 1 and
-// that distance times 1.5 / width, the steepest slope of the weight.
+// Where the weight changes, the slope of mixed distances exceeds 1: it is up to 1 plus the distance between scan and
+// solid times 1.5 / width, the steepest slope of the weight.
 #include "brep/shape/scan_blend.h"
 
 #include <algorithm>
@@ -20,7 +20,6 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <stdexcept>
 #include <tuple>
 #include <utility>
 
@@ -269,8 +268,8 @@ LatticeValues values_about(const Size& size, const MixedField& field, double ste
       glm::ceil((size.high_mm + 2.0 * options.cell_mm - lattice.origin_mm) / (block * options.cell_mm)));
   constexpr double most_blocks = double(1 << 21);
   if (double(blocks.x) * blocks.y * blocks.z > most_blocks)
-    throw TooLarge("cells of " + std::to_string(options.cell_mm) +
-                   " mm are too small for the crowns of this scan");
+    throw TooLarge("cells of " + short_text(options.cell_mm) +
+                   " mm are too small for the crowns of this scan: take larger cells, or fewer crowns");
   lattice.dims = block * blocks;
   std::vector<LatticePoint> lowest;
   std::vector<glm::dvec3> middles_mm;
@@ -302,7 +301,7 @@ LatticeValues values_about(const Size& size, const MixedField& field, double ste
   return lattice;
 }
 
-/// The surface between lattice points inside and outside. It is closed whatever the values are.
+/// The surface between lattice points inside and outside. It is closed for all values.
 Solid surface_of(const LatticeValues& lattice) {
   std::vector<EdgeTriangle> triangles;
   for (int z = 0; z + 1 < lattice.dims.z; ++z)
@@ -329,7 +328,7 @@ Solid surface_of(const LatticeValues& lattice) {
   return trusted_solid(std::move(surface), Proof::Construction);
 }
 
-/// Where the nearest point of the scan jumps, mixed distances do, too, and leave specks. They are taken out.
+/// Mixed distances jump where the nearest point of the scan does, and leave specks. Removes these.
 Solid without_specks(const Solid& solid, ScanBlend& made) {
   constexpr double least_mm3 = 2.0;
   const std::vector<Component>& parts = solid.components();
@@ -386,8 +385,8 @@ void check(const Solid& solid, const ScanBlendOptions& options) {
       throw InvalidInput("depth, border, reach, radius and cells of a scan's crowns are above 0 mm");
 }
 
-/// How much faster than places the mixed distances may change: for half of the reach, as only streaks lie farther
-/// from the scan.
+/// The largest slope of the mixed distances where the scan lies within half of the reach from the solid. Only streaks
+/// lie farther from the scan.
 double steepness_of(const ScanBlendOptions& options) {
   return 1.0 + 0.75 * options.reach_mm / options.blend_mm;
 }

@@ -135,7 +135,7 @@ void divide_by_planes(Tetrahedra& made, const std::vector<LabelPlane>& planes) {
 }
 
 void flatten_interfaces(Tetrahedra& made, const FlatInterfaceOptions& options) {
-  const double near_mm = 0.05 * options.voxel_mm;  // five times what surfaces between labels are found to
+  const double near_mm = 0.05 * options.voxel_mm;  // five times the mesher's accuracy for these surfaces
   const double far_mm = 0.75 * options.size_mm;
   const std::vector<std::vector<std::uint32_t>> about = elements_about(made);
   for (const Interface& between : interfaces(made)) {

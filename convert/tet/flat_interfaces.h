@@ -28,21 +28,24 @@ const LabelPlane* plane_between(const std::vector<LabelPlane>& planes, std::uint
 struct FlatInterfaceOptions {
   std::vector<LabelPlane> planes{};  ///< in LPS millimetres, the labels are one above the regions
   double voxel_mm = 1.0;
-  double size_mm = 3.0;    ///< of elements
-  double least_deg = 5.0;  ///< no change leaves or makes an element with a smaller dihedral angle
+  double size_mm = 3.0;  ///< of elements
+  /// No node moves to where an element at it has a smaller dihedral angle. Splits keep it as SideSplitter does.
+  double least_deg = 5.0;
 };
 
-/// Gives elements at a plane between two regions to the one on whose side their middle is. Mesh_3 decides by
-/// the middle of an element's ball, which for those at a rim may lie beyond the plane.
+/// Assigns each element at a plane between two regions to the region on the side of the element's middle. Mesh_3
+/// decides by the middle of the element's circumscribed ball, which at a rim may lie beyond the plane.
 void divide_by_planes(Tetrahedra& made, const std::vector<LabelPlane>& planes);
 
 /// Puts the nodes of interfaces that are flat but for their rims on their planes, where that leaves the
-/// elements about them fit. An interface without a known plane has one if most of its nodes lie in it.
+/// elements about them fit. Where no plane is known, an interface counts as flat if most of its nodes lie in one
+/// plane.
 void flatten_interfaces(Tetrahedra& made, const FlatInterfaceOptions& options);
 
 /// Splits the sides that pass through a plane between two regions, in elements that touch both, with a node on
-/// the plane, where that leaves the parts fit. Then gives each part to its side. Elements and nodes keep their
-/// numbers; new ones come after them. Returns the number of new nodes. `boundary_nodes` are made anew.
+/// the plane, where that leaves the parts fit. Then assigns each part to the region on its side. Elements and
+/// nodes keep their numbers; new ones come after them. Returns the number of new nodes. `boundary_nodes` are
+/// made anew.
 std::size_t split_at_planes(Tetrahedra& made, const FlatInterfaceOptions& options);
 
 /// The findings on nodes of a flat interface that stayed off its plane: surfaces in contact interlock there.

@@ -331,7 +331,7 @@ void flatten(Tetrahedra& made, const RegionMeshOptions& options, const FlatInter
   mend(made, options);
   // Nodes that mending took off a plane go back where that leaves elements fit.
   flatten_interfaces(made, flat);
-  // Splitting gives nodes that may still be mended.
+  // Splits make nodes and elements that may need mending and flattening again.
   constexpr int most_rounds = 4;
   for (int round = 0; round < most_rounds && !bumps(made, flat).empty(); ++round) {
     split_at_planes(made, flat);

@@ -219,8 +219,7 @@ Plan parse_plan(const std::string& json, const std::filesystem::path& folder) {
   if (plan.scans.empty() && std::none_of(plan.steps.begin(), plan.steps.end(), needs_no_scan))
     refuse("scans",
            "must name at least one scan, as {\"ct\": {\"path\": \"head.nrrd\"}}, where no step imports a "
-           "mesh or "
-           "tiles contours");
+           "mesh or tiles contours");
   plan.landmarks = scope.landmarks();
   plan.lps_from_head = scope.lps_from_head();
   return plan;

@@ -208,8 +208,8 @@ void judge_by_witness(Certificate& certificate, const Evidence& evidence, const 
 }
 
 /// Adds the places of bridges: the kernels chose differently whether a thin neck connects a part. Parts larger than the
-/// limit are a WARN. Smaller ones are listed alone, because the certificate says that a part of the limit's size could
-/// be wrong anywhere, and the comparisons of volumes and surfaces judge their sum.
+/// limit are a WARN. Smaller ones are only listed: the certificate already states that a part of the limit's size could
+/// be wrong anywhere, and the comparisons of volumes and surfaces judge their sum. `places.open` has the largest first.
 void judge_bridges(Certificate& certificate, const Places& places) {
   constexpr std::size_t most_told = 3;
   for (const OpenPart& part : places.open) certificate.bridges.push_back(part.bridge);

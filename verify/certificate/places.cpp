@@ -315,10 +315,12 @@ void take_lost(std::vector<FailedVoxel>& failed, const voxel::Octree& octree, Pl
   std::sort(places.lost.begin(), places.lost.end(), before);
 }
 
+/// Whether groups that chance explains are left out or kept.
+enum class Chance : std::uint8_t { Allowed, Excluded };
+
 /// Joins the failed voxels, which are sorted, into groups. Moves parts beyond thin necks to `places.open`, and keeps
 /// the largest remaining group as the worst place. With `Chance::Allowed`, groups that chance explains are left out
 /// before.
-enum class Chance : std::uint8_t { Allowed, Excluded };
 void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Octree& octree,
                 const voxel::Octree& digitised, const Witness& witness, Chance chance, Places& places) {
   const Bridges bridges(octree, digitised, witness);
@@ -415,7 +417,7 @@ std::vector<OpenPart> open_parts(const voxel::Octree& octree, const brep::Solid&
   std::vector<FailedVoxel> failed =
       failed_voxels(octree, digitised, compared_voxels(octree, digitised, {}), witness, {});
   take_lost(failed, octree, places);
-  // Parts that both kernels are to keep stay in all that is made of them: a motion would expose a small one.
+  // A part that both kernels keep also stays in objects made from it, where a motion would expose even a small one.
   add_groups(failed, octree, digitised, witness, Chance::Excluded, places);
   return std::move(places.open);
 }

@@ -124,9 +124,9 @@ const brep::Triangles& row_of(bool is_upper, double spacing_mm) {
   static std::mutex mutex;
   static std::map<std::pair<bool, double>, brep::Triangles> rows;
   const std::scoped_lock lock(mutex);
-  const auto [found, is_new] = rows.try_emplace({is_upper, spacing_mm});
-  if (is_new) found->second = true_row(is_upper, spacing_mm);
-  return found->second;
+  const std::pair key{is_upper, spacing_mm};
+  if (const auto found = rows.find(key); found != rows.end()) return found->second;
+  return rows.emplace(key, true_row(is_upper, spacing_mm)).first->second;
 }
 
 std::vector<glm::dvec3> normals_of(const brep::Triangles& surface) {
@@ -181,7 +181,7 @@ ToothScanPhantom tooth_scan_phantom(const ToothScanPhantomOptions& options) {
   }
   const double angle = chance.between(0.0, 2.0 * glm::pi<double>());
   const auto bent = [&](const glm::dvec3& p) {
-    // Of the arch's ends, 27 mm beside and some 40 mm behind its middle, the shift is whole.
+    // The arch's ends, 27 mm beside and some 40 mm behind its middle, are shifted by all of the bend.
     const double share = std::pow(std::min(std::abs(p.x) / 27.0, 1.2), 2.0);
     const double side = p.x < 0.0 ? -1.0 : 1.0;
     return p + options.bend_mm * share * glm::dvec3(side * std::cos(angle), 0.0, std::sin(angle));

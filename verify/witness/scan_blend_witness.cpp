@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // A point is the scan's if its nearest point on the scan, the point itself and its distance are within every limit by
-// more than the border's width; it is the object's if it is beyond one of them. Limits are read with a slack of what
-// a right answer may be off by. The scan's side of a point is that of the normals of the triangle's corners,
-// interpolated at the nearest point; where that is nearly square to the line to the point, it decides nothing.
+// more than the border's width; it is the object's if it is beyond one of them. Each limit has a slack: the largest
+// deviation of a right answer. The scan's side of a point follows from the normals of the triangle's corners,
+// interpolated at the nearest point. Where that normal is nearly square to the line to the point, both sides are
+// allowed.
 #include "verify/witness/scan_blend_witness.h"
 
 #include <algorithm>

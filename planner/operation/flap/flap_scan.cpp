@@ -77,10 +77,9 @@ Operation flap_scan_operation() {
   return std::move(entry)
       .takes(field("scan", &FlapScan::scan, "The donor's scan.").required())
       .takes(field("segment", &FlapScan::segment, "The number of the segment, from 1.").from(1).to(8))
-      .takes(
-          field("uncut", &FlapScan::uncut,
-                "Takes all bone that the flap uses, as before the cuts, to where this segment lies; a guide "
-                "sits on it."))
+      .takes(field("uncut", &FlapScan::uncut,
+                   "Moves all bone that the flap uses, as it is before the cuts, to where this segment lies, "
+                   "for a guide to sit on."))
       .example(R"({"id": "fibula_1", "do": "flap_scan", "scan": "ct", "segment": 1,
         "curve": [[-30, -60, -80], [0, -80, -85], [30, -60, -80]],
         "donor": [[30, 12, 90], [33, 15, -90]], "face": [45, 12, 90]})")

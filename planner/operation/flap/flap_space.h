@@ -16,7 +16,7 @@ class Action;
 /// A cut at an end of such a space, LPS. Points p of the cut: dot(away, p - point_mm) = 0.
 struct FlapCut {
   glm::dvec3 point_mm{0.0};      ///< on the axis of the flap or donor
-  glm::dvec3 away{0, 0, 1};      ///< unit: to the side on which the saw takes its kerf
+  glm::dvec3 away{0, 0, 1};      ///< unit: towards the side of the saw's kerf
   double kerf_mm = 1.0;          ///< the saw's width
   double reach_mm = 12.0;        ///< no bone farther from point_mm is cut
   bool is_of_resection = false;  ///< the cut at one end of the resection, not of a segment
@@ -35,7 +35,7 @@ struct FlapPlace {
 };
 /// The place at a share of the way between both cuts of a segment's space, 0 to 1. For the resection's space: in
 /// the bone that stays, from -1 at the first stump's point to 0 at the first cut, or from 1 at the last cut to
-/// 2 at the last stump's point. Throws std::runtime_error, which says what is out of range, for another share, a
+/// 2 at the last stump's point. Throws std::runtime_error, which states what is out of range, for another share, a
 /// resection without stumps, or a step that made no such space; `name` is the step's, for the message.
 FlapPlace flap_place(const Action* maker, const std::string& name, double share);
 

@@ -34,7 +34,8 @@ void judge_reshaped(Object& made, const voxel::Progress& progress) {
                       progress);
 }
 
-/// Share of an object below which missing tissue is stated among its findings alone: intervals of volume are wider.
+/// Missing tissue below this share of an object is stated among its findings and does not lower its verdict, because
+/// intervals of volume are wider.
 constexpr double negligible_share = 0.001;
 
 void lower_by_caveats(Object& made) {

@@ -86,12 +86,11 @@ constexpr double below_mm = 5.0;
 
 void check(const Guide& guide, const FieldLocation& place) {
   if (!guide.points.empty() && guide.region)
-    place.refuse("says its region twice, by 'points' and by 'region': keep one of them");
+    place.refuse("states its region twice, by 'points' and by 'region': keep one of them");
   if (guide.points.empty() && !guide.region && guide.screws.empty())
     place.refuse(
         "the region is missing: add 'points' on the bone, 'region', drawn in a view, or 'screws', whose "
-        "heads are "
-        "points");
+        "heads are points");
   if (guide.region && guide.region->polygons_mm.size() != 1)
     place.at("region").refuse("must be one polygon: a guide is one piece");
   const auto check_view = [&](const std::string& view, const FieldLocation& at) {
@@ -355,14 +354,17 @@ Operation guide_operation() {
                  .to(60.0)
                  .read_if<Guide>([](const Guide& guide) { return !guide.region; },
                                  "applies only to 'points': leave it out"))
-      .takes(
-          field("ends_mm", &Guide::ends_mm,
-                "How far the guide extends beyond the first and the last of several points. Default: by the "
-                "radius.")
-              .from(0.0)
-              .to(60.0)
-              .read_if<Guide>([](const Guide& guide) { return !guide.region; },
-                              "applies only to 'points': leave it out"))
+      .takes(field("ends_mm", &Guide::ends_mm,
+                   "How far the guide extends beyond the first and the last of several points. Default: the "
+                   "radius.")
+                 .from(0.0)
+                 .to(60.0)
+                 .read_if<Guide>(
+                     [](const Guide& guide) {
+                       return !guide.region &&
+                              (guide.points.empty() ? guide.screws.size() : guide.points.size()) > 1;
+                     },
+                     "applies only to several points or screws: leave it out"))
       .takes(record("region", &Guide::region, "In place of the points, a region drawn in a view.",
                     {field("view", &DrawnSite::view, "The view in which the region is drawn.").required(),
                      field("polygons_mm", &DrawnSite::polygons_mm,

@@ -45,8 +45,8 @@ struct SlotsAsked {
   double margin_mm = 20.0;    ///< how far openings reach before and behind the bone
 };
 
-/// The slots of a saw step, a mask or a flap's space. Throws std::runtime_error, which names the step, if it is no cut, if
-/// the saw enters from another side, or if the cut misses the region.
+/// The slots of a saw step, a mask or a flap's space. Throws std::runtime_error, which names the step, if it is no
+/// cut, if the saw enters from another side, or if the cut misses the region.
 std::vector<SawSlot> slots_of(const std::string& cut, const SlotsAsked& asked, const SettleBench& bench);
 
 }  // namespace octotomy::planner

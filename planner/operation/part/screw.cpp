@@ -2,8 +2,8 @@
 // A screw's axis, and how far the screw stays from what it must not touch: roots, a nerve's canal, saw cuts.
 // Each kernel measures on its own answer to those objects; the mesh's distance is the one that counts.
 //
-// A screw of a flap is found from the axis of its segment, where that is placed: from the side, square to the axis.
-// On the uncut bone it lies where the segment's motion brings it to that place.
+// A flap's screw meets the axis of its segment, where the segment is placed, at a right angle and from a side of the
+// head. On the uncut bone it lies where the segment's motion brings it to that place.
 #include "planner/operation/part/screw.h"
 
 #include <algorithm>
@@ -72,8 +72,8 @@ ScrewClear clear_of_object(const Object& object, const brep::Solid& rod, const v
   return clear;
 }
 
-/// The distance of a screw from the walls of a mask, on either side of them; or from the bone that a saw
-/// removes.
+/// The distance of a screw from the walls of a mask or of a flap's space, on either side of them; or from the bone
+/// that a saw removes.
 ScrewClear clear_of_cut(const Object& object, const Action& maker, const brep::Solid& rod,
                         const voxel::Octree& voxels, const std::filesystem::path& folder) {
   const voxel::Universe universe = voxels.universe();
@@ -117,7 +117,9 @@ std::vector<ScrewClear> clearances(const Screw& screw, const SettleBench& bench)
     const Object& object = bench.objects.at(name.name);
     const Action* maker = bench.maker_of ? bench.maker_of(name.name) : nullptr;
     if (maker == nullptr)
-      throw std::runtime_error("'" + name.name + "' is no step of this plan: cuts are saw steps and masks");
+      throw std::runtime_error("'" + name.name +
+                               "' is no step of this plan: cuts are saw steps, masks and flaps' "
+                               "spaces");
     if (maker->get_if<Saw>() == nullptr) need_mesh(object);
     found.push_back(clear_of_cut(object, *maker, body, voxels, bench.folder));
   }
@@ -354,8 +356,8 @@ Operation screw_operation() {
                  .direction())
       .takes(field(
           "flap", &Screw::flap,
-          "In place of these, the flap_space step of a segment or of the resection: the screw meets its "
-          "axis, square to it, from the side."))
+          "In place of 'at' and 'direction', the flap_space step of a segment or of the resection: the screw "
+          "meets the axis of that space at a right angle, from 'side'."))
       .takes(
           field("share", &Screw::share,
                 "Where on that axis: 0 at a segment's first cut to 1 at its second. Of the resection, in the "

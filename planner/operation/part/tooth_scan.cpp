@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "brep/io/read_mesh.h"
+#include "brep/mesh/move.h"
 #include "brep/mesh/split_fans.h"
 #include "brep/mesh/triangles.h"
 #include "brep/shape/scan_blend.h"
@@ -134,20 +135,14 @@ ToothScan settle(const ToothScan& asked, const SettleBench& bench) {
   if (const double sample_mm = std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z}); sample_mm > 0.0)
     options.sample_mm = sample_mm;
   else
-    bench.findings.push_back("'" + asked.object.name + "' comes from no scan: samples of " +
+    bench.findings.push_back("WARN error: '" + asked.object.name + "' comes from no scan: samples of " +
                              plain(options.sample_mm) + " mm are assumed for the error of its surface");
   options.scan = file_name(asked);
   options.fixed = "'" + asked.object.name + "'";
   options.progress = {bench.progress.stop, bench.progress.report};
   made.laid =
       brep::lay_tooth_scan(scan, solid, {places_of(asked.points, bench.objects), asked.scan_points}, options);
-  brep::Mesh laid = scan;
-  for (const auto v : laid.vertices()) {
-    const brep::Mesh::Point& p = laid.point(v);
-    const glm::dvec4 q = made.laid.fixed_from_scan * glm::dvec4(p[0], p[1], p[2], 1.0);
-    laid.set_point(v, brep::Mesh::Point(q.x, q.y, q.z));
-  }
-  made.scan = std::make_shared<const brep::Mesh>(std::move(laid));
+  made.scan = std::make_shared<const brep::Mesh>(brep::moved(scan, made.laid.fixed_from_scan));
   made.about_mm = places_of(asked.crowns, bench.objects);
   report(made, bench);
   return made;
@@ -206,12 +201,11 @@ Operation tooth_scan_operation() {
              "tooth_scan",
              "Lays a scan of teeth onto an object and replaces the object's crowns by the scan's.",
              Makes::Object)
-      .takes(
-          field("object", &ToothScan::object,
-                "The object with the teeth: one jaw, because of the other jaw's teeth the scan would replace "
-                "what lies within 'reach_mm'.")
-              .required()
-              .positional("object"))
+      .takes(field("object", &ToothScan::object,
+                   "The object with the teeth: one jaw alone, because the scan would also replace what lies "
+                   "within 'reach_mm' of it on the other jaw's teeth.")
+                 .required()
+                 .positional("object"))
       .takes(field("path", &ToothScan::path,
                    std::string("The scan, which may be open, with holes and in any pose: ") +
                        brep::mesh_formats_read + ", relative to the plan's folder.")
@@ -249,9 +243,8 @@ Operation tooth_scan_operation() {
               .from(0.3)
               .to(5.0))
       .takes(field("reach_mm", &ToothScan::reach_mm,
-                   "What the object has within this distance of the scan is replaced; more where streaks "
-                   "stick out "
-                   "farther.")
+                   "What the object has within this distance of the scan is replaced; give more if streaks "
+                   "stick out farther.")
                  .from(0.5)
                  .to(8.0))
       .takes(

@@ -39,7 +39,7 @@ TEST(SharpEdges, OfABoxAreKeptByMeshersThatMakeASurfaceOfTheirOwn) {
     // If no element would stay good, the edge stays cut off.
     EXPECT_GT(near, 90 * static_cast<std::ptrdiff_t>(away_mm.size()) / 100) << t.method;
     EXPECT_GE(quality(t).min_dihedral_deg, fit_dihedral_deg()) << t.method;
-    // Notches are made up for by nodes outside the faces.
+    // Nodes outside the faces make up for the volume of notches: few notches are left.
     const std::vector<double> off_mm = brep::SurfaceTree(tests::box(low, high)).distances_mm(t.nodes_mm);
     const auto off = std::count_if(t.boundary_nodes.begin(), t.boundary_nodes.end(),
                                    [&](std::uint32_t v) { return off_mm[v] > 1e-6; });

@@ -38,7 +38,7 @@ def scans_of(data, folder):
 def json_of(program, *arguments):
     done = subprocess.run([program, *map(str, arguments), "--json"], capture_output=True, text=True, timeout=SECONDS, check=False)
     if done.returncode not in (0, 1) or not done.stdout:
-        raise RuntimeError(done.stderr.strip().splitlines()[-1])
+        raise RuntimeError((done.stderr.strip() or f"no answer, status {done.returncode}").splitlines()[-1])
     return json.loads(done.stdout)
 
 

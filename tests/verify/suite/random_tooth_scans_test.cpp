@@ -134,6 +134,25 @@ TEST(RandomToothScans, TheTrueErrorAtPatchesThatTheFitDidNotUseLiesInTheStatedIn
       held, wanted, spoiled_held, most_true_mm, most_mm, seconds / wanted);
 }
 
+/// Points are often named from side to side, and the sides of the arch may cancel in such an order.
+TEST(ToothScan, TheOrderOfThePointsDoesNotCount) {
+  const ToothScanPhantom upper = tooth_scan_phantom({});
+  const brep::Solid mouth = teeth_of_ct(one_ct());
+  brep::ToothPoints zigzag;
+  for (const std::size_t i : {0U, 6U, 1U, 5U, 2U, 4U, 3U}) {
+    zigzag.fixed_mm.push_back(upper.points_mm[i]);
+    zigzag.scan_mm.push_back(upper.scan_points_mm[i]);
+  }
+  const auto laid_by = [&](const brep::ToothPoints& points) {
+    return brep::lay_tooth_scan(brep::mesh_of(upper.scan), mouth, points, {});
+  };
+  const brep::LaidToothScan along = laid_by({upper.points_mm, upper.scan_points_mm}),
+                            across = laid_by(zigzag);
+  EXPECT_LT(glm::distance(across.to_roots, along.to_roots), 1e-9);
+  EXPECT_NEAR(across.tips_mm, along.tips_mm, 1e-9);
+  EXPECT_NEAR(across.error_mm, along.error_mm, 0.01);
+}
+
 /// The sentence with which a scan is refused; empty if it is not.
 std::string refusal(const brep::Triangles& scan, const brep::Solid& fixed, const brep::ToothPoints& points) {
   try {
