@@ -52,6 +52,7 @@ Json polygons_json(const PlaneContours& polygons, double thin_mm) {
 /// The mesh kernel's answer, or half way between voxels where the object is not certified yet.
 brep::Mesh surface_of(const Object& object) {
   if (object.mesh.within) return object.mesh.within->mesh();
+  if (object.certificate) refuse_contours("'" + object.id + "' has no surface: see its findings");
   return brep::mesh_of(convert::isosurface(object.voxel.octree.universe(), object.voxel.octree));
 }
 

@@ -290,18 +290,23 @@ std::optional<std::string> acted_on(const Procedure& procedure, const Json& whol
   return has_all(procedure.steps, whole) ? std::nullopt : outcome_of(before);
 }
 
-/// Removes the steps of options that the plan has and the user does not choose any more.
+/// Removes the steps of options that the user does not choose any more. A plan has an option if it has most of its
+/// steps, by name and operation: single ones may have been deleted, and a step of the user's may have the name of one.
 Json without_other_options(const Procedure& procedure, const std::vector<std::string>& chosen,
                            const Json& plan) {
   Json kept = plan;
   for (const ProcedureOption& option : procedure.options) {
-    if (std::find(chosen.begin(), chosen.end(), option.name) != chosen.end() || !has_all(option.steps, plan))
-      continue;
+    if (std::find(chosen.begin(), chosen.end(), option.name) != chosen.end()) continue;
+    const auto is_own = [&](const Json& step) {
+      return std::any_of(option.steps.begin(), option.steps.end(),
+                         [&](const Json& own) { return own["id"] == step["id"] && own["do"] == step["do"]; });
+    };
+    const Json& steps = kept["steps"];
+    const auto present = static_cast<std::size_t>(std::count_if(steps.begin(), steps.end(), is_own));
+    if (2 * present <= option.steps.size()) continue;
     Json others = Json::array();
-    for (const Json& step : kept["steps"])
-      if (std::none_of(option.steps.begin(), option.steps.end(),
-                       [&](const Json& own) { return own["id"] == step["id"]; }))
-        others.push_back(step);
+    for (const Json& step : steps)
+      if (!is_own(step)) others.push_back(step);
     kept["steps"] = std::move(others);
   }
   return kept;
