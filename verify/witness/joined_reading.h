@@ -10,15 +10,20 @@ inline AllowedSides negated(const AllowedSides& a) {
   return {a.out, a.in, a.near, a.chosen};
 }
 
+/// Whether choices alone leave the side open: no operand is open without one.
+inline bool by_choice(const AllowedSides& a, const AllowedSides& b) {
+  return (a.chosen || b.chosen) && (a.chosen || !a.is_open()) && (b.chosen || !b.is_open());
+}
+
 inline AllowedSides conjunction(const AllowedSides& a, const AllowedSides& b) {
   const bool in = a.in && b.in, out = a.out || b.out;
-  return {in, out, in && out && ((a.near && b.in) || (b.near && a.in)), in && out && (a.chosen || b.chosen)};
+  return {in, out, in && out && ((a.near && b.in) || (b.near && a.in)), in && out && by_choice(a, b)};
 }
 
 /// Has a surface wherever one of the operands has one.
 inline AllowedSides exclusive(const AllowedSides& a, const AllowedSides& b) {
   return {(a.in && b.out) || (a.out && b.in), (a.in && b.in) || (a.out && b.out), a.near || b.near,
-          a.chosen || b.chosen};
+          by_choice(a, b)};
 }
 
 inline Reading negated(const Reading& a) {
