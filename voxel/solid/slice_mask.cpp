@@ -19,8 +19,6 @@ constexpr double outside_mm = std::numeric_limits<double>::infinity();
 
 void check(const SliceMask& mask) {
   if (mask.slices.size() < 2) throw InvalidInput("a mask from slices needs regions on at least two of them");
-  // Finer than any scanner's slices. Nearer ones come from positions in another unit.
-  constexpr double least_gap_mm = 0.01;
   bool drawn = false;
   for (std::size_t i = 0; i < mask.slices.size(); ++i) {
     const SliceMask::Slice& slice = mask.slices[i];
@@ -29,8 +27,6 @@ void check(const SliceMask& mask) {
       throw InvalidInput(where + ": its position is not a finite number");
     if (i > 0 && !(slice.position_mm > mask.slices[i - 1].position_mm))
       throw InvalidInput(where + " does not lie beyond the one before it: sort them by position");
-    if (i > 0 && slice.position_mm - mask.slices[i - 1].position_mm < least_gap_mm)
-      throw InvalidInput(where + " lies less than 0.01 mm beyond the one before it: state positions in mm");
     if (slice.polygons_mm.empty()) continue;
     drawn = true;
     try {
@@ -40,6 +36,11 @@ void check(const SliceMask& mask) {
     }
   }
   if (!drawn) throw InvalidInput("no slice of the mask has a polygon");
+  // Two slices of a stack may lie close to each other, where a part ends. A whole stack thinner than any that is drawn
+  // has its positions in another unit.
+  constexpr double least_span_mm = 0.01;
+  if (mask.slices.back().position_mm - mask.slices.front().position_mm < least_span_mm)
+    throw InvalidInput("all slices of the mask lie within 0.01 mm: state positions in mm");
 }
 
 SliceDistance::SliceDistance(const SliceMask& mask) : mask_(&mask) {

@@ -31,7 +31,7 @@ struct SliceMask {
 };
 
 /// Throws std::invalid_argument that names the slice and polygon: fewer than two slices, positions that do
-/// not ascend or lie within 0.01 mm of each other, no polygon at all, or a polygon that check(RegionMask) rejects.
+/// not ascend or all lie within 0.01 mm, no polygon at all, or a polygon that check(RegionMask) rejects.
 void check(const SliceMask& mask);
 
 /// A function that is at most zero inside a mask; distances to polygons are exact. Precondition: the mask

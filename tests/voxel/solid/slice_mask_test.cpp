@@ -204,10 +204,10 @@ TEST(SliceMask, SaysWhichSliceIsWrong) {
   EXPECT_NE(refusal(along_z({{0, {circle({0, 0}, 6)}}})).find("at least two"), std::string::npos);
   EXPECT_NE(refusal(along_z({{0, {circle({0, 0}, 6)}}, {0, {circle({0, 0}, 6)}}})).find("slice 2"),
             std::string::npos);
-  EXPECT_NE(
-      refusal(along_z({{0, {circle({0, 0}, 6)}}, {1e-9, {circle({0, 0}, 6)}}})).find("less than 0.01 mm"),
-      std::string::npos);
+  EXPECT_NE(refusal(along_z({{0, {circle({0, 0}, 6)}}, {1e-9, {circle({0, 0}, 6)}}})).find("within 0.01 mm"),
+            std::string::npos);
   EXPECT_EQ(refusal(along_z({{0, {circle({0, 0}, 6)}}, {0.02, {circle({0, 0}, 6)}}})), "accepted");
+  EXPECT_EQ(refusal(along_z({{0, {circle({0, 0}, 6)}}, {5, {circle({0, 0}, 6)}}, {5.001, {}}})), "accepted");
   EXPECT_NE(refusal(along_z({{0, {}}, {1, {}}})).find("no slice"), std::string::npos);
   EXPECT_NE(refusal(along_z({{0, {}}, {1, {{{0, 0}, {1, 1}}}}})).find("slice 2"), std::string::npos);
 }
