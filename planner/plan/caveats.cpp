@@ -71,9 +71,21 @@ std::uint64_t unmeasured_samples(const voxel::Scene& scene) {
       scene.samples);
 }
 
-/// The number of unmeasured samples in runs along an axis with samples of a window at both ends.
-std::uint64_t enclosed_samples(const voxel::Scene& scene, const Shown& window) {
+/// The number of unmeasured samples in runs along an axis with samples of a window at both ends, as far as the object's
+/// box reaches.
+std::uint64_t enclosed_samples(const voxel::Scene& scene, const Shown& window, const Object& object) {
+  if (!object.voxel.measures.extents) return 0;
   const glm::ivec3 dims = scene.lattice.dims;
+  const voxel::Box& box = *object.voxel.measures.extents;
+  // The mesh reaches less than a sample beyond the voxels.
+  const double beyond_mm = glm::length(scene.lattice.spacing_mm());
+  const auto is_within = [&](std::size_t at) {
+    const auto row = static_cast<std::size_t>(dims.x), slice = row * static_cast<std::size_t>(dims.y);
+    const glm::dvec3 p_mm(window.moved_from_still *
+                          glm::dvec4(scene.lattice.lps_mm({at % row, at % slice / row, at / slice}), 1.0));
+    return glm::all(glm::greaterThan(p_mm, box.low_mm - beyond_mm)) &&
+           glm::all(glm::lessThan(p_mm, box.high_mm + beyond_mm));
+  };
   const std::array<std::size_t, 3> strides{
       1, static_cast<std::size_t>(dims.x),
       static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y)};
@@ -94,7 +106,7 @@ std::uint64_t enclosed_samples(const voxel::Scene& scene, const Shown& window) {
             const bool is_inside = value >= window.threshold && value <= window.high;
             if (began_inside && is_inside)
               for (std::size_t k = 1; k <= run; ++k)
-                if (!enclosed[at - k * stride]) {
+                if (!enclosed[at - k * stride] && is_within(at - k * stride)) {
                   enclosed[at - k * stride] = true;
                   ++count;
                 }
@@ -145,7 +157,7 @@ void add_unmeasured(const MadeOf& from, Object& made) {
     if (count == 0 && (has_nonfinite || !are_nonfinite)) continue;
     std::uint64_t enclosed = 0;
     for (const Shown& window : made.bound.windows)
-      if (window.scan == name) enclosed = std::max(enclosed, enclosed_samples(scene, window));
+      if (window.scan == name) enclosed = std::max(enclosed, enclosed_samples(scene, window, made));
     // Padding that a scanner states surrounds the measured region, so it is no caveat unless enclosed.
     if (!are_nonfinite && enclosed == 0) continue;
     const bool left_by_motion = !are_nonfinite && is_operated(from.records, name);
@@ -170,7 +182,20 @@ void add_unmeasured(const MadeOf& from, Object& made) {
   }
 }
 
+/// At most the tissue that padding may hide within an object, by all windows that it was made of. None if the samples of one
+/// are not known.
+std::optional<double> missing_mm3(const Object& object) {
+  double missing = 0.0;
+  for (const Shown& window : object.bound.windows) {
+    if (!window.samples) return {};
+    missing += static_cast<double>(enclosed_samples(*window.samples, window, object)) *
+               window.samples->lattice.voxel_mm3();
+  }
+  return missing;
+}
+
 void add_inherited(const MadeOf& from, Object& made) {
+  std::optional<std::optional<double>> own_missing_mm3;  // read where a caveat needs it
   for (const std::string& name : objects_used(from.action)) {
     const Object& operand = from.objects.at(name);
     for (const Caveat& caveat : operand.caveats) {
@@ -181,8 +206,14 @@ void add_inherited(const MadeOf& from, Object& made) {
           caveat.is_inherited ? caveat.reason : "made of '" + name + "': " + caveat.reason;
       const bool is_known = std::any_of(made.caveats.begin(), made.caveats.end(),
                                         [&](const Caveat& known) { return known.reason == reason; });
-      if (!is_known && !(made.is_interpolated && operand.is_interpolated))
-        made.caveats.push_back({voxel::Verdict::Warn, reason, true, false, caveat.missing_mm3});
+      if (is_known || (made.is_interpolated && operand.is_interpolated)) continue;
+      std::optional<double> missing = caveat.missing_mm3;
+      if (missing) {
+        // A piece may lie beside the padding that its object encloses.
+        if (!own_missing_mm3) own_missing_mm3 = missing_mm3(made);
+        missing = std::min(*missing, own_missing_mm3->value_or(*missing));
+      }
+      made.caveats.push_back({voxel::Verdict::Warn, reason, true, false, missing});
     }
   }
 }

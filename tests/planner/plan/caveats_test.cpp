@@ -210,8 +210,8 @@ TEST_F(Caveats, ASliceOfPaddingThroughAnObjectIsAHoleInItAndPaddingBesideItIsNon
   }
 }
 
-/// A dark sample within a ball of 33,000 mm3 has the padding's value: it is stated, and the ball passes. In a piece of it
-/// that has a few hundred cubic millimetres, one sample matters.
+/// A dark sample within a ball of 33,000 mm3 has the padding's value: it is stated, and the ball passes. In a piece around
+/// it that has a few hundred cubic millimetres, one sample matters; in a piece beside it, it does not.
 TEST_F(Caveats, PaddingOfLittleVolumeIsStatedAndCountsInSmallPieces) {
   voxel::Scene scene = tests::ball_scene(20.0);
   std::get<voxel::Int16Samples>(scene.samples)[(32 * 64 + 32) * 64 + 32] = -3024;
@@ -223,12 +223,19 @@ TEST_F(Caveats, PaddingOfLittleVolumeIsStatedAndCountsInSmallPieces) {
        {"regions",
         {{{"view", "anterior"}, {"polygons_mm", square}}, {{"view", "left"}, {"polygons_mm", square}}}}});
   add({{"id", "core"}, {"do", "combine"}, {"expression", "ball & cube"}});
+  add({{"id", "moved"}, {"do", "move"}, {"object", "core"}, {"translate_mm", {3, 0, 0}}});
+  const SortedJson beside = SortedJson::array({{{6, 6}, {12, 6}, {12, 12}, {6, 12}}});
+  add({{"id", "post"}, {"do", "mask"}, {"regions", {{{"view", "anterior"}, {"polygons_mm", beside}}}}});
+  add({{"id", "side"}, {"do", "combine"}, {"expression", "ball & post"}});
   const Evaluation evaluation = evaluated();
   const Object& ball = evaluation.object("ball");
-  const Object& core = evaluation.object("core");
   EXPECT_EQ(ball.certificate->verdict, Verdict::Pass) << reasons(ball);
-  EXPECT_EQ(core.certificate->verdict, Verdict::Warn) << core.voxel.measures.volume_mm3;
-  EXPECT_NE(reasons(core).find("are padding"), std::string::npos) << reasons(core);
+  for (const char* id : {"core", "moved"}) {
+    const Object& around = evaluation.object(id);
+    EXPECT_EQ(around.certificate->verdict, Verdict::Warn) << id << around.voxel.measures.volume_mm3;
+    EXPECT_NE(reasons(around).find("are padding"), std::string::npos) << id << reasons(around);
+  }
+  EXPECT_EQ(reasons(evaluation.object("side")).find("are padding"), std::string::npos);
   EXPECT_TRUE(std::any_of(ball.findings.begin(), ball.findings.end(), [](const std::string& finding) {
     return finding.find("lie between samples of this object") != std::string::npos;
   }));

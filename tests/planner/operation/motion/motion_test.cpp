@@ -21,6 +21,9 @@ constexpr const char* motion_steps = R"(
      "condyles": [[-20, 40, 0], [20, 40, 0]]},
     {"id": "laid", "do": "register", "object": "apart", "onto": "lower", "overlap": 1},
     {"id": "carried", "do": "transform", "object": "lower", "file": "down.tfm"},
+    {"id": "cuts", "do": "flap_space", "uncut_at": 1, "number": 2, "curve": [[-30, 10, 0], [0, -6, 0], [30, 10, 0]],
+     "donor": [[30, 12, 105], [33, 16, -105]], "start_mm": 40, "reach_mm": 10, "face": [45, 12, 105]},
+    {"id": "placed", "do": "flap_move", "object": "lower", "segment": "cuts"},
     {"id": "image", "do": "mirror", "object": "lower", "point_mm": [0, 0, 0], "normal": [1, 0, 0]},
     {"id": "larger", "do": "offset", "object": "lower", "by_mm": 1},
     {"id": "both", "do": "combine", "expression": "upper | met"})";
@@ -53,7 +56,7 @@ TEST(Motion, TheTableSaysOfEachOperationWhetherItsObjectCarriesAMotion) {
 TEST(Motion, ADeckAndAnotherPieceFollowEveryKindOfMotion) {
   const ScratchFolder folder;
   moving_plan(folder);
-  for (const char* id : {"apart", "met", "seated", "closed", "laid", "carried"}) {
+  for (const char* id : {"apart", "met", "seated", "closed", "laid", "carried", "placed"}) {
     const std::string more = std::string(motion_steps) +
                              R"(, {"id": "follows", "do": "move", "object": "upper", "with": ")" + id +
                              R"("}, {"id": "deck", "do": "export", "object": "ball", "path": "ball.inp",
