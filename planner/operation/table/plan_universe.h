@@ -22,9 +22,9 @@ voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> vo
 voxel::Universe universe_of(const voxel::Scene& scan, std::optional<double> voxel_mm,
                             bool are_labels = false);
 
-/// The universe of a plan without scans: around all boxes of its meshes and tiled contours, with room for motions of half the
-/// longest mesh on all sides. Default: voxels of a 128th of the longest mesh, or larger ones at which the
-/// universe has 512 a side. Throws std::invalid_argument if there is no box, or none has an extent.
+/// The universe of a plan without scans: around all boxes of its meshes and tiled contours, with room for
+/// motions of half the longest box on all sides. Default: voxels of a 128th of the longest box, or larger ones
+/// at which the universe has 512 a side. Throws std::invalid_argument if there is no box, or none has an extent.
 voxel::Universe universe_of(const std::vector<voxel::Box>& meshes, std::optional<double> voxel_mm);
 
 }  // namespace octotomy::planner
