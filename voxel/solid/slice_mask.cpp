@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include "voxel/solid/region_mask.h"
 #include "voxel/space/error.h"
@@ -40,7 +41,8 @@ void check(const SliceMask& mask) {
   // has its positions in another unit.
   constexpr double least_span_mm = 0.01;
   if (mask.slices.back().position_mm - mask.slices.front().position_mm < least_span_mm)
-    throw InvalidInput("all slices of the mask lie within 0.01 mm: state positions in mm");
+    throw InvalidInput("slice 1 to slice " + std::to_string(mask.slices.size()) +
+                       " lie within 0.01 mm of each other: state their positions in mm");
 }
 
 SliceDistance::SliceDistance(const SliceMask& mask) : mask_(&mask) {
