@@ -290,23 +290,37 @@ std::optional<std::string> acted_on(const Procedure& procedure, const Json& whol
   return has_all(procedure.steps, whole) ? std::nullopt : outcome_of(before);
 }
 
-/// Removes the steps of options that the user does not choose any more. A plan has an option if it has most of its
-/// steps, by name and operation: single ones may have been deleted, and a step of the user's may have the name of one.
+/// Whether a step of a plan is one of an option's: by its operation and its name, also where the procedure acts on
+/// another one's outcome and its steps are called after it.
+bool is_step_of(const Procedure& procedure, const ProcedureOption& option, const Json& step) {
+  const auto id = step.at("id").get<std::string>();
+  const bool chained = is_chained_step_of(procedure, id);
+  return std::any_of(option.steps.begin(), option.steps.end(), [&](const Json& own) {
+    const auto name = own.at("id").get<std::string>();
+    return own.at("do") == step.at("do") && (id == name || (chained && id.ends_with("_" + name)));
+  });
+}
+
+/// Whether a plan has an option: most of its steps. Single ones may have been deleted, and a step of the user's may
+/// have the name of one.
+bool has_option(const Procedure& procedure, const ProcedureOption& option, const Json& plan) {
+  const Json& steps = plan.at("steps");
+  const auto present = std::count_if(steps.begin(), steps.end(),
+                                     [&](const Json& step) { return is_step_of(procedure, option, step); });
+  return 2 * static_cast<std::size_t>(present) > option.steps.size();
+}
+
+/// Removes the steps of options that the plan has and the user does not choose any more.
 Json without_other_options(const Procedure& procedure, const std::vector<std::string>& chosen,
                            const Json& plan) {
   Json kept = plan;
   for (const ProcedureOption& option : procedure.options) {
-    if (std::find(chosen.begin(), chosen.end(), option.name) != chosen.end()) continue;
-    const auto is_own = [&](const Json& step) {
-      return std::any_of(option.steps.begin(), option.steps.end(),
-                         [&](const Json& own) { return own["id"] == step["id"] && own["do"] == step["do"]; });
-    };
-    const Json& steps = kept["steps"];
-    const auto present = static_cast<std::size_t>(std::count_if(steps.begin(), steps.end(), is_own));
-    if (2 * present <= option.steps.size()) continue;
+    if (std::find(chosen.begin(), chosen.end(), option.name) != chosen.end() ||
+        !has_option(procedure, option, kept))
+      continue;
     Json others = Json::array();
-    for (const Json& step : steps)
-      if (!is_own(step)) others.push_back(step);
+    for (const Json& step : kept["steps"])
+      if (!is_step_of(procedure, option, step)) others.push_back(step);
     kept["steps"] = std::move(others);
   }
   return kept;
@@ -321,7 +335,7 @@ Procedure known_procedure(const Json& said) {
   return read_procedure(name);
 }
 
-/// The object on which a procedure would act, for the page to show beforehand.
+/// The object on which a procedure would act and its options that the plan has, for the page to show beforehand.
 Json acts_on(Session& session, const Json& said, const Watched&) {
   const Procedure procedure = known_procedure(said);
   const auto [whole, folder] = session.with_document([](Document& document) {
@@ -329,7 +343,10 @@ Json acts_on(Session& session, const Json& said, const Watched&) {
   });
   const std::optional<std::string> outcome =
       acted_on(procedure, whole, parse_plan(without_steps_of(procedure, whole).dump(), folder));
-  return {{"outcome", outcome ? Json(*outcome) : Json(nullptr)}};
+  Json with = Json::array();
+  for (const ProcedureOption& option : procedure.options)
+    if (has_option(procedure, option, whole)) with.push_back(option.name);
+  return {{"outcome", outcome ? Json(*outcome) : Json(nullptr)}, {"with", with}};
 }
 
 /// Adds a procedure's steps: in place of its earlier ones, after another procedure's result, or as the plan's

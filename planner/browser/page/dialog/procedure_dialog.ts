@@ -13,21 +13,21 @@ import {on_leaving_plan, set, state} from "../state";
 import {Vec3} from "../base/vector";
 
 const values: {[name: string]: number} = {};
-const chosen_options = new Set<string>();  // "fibula_flap.guides"
+const ticks = new Map<string, boolean>();  // "fibula_flap.guides"; without one the plan's own steps decide
 let pending_procedure: string|null = null;
 on_leaving_plan(() => {
   pending_procedure = null;
   // Values such as a threshold or an advancement belong to one patient.
   for (const name of Object.keys(values)) delete values[name];
-  chosen_options.clear();
+  ticks.clear();
 });
 
 /// Shows a procedure's landmarks and values, and adds its steps to the plan.
 export function open_procedure(name?: string): void {
   const dialog = open_dialog("Procedure from landmarks", "procedure");
   const show = async(chosen: ProcedureSays|undefined): Promise<void> => {
-    // The server computes which object the plan's procedures end with.
-    const before = chosen ? (await try_to<{outcome: string | null}>("acts_on", {name: chosen.name}))?.outcome ?? null : null;
+    // The server computes which object the plan's procedures end with, and which options the plan has.
+    const said = chosen ? await try_to<{outcome: string | null, with: string[]}>("acts_on", {name: chosen.name}) : null;
     dialog.refill(
       el("div", {class: "presets"},
          (state.hello?.procedures ??
@@ -35,17 +35,18 @@ export function open_procedure(name?: string): void {
                     class: one === chosen ? "on" : ""
                   }))),
       chosen ?
-          procedure_form(dialog, chosen, before) :
+          procedure_form(dialog, chosen, said?.outcome ?? null, said?.with ?? []) :
           el("p", {class: "says"},
              "Each procedure is placed by named landmarks and a few values. What it writes are ordinary steps that you can change."));
   };
   void show(state.hello?.procedures.find((one) => one.name === name));
 }
 
-/// `before` is the object with which an earlier procedure of the plan ends; this one acts on it.
-function procedure_form(dialog: Dialog, chosen: ProcedureSays, before: string|null): Child {
+/// `before` is the object with which an earlier procedure of the plan ends; this one acts on it. The plan has the steps
+/// of `present` options.
+function procedure_form(dialog: Dialog, chosen: ProcedureSays, before: string|null, present: string[]): Child {
   const placed = new Map((state.plan?.landmarks ?? []).map((mark) => [mark.name, mark.point]));
-  const is_chosen = (option: string): boolean => chosen_options.has(`${chosen.name}.${option}`);
+  const is_chosen = (option: string): boolean => ticks.get(`${chosen.name}.${option}`) ?? present.includes(option);
   const value_of = (one: ProcedureValue): number => values[`${chosen.name}.${one.name}`] ?? one.default;
   const value_fields = (list: ProcedureValue[]): HTMLElement =>
       el("div", {class: "grid-2"},
@@ -73,12 +74,9 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays, before: string|nu
            name: option.name,
            checked: is_chosen(option.name),
            onchange: (event: Event) => {
-             const key = `${chosen.name}.${option.name}`;
-             fields.hidden = !(event.target as HTMLInputElement).checked;
-             if (fields.hidden)
-               chosen_options.delete(key);
-             else
-               chosen_options.add(key);
+             const {checked} = event.target as HTMLInputElement;
+             fields.hidden = !checked;
+             ticks.set(`${chosen.name}.${option.name}`, checked);
            }
          }),
          `With ${option.says}`),

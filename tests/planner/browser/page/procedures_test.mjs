@@ -123,11 +123,15 @@ async function flap_form(context) {
   await one.at_rest();
   await picture(one, 'donor');
   await place(one, plan, donor_marks, leg_spacing_mm);
+  await type_values(one);
+  return window;
+}
+
+async function type_values(one) {
   for (const [name, value] of Object.entries(flap_values)) {
     await one.page.locator(`dialog input[name="${name}"]`).fill(String(value));
     one.actions++;
   }
-  return window;
 }
 
 /// The options with which the command line writes the same flap.
@@ -163,8 +167,13 @@ test('guides and a plate for a flap take two more actions, and go away with thei
   same_as_command(folder, 'fibula_flap', plan(), [...flap_options(folder), '--with', 'guides']);
   console.log(`fibula flap with guides and plate: ${one.actions} actions`);
   assert.equal(one.actions, before + 2);
+  await one.page.reload();
+  await one.at_rest();
   await one.click(one.page.locator('.bar').getByRole('button', { name: 'Procedure' }));
   await one.click('fibula flap');
+  await width.waitFor();
+  assert.ok(await tick.isChecked(), 'the plan has the guides');
+  await type_values(one);
   await one.click(tick);
   await one.click('Plan it');
   await one.until(() => !has('plate') && !has('cuts_1'), 'a plan without guides');
