@@ -19,6 +19,8 @@
 #include <tuple>
 #include <utility>
 
+#include "brep/boolean/corefine_apart.h"
+#include "brep/boolean/patch.h"
 #include "brep/mesh/disjoint_sets.h"
 #include "brep/mesh/flat_triangles.h"
 #include "brep/mesh/intersecting_triangles.h"
@@ -201,30 +203,6 @@ void measure_parts(const Operand& operand, const glm::dvec3& tip, Side& side) {
   for (std::size_t part = 0; part < lost.size(); ++part) side.volumes_mm3[part] += lost[part];
 }
 
-/// Some triangles of an operand as a mesh of their own.
-struct Patch {
-  Mesh mesh;
-  std::vector<std::uint32_t> points;  ///< points of the operand, in the order of the mesh's points
-};
-
-Patch patch_of(const Operand& operand, const std::vector<std::uint32_t>& faces) {
-  Triangles patch;
-  std::vector<std::uint32_t> number(operand.triangles().points_mm.size(), none), points;
-  for (const std::uint32_t f : faces) {
-    std::array<std::uint32_t, 3> face = operand.triangles().faces[f];
-    for (std::uint32_t& v : face) {
-      if (number[v] == none) {
-        number[v] = static_cast<std::uint32_t>(patch.points_mm.size());
-        patch.points_mm.push_back(operand.triangles().points_mm[v]);
-        points.push_back(v);
-      }
-      v = number[v];
-    }
-    patch.faces.push_back(face);
-  }
-  return {mesh_of(patch), std::move(points)};
-}
-
 /// Turns near triangles that are connected to the given points into far ones: they touch the other surface,
 /// but it does not cut them.
 void take_as_far(const Operand& operand, const std::vector<std::uint32_t>& points, Side& side) {
@@ -404,9 +382,10 @@ Corefined corefine_near(const std::array<Operand, 2>& operands, std::array<Side,
       corefined.results.fill(Triangles());
       return corefined;
     }
-    const Patch a = patch_of(operands[0], sides[0].near_faces),
-                b = patch_of(operands[1], sides[1].near_faces);
-    corefined = corefine(a.mesh, b.mesh, {true, true, wanted[of_a_minus_b], wanted[of_b_minus_a]}, stop);
+    const Patch a = patch_of(operands[0].triangles(), sides[0].near_faces),
+                b = patch_of(operands[1].triangles(), sides[1].near_faces);
+    corefined =
+        corefine_apart(a.mesh, b.mesh, {true, true, wanted[of_a_minus_b], wanted[of_b_minus_a]}, stop);
     if (!corefined.failure.empty()) throw Obstacle(corefined.failure);
     if (corefined.has_open_film || corefined.films != decltype(corefined.films){})
       throw Obstacle("faces coincide except for rounding, near the cut and perhaps beyond");

@@ -44,7 +44,10 @@ std::unordered_map<std::uint32_t, std::vector<PointKey>> rings_of_shared(
 }  // namespace
 
 Triangles in_coordinate_order(const Mesh& mesh) {
-  Triangles triangles = triangles_of(mesh);
+  return in_coordinate_order(triangles_of(mesh));
+}
+
+Triangles in_coordinate_order(Triangles triangles) {
   check_joins(triangles);
   std::vector<std::uint32_t> order(triangles.points_mm.size());
   std::iota(order.begin(), order.end(), 0u);

@@ -13,5 +13,6 @@ namespace octotomy::brep {
 /// check_joins() does if links are invalid, which corefinement of nearly coincident surfaces may cause.
 /// Precondition: nothing is marked as deleted. Cost: n log n.
 Triangles in_coordinate_order(const Mesh& mesh);
+Triangles in_coordinate_order(Triangles triangles);
 
 }  // namespace octotomy::brep

@@ -50,8 +50,8 @@ TEST(SectionsBetween, BetweenTwoCirclesTheRadiusIsInterpolated) {
 TEST(SectionsBetween, AFrustumAndItsFlatEndsHaveTheirVolume) {
   const double tiled = volume_of(sections_between({{0.0, {circle(10.0)}}, {8.0, {circle(14.0)}}}));
   // The truth is the frustum, and a cylinder of half a gap at either end.
-  const double pi = std::numbers::pi;
-  const double frustum = pi * 8.0 / 3.0 * (100.0 + 140.0 + 196.0), ends = pi * 4.0 * (100.0 + 196.0);
+  const double frustum = std::numbers::pi * 8.0 / 3.0 * (100.0 + 140.0 + 196.0),
+               ends = std::numbers::pi * 4.0 * (100.0 + 196.0);
   EXPECT_NEAR(tiled, frustum + ends, 2e-3 * (frustum + ends));
 }
 

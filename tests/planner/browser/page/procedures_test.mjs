@@ -168,7 +168,6 @@ test('guides and a plate for a flap take two more actions, and go away with thei
   console.log(`fibula flap with guides and plate: ${one.actions} actions`);
   assert.equal(one.actions, before + 2);
   await one.page.reload();
-  await one.at_rest();
   await one.click(one.page.locator('.bar').getByRole('button', { name: 'Procedure' }));
   await one.click('fibula flap');
   await width.waitFor();
