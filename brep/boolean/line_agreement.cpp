@@ -3,13 +3,14 @@
 // one pass; 3 follow each line: the intervals inside a result must be those that the operation makes from the
 // intervals inside the operands; 4 check a line that disagrees with two further lines through the same
 // triangle. Most triangles lie between two lines; they are skipped by comparing the y intervals of their
-// points, two bytes each.
+// points, two bytes each. Where there are many lines, those of an interval are found by z.
 #include "brep/boolean/line_agreement.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <compare>
 #include <cstdint>
 #include <limits>
 #include <tbb/parallel_for.h>
@@ -82,22 +83,22 @@ struct Crossing {
   double x;
 };
 
-/// The lines in order of y, and intervals of y into which points are sorted.
-class LinesByY {
+/// The lines by intervals of y, into which points are sorted, and in each by z.
+class LinesByPlace {
  public:
-  explicit LinesByY(const std::vector<Line>& lines) : order_(lines.size()) {
+  explicit LinesByPlace(const std::vector<Line>& lines) : before_(stretch_count + 1, 0) {
     assert(!lines.empty());
-    for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
-    std::sort(order_.begin(), order_.end(), [&](std::uint32_t p, std::uint32_t q) {
-      return std::tie(lines[p].at_mm.y, p) < std::tie(lines[q].at_mm.y, q);
-    });
-    for (const std::uint32_t i : order_) y_.push_back(lines[i].at_mm.y);
-    low_ = y_.front();
-    const double extent = y_.back() - low_;
+    const auto [least, greatest] = std::minmax_element(
+        lines.begin(), lines.end(), [](const Line& p, const Line& q) { return p.at_mm.y < q.at_mm.y; });
+    low_ = least->at_mm.y;
+    const double extent = greatest->at_mm.y - low_;
     scale_ = extent > 0.0 ? static_cast<double>(stretch_count - 3) / extent : 0.0;
-    before_.assign(stretch_count + 1, 0);
-    for (const double y : y_) ++before_[stretch(y) + 1u];
+    for (std::uint32_t i = 0; i < lines.size(); ++i) {
+      ++before_[stretch(lines[i].at_mm.y) + 1u];
+      ordered_.push_back({stretch(lines[i].at_mm.y), lines[i].at_mm.z, i});
+    }
     for (std::size_t s = 0; s < stretch_count; ++s) before_[s + 1] += before_[s];
+    std::sort(ordered_.begin(), ordered_.end());
   }
 
   /// The number of the interval of y, ascending; the first and the last lie outside all lines.
@@ -106,34 +107,56 @@ class LinesByY {
     return static_cast<std::uint16_t>(std::clamp(1.0 + (y - low_) * scale_, 0.0, last));
   }
 
-  /// Calls visit(line) for the lines of the intervals from `least` to `greatest`.
-  template <typename Visit>
-  void visit(std::uint16_t least, std::uint16_t greatest, const Visit& visit) const {
+  /// Calls visit(line) for the lines of the intervals from `least` to `greatest`, without those beyond the range of z
+  /// if there are many. `z_range` is called only then.
+  template <typename Range, typename Visit>
+  void visit(std::uint16_t least, std::uint16_t greatest, const Range& z_range, const Visit& visit) const {
+    constexpr std::uint32_t few = 16;
     const std::uint32_t end = before_[greatest + 1u];
-    for (std::uint32_t i = before_[least]; i < end; ++i) visit(order_[i]);
+    if (end - before_[least] <= few) {
+      for (std::uint32_t i = before_[least]; i < end; ++i) visit(ordered_[i].line);
+      return;
+    }
+    const auto [low, high] = z_range();
+    for (std::uint32_t s = least; s <= greatest; ++s) {
+      const auto last = ordered_.begin() + before_[s + 1u];
+      for (auto at = std::lower_bound(ordered_.begin() + before_[s], last, low,
+                                      [](const Entry&entry, double z) { return entry.z < z; });
+           at != last && at->z <= high; ++at)
+        visit(at->line);
+    }
   }
 
  private:
   static constexpr std::size_t stretch_count = 1 << 11;
-  std::vector<std::uint32_t> order_;
+  struct Entry {
+    std::uint16_t stretch;
+    double z;
+    std::uint32_t line;
+    auto operator<=>(const Entry&) const = default;
+  };
+  std::vector<Entry> ordered_;
   std::vector<std::uint32_t> before_;  ///< for each interval: the number of lines in earlier ones
-  std::vector<double> y_;
   double low_ = 0.0, scale_ = 0.0;
 };
 
 std::vector<Crossing> crossings(const Triangles& surface, std::uint8_t number, const std::vector<Line>& lines,
-                                const LinesByY& by_y) {
+                                const LinesByPlace& by_place) {
   std::vector<std::uint16_t> stretches(surface.points_mm.size());
-  for (std::size_t v = 0; v < stretches.size(); ++v) stretches[v] = by_y.stretch(surface.points_mm[v].y);
+  for (std::size_t v = 0; v < stretches.size(); ++v) stretches[v] = by_place.stretch(surface.points_mm[v].y);
   std::vector<Crossing> found;
   for (const auto& face : surface.faces) {
     const std::uint16_t p = stretches[face[0]], q = stretches[face[1]], r = stretches[face[2]];
-    by_y.visit(std::min(std::min(p, q), r), std::max(std::max(p, q), r), [&](std::uint32_t line) {
-      const Corners t{surface.points_mm[face[0]], surface.points_mm[face[1]], surface.points_mm[face[2]]};
-      const glm::dvec3& at_mm = lines[line].at_mm;
-      if (const auto crossing = row_crossing(t, at_mm.z); crossing && crossing->has(at_mm.y))
-        found.push_back({line, number, static_cast<std::int8_t>(crossing->enters), crossing->x_at(at_mm.y)});
-    });
+    const auto corner = [&](std::size_t k) { return surface.points_mm[face[k]]; };
+    const auto z_range = [&] { return std::minmax({corner(0).z, corner(1).z, corner(2).z}); };
+    by_place.visit(
+        std::min(std::min(p, q), r), std::max(std::max(p, q), r), z_range, [&](std::uint32_t line) {
+          const glm::dvec3& at_mm = lines[line].at_mm;
+          if (const auto crossing = row_crossing({corner(0), corner(1), corner(2)}, at_mm.z);
+              crossing && crossing->has(at_mm.y))
+            found.push_back(
+                {line, number, static_cast<std::int8_t>(crossing->enters), crossing->x_at(at_mm.y)});
+        });
   }
   return found;
 }
@@ -162,10 +185,10 @@ void follow(const Surfaces& surfaces, const Crossing* begin, const Crossing* end
 
 void follow_all(const Surfaces& surfaces, std::vector<Line>& lines) {
   if (lines.empty()) return;
-  const LinesByY by_y(lines);
+  const LinesByPlace by_place(lines);
   std::array<std::vector<Crossing>, 6> found;
   tbb::parallel_for(std::size_t{0}, surfaces.size(), [&](std::size_t s) {
-    if (surfaces[s]) found[s] = crossings(*surfaces[s], static_cast<std::uint8_t>(s), lines, by_y);
+    if (surfaces[s]) found[s] = crossings(*surfaces[s], static_cast<std::uint8_t>(s), lines, by_place);
   });
   std::vector<Crossing> all;
   for (const std::vector<Crossing>& of_surface : found)
