@@ -66,8 +66,8 @@ constexpr double chance_share() {
   return 0.6;
 }
 
-/// Motions closer than this share of the spread are one answer. Refinements with few samples end within a
-/// hundredth of the spread.
+/// Motions closer than this share of the spread count as one answer. Refinements with few samples end within
+/// a hundredth of the spread.
 constexpr double same_share() {
   return 0.1;
 }
@@ -224,7 +224,7 @@ FitTrust matched_trust(const glm::dmat4& motion, const TrustedFrom& from) {
                          is_scattered(near_rungs - 1, chance_share());
   if (!trust.equals.empty() && !is_chance) return trust;
   trust.equals.clear();
-  // What is left where as many samples as even scatter has are taken off.
+  // The share of coincident samples: what remains after subtracting as many as even scatter would have.
   const double coincident_share = 2.0 * wide[0] - wide[1];
   const bool is_near = leads(ladder_mm.size() - 1) || own[near_rungs - 1] >= equal_share() ||
                        coincident_share >= least_share();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 refuse inside-out operands; 2 put the operands in an order of their own, so that neither the
-// caller's order nor its addresses show in the bits; 3 where faces lie on one plane but for rounding, go on in
-// a frame in which they do exactly; 4 cut near the common lines only, or corefine the whole where that will
-// not do; 5 check the volumes against each other, and the places of all shells by lines through them; 6 where
-// a wanted result is not manifold, these do not agree or triangles intersect, try cells between the planes,
-// then operands that have the same triangles on planes in common; 7 where none has a result, move the second
-// operand by far less than any bound, and report it.
+// 1 refuse inside-out operands; 2 sort the operands, so that the bits depend neither on the caller's order
+// nor on addresses; 3 where faces lie on one plane but for rounding, go on in a frame in which they do
+// exactly; 4 cut near the common lines only, or corefine the whole where that fails; 5 check the volumes
+// against each other, and the places of all shells by lines through them; 6 where a wanted result is not
+// manifold, these do not agree or triangles intersect, try cells between the planes, then operands that have
+// the same triangles on planes in common; 7 where none has a result, move the second operand by far less than
+// any bound, and report it.
 #include "brep/boolean/boolean.h"
 
 #include <algorithm>

@@ -31,7 +31,8 @@ struct LocalThicknessOptions {
 struct LocalThicknessAt {
   SurfacePoint point;
   double area_mm2 = 0.0;
-  double ray_mm = 0.0;  ///< straight inward to where the surface is met again; infinity where it is not
+  double ray_mm = 0.0;  ///< distance straight inward to the next point of the surface; infinity if there is
+                        ///< none
   double thickness_mm = 0.0;
   bool is_wall = false;  ///< by the rule of LocalThicknessOptions::wall_angle_deg
 };

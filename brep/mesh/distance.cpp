@@ -461,9 +461,9 @@ struct SurfaceTree::Tree {
   }
 
   /// The side of a triangle on which a point lies: -1 inside, 1 outside; 0 where the point's foot is not
-  /// clearly within the triangle, so that the triangle alone does not decide. Clearly: by more than 2^-30 of
-  /// the largest coordinates, which is above what rounding can turn or cross. The segment to the foot meets no
-  /// other triangle, as this one is the nearest.
+  /// clearly within the triangle, so that the triangle alone does not decide. Clearly means by more than
+  /// 2^-30 of the largest coordinates, which is far above rounding. The segment to the foot meets no other
+  /// triangle, as this one is the nearest.
   int side_of(std::uint32_t number, const glm::dvec3& p) const {
     const Corners t = triangle(number);
     const glm::dvec3 most =

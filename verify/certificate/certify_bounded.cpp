@@ -384,7 +384,7 @@ void compare_repeated(Certificate& certificate, const brep::Triangles& mesh) {
                                .difference = area_mm2,
                                .tolerance = 0.0,
                                .formula = "0: no triangle is there twice",
-                               .statement = "Triangles of % are there several times in the mesh"});
+                               .statement = "Triangles of % occur several times in the mesh"});
 }
 
 /// Compares amounts measured along lines with both answers. If the answers agree with each other and not with

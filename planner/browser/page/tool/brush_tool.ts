@@ -261,7 +261,7 @@ function panel(): Child {
   const name = on ? String(on.going_on ? on.step.object : on.step.id).replace(/_/g, " ") : "";
   return [
     el("div", {class: "presets", role: "group", "aria-label": "What a stroke does"},
-       choice<Mode>("Erase", "A stroke takes away from the object", mode, "erase", (value) => mode = value),
+       choice<Mode>("Erase", "A stroke removes material from the object", mode, "erase", (value) => mode = value),
        choice<Mode>("Paint", "A stroke adds to the object", mode, "paint", (value) => mode = value)),
     el("div", {class: "presets", role: "group", "aria-label": "Shape of the brush"},
        choice<Shape>("Ball", "Reaches as deep as it is wide", shape, "ball", (value) => shape = value),
@@ -273,7 +273,7 @@ function panel(): Child {
                        null,
     el("p", {class: "says"},
        !on ? "Select the object to draw on." :
-             `The next stroke ${mode === "paint" ? "adds to" : "takes away from"} ${name}${on.going_on ? ", in the same step" : ", as a new step"}.`),
+             `The next stroke ${mode === "paint" ? "adds to" : "erases from"} ${name}${on.going_on ? ", in the same step" : ", as a new step"}.`),
     mode === "paint" ? el("p", {class: "says"}, "No scan measures what is painted; its findings state how much it is.") : null,
   ];
 }

@@ -114,7 +114,7 @@ async function change(place: Place, what: string, take: (now: Polygon[]) => Poly
     return add_step(
         {id, do: "tile", view: place.view, contours: all as unknown as Json, end_mm: hundredth(slice_mm(place) / 2)}, what);
   }
-  if (!all.some((slice) => slice.polygons_mm.length)) return edit({remove: step.id}, `${step.id} taken away`, null);
+  if (!all.some((slice) => slice.polygons_mm.length)) return edit({remove: step.id}, `${step.id} removed`, null);
   return replace_step(step.id, {...step, contours: all as unknown as Json}, what);
 }
 function then(place: Place, what: string, take: (now: Polygon[]) => Polygon[]|null): void {
