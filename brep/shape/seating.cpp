@@ -2,11 +2,10 @@
 //
 // 1 Sweep the part away from its place to before the object's near end.
 // 2 Depth changes by at most the distance between points: a triangle's depth is at most that of its middle
-// and the distance
-//   from there to its farthest corner. It is also at most the distance to any one triangle of the space's
-//   surface, which over a triangle is largest at a corner: that bound is tight where both surfaces are flat.
-//   Level by level, keep the triangles that can still be deeper than the deepest place found, and cut each
-//   into four.
+//   and the distance from there to its farthest corner. It is also at most the distance to any one triangle
+//   of the space's surface, which over a triangle is largest at a corner: that bound is tight where both
+//   surfaces are flat. Level by level, keep the triangles that can still be deeper than the deepest place
+//   found, and cut each into four.
 // 3 Follow the direction from the deepest place: where it passes through the part is when the part is there.
 #include "brep/shape/seating.h"
 

@@ -12,12 +12,6 @@
 
 namespace octotomy::convert {
 
-/// A plane by a point and its unit normal.
-struct InterfacePlane {
-  glm::dvec3 on_mm{0.0}, normal{0.0};
-  double away_mm(const glm::dvec3& p_mm) const { return glm::dot(p_mm - on_mm, normal); }
-};
-
 /// The plane of least squares through the points within `near_mm` of it, found by iteration from a first
 /// plane.
 InterfacePlane fitted_plane(const std::vector<glm::dvec3>& points_mm, InterfacePlane plane, double near_mm);

@@ -94,12 +94,15 @@ MesherOutcome run_tetgen(const MesherInput& input, const std::string& switches, 
 /// to start from, on each of its parts. Throws as run_tetgen().
 MesherOutcome run_mesh3(const MesherInput& input, const Mesh3Sizes& sizes, const MesherLimits& limits);
 
-/// A plane in which two labels of an image meet; the normal points from the lower label to the higher.
-struct LabelPlane {
+/// A plane by a point and its unit normal.
+struct InterfacePlane {
   glm::dvec3 on_mm{0.0}, normal{0.0};
-  std::uint64_t low = 0, high = 0;  ///< labels
 
   double away_mm(const glm::dvec3& p_mm) const { return glm::dot(p_mm - on_mm, normal); }
+};
+/// A plane in which two labels of an image meet; the normal points from the lower label to the higher.
+struct LabelPlane : InterfacePlane {
+  std::uint64_t low = 0, high = 0;  ///< labels
 };
 
 /// An image of labels, a byte a voxel, x fastest. Label 0 is outside; the border is 0. The centre of voxel

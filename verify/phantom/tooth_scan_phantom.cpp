@@ -119,7 +119,7 @@ brep::Triangles true_row(bool is_upper, double spacing_mm) {
       from);
 }
 
-/// Rows are made once.
+/// The true row, computed at the first call and kept until the program ends.
 const brep::Triangles& row_of(bool is_upper, double spacing_mm) {
   static std::mutex mutex;
   static std::map<std::pair<bool, double>, brep::Triangles> rows;

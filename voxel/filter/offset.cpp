@@ -5,8 +5,8 @@
 //   a cell: half as far from each other as the crossings are.
 // 3 Put those points into a k-d tree (Bentley 1975).
 // 4 Signed distances change by at most the distance between points, so a block whose middle is farther from
-// the offset
-//   surface than its corners are from its middle has one value. The others are halved down to voxels.
+//   the offset surface than its corners are from its middle has one value. The others are halved down to
+//   voxels.
 // The octree alone decides on which side of the surface a voxel's centre lies: between two centres that
 // differ there is always a crossing, so that sign and distance agree.
 #include "voxel/filter/offset.h"

@@ -5,7 +5,7 @@
 // 3 Those triangles may still cut sharp edges off. At an outline all that lies behind would be lost with them, so
 //   columns just beside an outline look for the object itself at the depths of the outline.
 // 4 Blocks whose columns all begin before them, or all behind them, have one value. In the other blocks 5^3
-// points of each voxel are counted: an odd number, so that no share is exactly a half.
+//   points of each voxel are counted: an odd number, so that no share is exactly a half.
 #include "voxel/filter/shadow.h"
 
 #include <algorithm>

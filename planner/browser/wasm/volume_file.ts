@@ -8,7 +8,8 @@ export interface Volume {
   dims: [number, number, number];
   lps_from_voxel: number[];
   samples: Int16Array;
-  /// What was changed on the way in, for people; empty if nothing was.
+  /// Sentences for the user about what reading assumed or changed: rounded samples, a unit that is not
+  /// stated.
   remarks: string[];
 }
 

@@ -7,10 +7,12 @@
 //   bending radius and the clearance, then shrunk by the radius: its surface has no hollow narrower than the
 //   radius, so that the plate bridges gaps. It still contains all that lies behind it, so that the plate slides
 //   on.
-// 3 What is left of the thickness above the rounding, on a band narrower by the rounding; grown by the rounding,
-//   so that all outer edges are round. Less 2, less the holes.
-// 4 Of that only what balls as wide as the least wall hold: where the bone falls away beside the plate, a flange
-//   runs out to nothing. The largest piece, with points that files for printers can hold.
+// 3 The plate: 2 grown by the thickness minus the rounding, within a band that is narrower by the
+//   rounding on each side; all of this grown by the rounding, so that all outer edges are round. Minus 2,
+//   minus the holes.
+// 4 Only the part that is covered by balls within it as wide as the least wall: where the bone falls away
+//   beside the plate, a flange would get ever thinner. The largest piece, with points that files for printers
+//   can hold.
 //
 // The mesh kernel does 3 and 4 without Booleans, on distances to the surfaces (brep/shape/level_body.h). The voxel
 // kernel combines windows of distances.
