@@ -51,7 +51,7 @@ constexpr double equal_ratio() {
   return 0.75;
 }
 
-/// Equal answers match at least this share of the surface within the third rung.
+/// Equal answers match at least this share of the surface within the third distance of trust_ladder_mm().
 constexpr double equal_share() {
   return 0.35;
 }
@@ -72,7 +72,8 @@ constexpr double same_share() {
   return 0.1;
 }
 
-/// A residual above these, times the noise and as a share of the spread, comes from parts without a counterpart.
+/// A residual above this multiple of the noise, or above this share of the spread, comes from parts without a
+/// counterpart.
 constexpr double most_noises() {
   return 5.0;
 }
@@ -224,7 +225,8 @@ FitTrust matched_trust(const glm::dmat4& motion, const TrustedFrom& from) {
                          is_scattered(near_rungs - 1, chance_share());
   if (!trust.equals.empty() && !is_chance) return trust;
   trust.equals.clear();
-  // The share of coincident samples: what remains after subtracting as many as even scatter would have.
+  // The share of samples that coincide: those within the smaller distance, minus the number that samples
+  // scattered evenly would have there.
   const double coincident_share = 2.0 * wide[0] - wide[1];
   const bool is_near = leads(ladder_mm.size() - 1) || own[near_rungs - 1] >= equal_share() ||
                        coincident_share >= least_share();

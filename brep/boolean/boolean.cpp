@@ -142,8 +142,8 @@ struct Attempt {
   Results results;
   Volumes volumes_mm3;
   std::optional<double> disagreement_mm3;
-  std::vector<Corners> widest;  ///< triangles for lines; empty if they still have to be found for each
-                                ///< surface
+  std::vector<Corners> widest;  ///< triangles of the operands through which lines are tested; empty: not
+                                ///< chosen yet
   std::array<std::size_t, 4> films{};
   std::size_t flat = 0;
   double shift_mm = 0.0;
@@ -377,7 +377,8 @@ void tell_coplanar(const Question& question, double moved_mm, Attempt& attempt) 
                              short_text(moved_mm * area_mm2) + " mm3");
 }
 
-/// The first answer without folds, or else the one with the fewest; and why the operands as given had none.
+/// The first answer without folds, or else the one with the fewest; and the reason if the operands as given
+/// had no answer.
 class Best {
  public:
   bool is_found() const { return best_ && best_->unfit == 0; }

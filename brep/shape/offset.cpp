@@ -48,7 +48,7 @@ Solid offset(const Solid& solid, const OffsetOptions& options) {
 
 Solid thickened(const Triangles& surface, const OffsetOptions& options) {
   check(surface, options);
-  if (!(options.by_mm > 0.0)) throw InvalidInput("a wall is thicker than 0 mm");
+  if (!(options.by_mm > 0.0)) throw InvalidInput("the thickness of a wall must be above 0 mm");
   const SurfaceTree tree(surface);
   return level_surface(field_of(tree, false, options.by_mm), size_of(surface), options);
 }

@@ -23,10 +23,11 @@ struct MesherRequest {
 
   std::uint64_t version = this_version;
   std::array<char, 64> switches{};
-  std::uint64_t points = 0;            ///< three doubles each; of labels, the planes
+  std::uint64_t points = 0;            ///< three doubles each; for an image of labels, the number of its
+                                       ///< planes
   std::uint64_t triangles = 0;         ///< three uint32 each
   std::uint64_t holes = 0;             ///< three doubles each
-  std::uint64_t sizes = 0;             ///< a double each; of labels, the shares
+  std::uint64_t sizes = 0;             ///< a double each; for an image of labels, the number of its shares
   std::uint64_t labels = 0;            ///< a byte each, x fastest
   std::array<std::int32_t, 3> dims{};  ///< of the labels
   std::array<double, 3> spacing_mm{};

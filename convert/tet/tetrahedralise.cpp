@@ -234,7 +234,8 @@ std::vector<std::string> ladder(const TetOptions& options) {
 /// would be larger than allowed. Returns the number of triangles before where that changed it.
 std::optional<std::size_t> divide_for_volume(MesherInput& surface, double max_volume_mm3) {
   constexpr double regular =
-      0.75;  // right triangles of halved sides have elements as large as equilateral ones of 4/3
+      0.75;  // halving leaves right triangles, whose elements are as large as those of equilateral triangles
+             // with sides 4/3 as long
   const double side_mm = regular * std::cbrt(6.0 * std::sqrt(2.0) * max_volume_mm3);
   brep::Triangles given{std::move(surface.points_mm), std::move(surface.triangles)};
   const std::size_t before = given.faces.size();

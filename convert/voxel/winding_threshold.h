@@ -62,8 +62,9 @@ class WindingThreshold {
 
 /// A universe's thresholds by cubes of 4^h voxels a side: the largest with one number, down to 16.
 struct ThresholdNode {
-  std::optional<int> number;                                ///< none: see the children
-  std::unique_ptr<std::array<ThresholdNode, 64>> children;  ///< none: a cube of 16 with several
+  std::optional<int> number;                                ///< none: voxels differ, see the children
+  std::unique_ptr<std::array<ThresholdNode, 64>> children;  ///< none: one number, or a cube of 16 voxels a
+                                                            ///< side
 };
 /// The node of the octree's root block. Parallel; throws voxel::Stopped.
 ThresholdNode threshold_tree(const voxel::Universe& universe, const WindingThreshold& threshold,

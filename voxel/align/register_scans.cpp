@@ -113,8 +113,8 @@ class Search {
   double value(const ScanPair& pair, const Parameters& at) {
     ++motions_;
     const Likeness likeness = pair.likeness(motion(at));
-    // A value below every likeness that rises with the overlap, so that the search returns to motions with
-    // enough overlap.
+    // This value is below every likeness and rises with the overlap, so that the search returns to motions
+    // with enough overlap.
     if (likeness.overlap < options_.least_overlap) return likeness.overlap - 3.0;
     return likeness.value;
   }

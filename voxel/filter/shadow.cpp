@@ -38,7 +38,7 @@ constexpr double cut_off = 0.59, moved_out = 0.75;
 /// for from `look_before` in front of the depth to `look_behind` behind it, in steps of `look_step`. At an
 /// edge of 90 degrees half a step is lost.
 constexpr float look_before = 0.75F, look_behind = 4.0F, look_step = 0.0625F;
-constexpr int tile_side = 16;  ///< columns whose depths have one range
+constexpr int tile_side = 16;  ///< a range of depths is stored for each square of so many columns a side
 constexpr float no_surface = std::numeric_limits<float>::infinity();
 
 /// Depth is the coordinate along the direction; x and y lie across it.

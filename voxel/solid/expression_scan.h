@@ -25,7 +25,8 @@ struct ExpressionScan {
   Scene scene;
   std::uint64_t hole_samples = 0;     ///< where the expression contains nothing
   std::uint64_t filled_samples = 0;   ///< where only objects without samples are
-  std::uint64_t changed_samples = 0;  ///< holes, and samples that differ from the frame's
+  std::uint64_t changed_samples = 0;  ///< holes, and samples that differ from the frame's sample at this
+                                      ///< place
   double hole = 0.0, filled = 0.0;    ///< as used
 };
 

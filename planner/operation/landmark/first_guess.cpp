@@ -49,7 +49,8 @@ constexpr std::array<std::array<double, 3>, 4> other_ways{
 constexpr double threshold_share = 1.25;  ///< a higher threshold over the usual one, from -150 on
 /// Factors of the error interval: on the scatter of the trials, and on the edge of the coarsest voxel.
 constexpr double of_scatter = 1.3, of_voxel = 0.7;
-constexpr double scan_end_mm = 2.0;      ///< a voxel and more, as with skull_profile.cpp's
+constexpr double scan_end_mm = 2.0;      ///< more than a voxel; as the constant of this meaning in
+                                         ///< skull_profile.cpp
 constexpr double most_within_mm = 15.0;  ///< a landmark with a larger error is not reported
 constexpr double least_plane_deg = 0.5;
 

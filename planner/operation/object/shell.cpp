@@ -48,10 +48,11 @@ brep::Solid core_of(const brep::Solid& solid, const Shell& shell, const brep::Pr
           brep::offset(solid, {.by_mm = -shell.thickness_mm, .cell_mm = cell_mm, .progress = progress});
       if (round > 0) {
         made.details = {{"cell_mm", cell_mm}};
-        made.findings.push_back("the object is too large for cells of " + plain(cell_for(shell)) +
-                                " mm: its inner surface was made with cells of " + plain(cell_mm) +
-                                " mm, and the removed inside may lack walls thinner than that: cut off the "
-                                "part that matters, so that smaller cells suffice for it");
+        made.findings.push_back(
+            "the object is too large for cells of " + plain(cell_for(shell)) +
+            " mm: its inner surface was made with cells of " + plain(cell_mm) +
+            " mm, so that parts of the inside thinner than that may have stayed: cut off the "
+            "part that matters, for which smaller cells suffice");
       }
       return core;
     } catch (const brep::TooLarge&) {

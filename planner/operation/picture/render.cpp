@@ -577,12 +577,12 @@ Operation render_operation() {
                       .read_if<Render>(draws_samples, "only scans and grey octrees have one: leave it out")
                       .read_if<Render>([](const Render& render) { return !render.steeper_per_mm; },
                                        "changes of samples end the rays at any sample value: leave it out"))
-      .verb_takes(
-          field("voxel_mm", &Render::voxel_mm,
-                "Edge of a voxel. Default: as fine as the scan, at most 512 a side.")
-              .greater_than(0.0)
-              .read_if<Render>([](const Render& render) { return !is_octree(first_file(render)); },
-                               "the first file is an octree, whose voxels all are drawn in: leave it out"))
+      .verb_takes(field("voxel_mm", &Render::voxel_mm,
+                        "Edge of a voxel. Default: as fine as the scan, at most 512 a side.")
+                      .greater_than(0.0)
+                      .read_if<Render>(
+                          [](const Render& render) { return !is_octree(first_file(render)); },
+                          "the first file is an octree, whose voxels are used for everything: leave it out"))
       .reads_scans()
       .uses(uses)
       .example(R"({"id": "front", "do": "render", "objects": ["rest", "advanced"], "path": "front.png",

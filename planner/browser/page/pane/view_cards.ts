@@ -17,7 +17,7 @@ export function cut_plane_card(): Child {
       "section", {class: "card"},
       el("h3", {}, icon("plane", 16), "Cut plane", el("span", {class: "spring"}),
          button(
-             icon("close", 14), "Take the cut plane away", () => set({cut_plane: null}),
+             icon("close", 14), "Remove the cut plane", () => set({cut_plane: null}),
              {class: "ghost small"})),
       el("div", {class: "presets"},
          names.map(
@@ -28,7 +28,7 @@ export function cut_plane_card(): Child {
                  }),
                  {class: cut.axis === axis ? "on" : ""})),
          button(
-             "Other side", "Takes away the other side",
+             "Other side", "Hides the other side of the plane instead",
              () => set({cut_plane: {...cut, side: cut.side === 1 ? -1 : 1}}))),
       el("label", {class: "slider"}, el("span", {}, "At"), el("input", {
            type: "range",
