@@ -48,7 +48,8 @@ struct LocalThickness {
   /// points, estimated from sums over every second one, and 0.5 % for the searches.
   double mean_half_width_mm = 0.0;
   std::vector<LocalThicknessAt> surface;
-  double reach_mm = 0.0;  ///< no point of the surface lies further than this from one of `surface`
+  double reach_mm = 0.0;  ///< largest distance of any point of the surface from the nearest point in the list
+                          ///< `surface`
   /// The thinnest point of a wall, as an index into `surface`; none if no point belongs to a wall.
   std::optional<std::size_t> thinnest_wall;
 };

@@ -148,8 +148,8 @@ void add_reach(Certificate& certificate, const FarSample& found, double reach_mm
                                             : "A place where a surface must lie is % from the answer's"});
   if (certificate.comparisons.back().verdict == Verdict::Pass) return;
   const WorstPlace place{found.at_mm, found.distance_mm,
-                         is_of_answer ? "the answer has a surface there that its step does not make"
-                                      : "the answer lacks a surface there that its step makes"};
+                         is_of_answer ? "the answer has a surface there that its step must not make"
+                                      : "the answer lacks a surface there that its step must make"};
   certificate.reasons.push_back(text_of(place));
   if (!certificate.worst || certificate.worst->size_mm < place.size_mm) certificate.worst = place;
 }

@@ -230,8 +230,8 @@ void add_brain_case(const HeadPart& head, const HeadFrame& frame, FoundPlaces& f
   reach("midline_top", frame.up, "the scan ends below the top of the skull");
 }
 
-/// Removes points of one side only that were searched for from points which are missing in the end: no other
-/// evidence for them remains.
+/// A point was searched for from other points. Removes it if one of those is missing in the end, and so is
+/// the point's counterpart on the other side: then nothing confirms it.
 void take_out_unfounded(std::vector<LandmarkGuess>& found, std::map<std::string, std::string>& missing) {
   const auto take_out = [&](const std::string& name, const std::string& opposite,
                             const std::vector<std::string>& sources) {

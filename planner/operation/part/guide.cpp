@@ -307,7 +307,8 @@ void bound(const Guide& guide, const BoundBench& bench, Object& made) {
   inherit(object, made);
   if (object.mesh.whole && made.mesh.whole && !made.mesh.whole->empty()) {
     const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
-    // The mesh kernel keeps exact distances up to the last surface, which is thick_part()'s.
+    // In the mesh kernel, only the last surface, which thick_part() makes, adds an error: distances are exact
+    // before it.
     double apart_mm =
         verify::offset_allowance_mm({object.witness,
                                      voxel::combine(bench.universe, voxel::Expression(object.voxel.octree) &
