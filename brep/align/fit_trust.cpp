@@ -51,7 +51,7 @@ constexpr double equal_ratio() {
   return 0.75;
 }
 
-/// Equal answers match at least this share of the surface within the third rung.
+/// Equal answers match at least this share of the surface within the third distance of trust_ladder_mm().
 constexpr double equal_share() {
   return 0.35;
 }
@@ -66,13 +66,14 @@ constexpr double chance_share() {
   return 0.6;
 }
 
-/// Motions closer than this share of the spread are one answer. Refinements with few samples end within a
-/// hundredth of the spread.
+/// Motions closer than this share of the spread count as one answer. Refinements with few samples end within
+/// a hundredth of the spread.
 constexpr double same_share() {
   return 0.1;
 }
 
-/// A residual above these, times the noise and as a share of the spread, comes from parts without a counterpart.
+/// A residual above this multiple of the noise, or above this share of the spread, comes from parts without a
+/// counterpart.
 constexpr double most_noises() {
   return 5.0;
 }
@@ -224,7 +225,8 @@ FitTrust matched_trust(const glm::dmat4& motion, const TrustedFrom& from) {
                          is_scattered(near_rungs - 1, chance_share());
   if (!trust.equals.empty() && !is_chance) return trust;
   trust.equals.clear();
-  // What is left where as many samples as even scatter has are taken off.
+  // The share of samples that coincide: those within the smaller distance, minus the number that samples
+  // scattered evenly would have there.
   const double coincident_share = 2.0 * wide[0] - wide[1];
   const bool is_near = leads(ladder_mm.size() - 1) || own[near_rungs - 1] >= equal_share() ||
                        coincident_share >= least_share();

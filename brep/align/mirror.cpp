@@ -32,8 +32,8 @@ constexpr double trial_overlap() {
   return 0.5;
 }
 
-/// Planes are one if their normals differ by less than this angle in degrees and they pass the centre
-/// within a twentieth of the spread.
+/// Two planes count as one if their normals differ by less than this angle in degrees and they pass the
+/// centre within a twentieth of the spread.
 constexpr double same_plane_deg() {
   return 10.0;
 }
@@ -232,7 +232,7 @@ void tell_rival(const std::vector<Tried>& planes, MirrorFit& found) {
     found.findings.emplace_back(
         "WARN mid-plane: at none of the tried planes does half of the overlap have a counterpart: the "
         "plane "
-        "is a guess; give one near the right one, --plane, or a smaller --overlap");
+        "is a guess: state a plane near the right one by --plane, or a smaller --overlap");
   if (planes.size() < 2 || !planes[1].is_fit() || planes[1].rms_mm > rival_share() * planes[0].rms_mm) return;
   const glm::dvec3& n = planes[1].plane.normal;
   found.findings.push_back("WARN mid-plane: another plane, of normal (" + short_text(n.x) + ", " +

@@ -35,7 +35,8 @@ constexpr int search_rounds = 12;
 constexpr std::size_t finalists = 6;
 constexpr int finalist_rounds = 30;
 constexpr std::size_t narrowed_ends = 12;
-constexpr double least_narrowed = 0.3;  ///< of the overlap: it is halved twice
+constexpr double least_narrowed =
+    0.3;  ///< the overlap is halved while it is above this share of the requested one
 
 /// Normals with a smaller cosine between them belong to different sheets of a surface, for example of a thin
 /// bone.
@@ -128,7 +129,7 @@ struct Fit {
   double last_step_mm = 0.0;  ///< by which the last round moved the samples, root mean square
   double best_mm = std::numeric_limits<double>::infinity();  ///< least rms so far of the samples kept
   glm::dmat4 best_motion{1.0};
-  int since_best = 0;  ///< rounds since it fell by more than a share of it
+  int since_best = 0;  ///< rounds since best_mm fell noticeably
 };
 
 /// Evaluates a motion: the samples, their counterparts, and which samples are kept.
@@ -376,7 +377,8 @@ Searched search(const Cloud& cloud, const Cloud& fixed, const OrientedSurface& s
   for (Fit& fit : fits) fit = refinement.run(fit.motion, finalist_rounds);
   sort_by_score(fits);
   searched.best = fits.front().motion;
-  // Several finalists are often the same motion. Other motions are refined as far.
+  // Several finalists are often the same motion. So further, different motions are refined with as many
+  // rounds.
   for (const glm::dmat4& end : different_motions(cloud, searched.ends, finalists + 1)) {
     const bool is_refined = apart_mm(cloud, end, searched.ends.front()) == 0.0;
     if (!is_refined) searched.others.push_back(refinement.run(end, finalist_rounds).motion);

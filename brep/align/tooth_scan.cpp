@@ -37,7 +37,8 @@ namespace octotomy::brep {
 namespace {
 
 constexpr double on_surface_mm = 3.0;  ///< points are placed by hand
-constexpr double beside_mm = 15.0;     ///< the object's surface counts this far around the points
+constexpr double beside_mm = 15.0;     ///< only the object's surface within this distance of the points is
+                                       ///< used
 constexpr double patch_mm = 4.0;       ///< about half a tooth
 constexpr std::uint32_t held_one_in = 4;
 constexpr std::size_t least_held = 8;
@@ -45,8 +46,9 @@ constexpr double sample_every_mm = 0.4;
 /// The least share of the held patches that lies near the object's surface. Right scans of the head phantom's
 /// teeth reach 0.8, those of the other jaw less than 0.4.
 constexpr double least_matched = 0.55;
-/// Shares of the samples' spacing: by the first the object's surface may be off on all teeth alike; the second is the
-/// largest root mean square of its error. Isosurfaces of partial volumes keep both; see the bound above.
+/// Shares of the samples' spacing. The first is the largest error that the object's surface has on all teeth
+/// alike, the second the largest root mean square of its error. Isosurfaces of partial volumes stay within
+/// both; see the bound above.
 constexpr double common_share = 0.05, own_share = 0.25;
 constexpr double deviations_99 = 2.58;
 

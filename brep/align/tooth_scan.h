@@ -23,8 +23,8 @@ struct ToothScanOptions {
   /// The crowns are fitted from their tips, the plane of the points, to this depth, mm, above 0. What the scan
   /// shows beyond is gum.
   double depth_mm = 5.0;
-  /// The largest spacing of the samples from which the fixed surface was made, mm, at least 0. Its surface may
-  /// be off by a part of that, alike on all teeth.
+  /// The largest spacing of the samples from which the fixed surface was made, mm, at least 0. This surface
+  /// may be off by a part of the spacing, by the same length on all teeth.
   double sample_mm = 1.0;
   std::size_t samples = 6000;                           ///< as in SurfaceFitOptions
   std::string scan = "the scan", fixed = "the object";  ///< names for messages
@@ -39,7 +39,7 @@ struct HeldPatch {
   bool is_left_out = false;  ///< it lies farther off than chance and the other patches explain
 };
 
-/// A scan laid onto the teeth, and how far it is off there.
+/// A scan laid onto the teeth, and its error there.
 struct LaidToothScan {
   glm::dmat4 fixed_from_scan{1.0};
   glm::dvec3 to_roots{0, 0, 1};  ///< unit normal of the plane of the points, from the tips to the roots

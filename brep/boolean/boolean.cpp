@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 refuse inside-out operands; 2 put the operands in an order of their own, so that neither the
-// caller's order nor its addresses show in the bits; 3 where faces lie on one plane but for rounding, go on in
-// a frame in which they do exactly; 4 cut near the common lines only, or corefine the whole where that will
-// not do; 5 check the volumes against each other, and the places of all shells by lines through them; 6 where
-// a wanted result is not manifold, these do not agree or triangles intersect, try cells between the planes,
-// then operands that have the same triangles on planes in common; 7 where none has a result, move the second
-// operand by far less than any bound, and report it.
+// 1 refuse inside-out operands; 2 sort the operands, so that the bits depend neither on the caller's order
+// nor on addresses; 3 where faces lie on one plane but for rounding, go on in a frame in which they do
+// exactly; 4 cut near the common lines only, or corefine the whole where that fails; 5 check the volumes
+// against each other, and the places of all shells by lines through them; 6 where a wanted result is not
+// manifold, these do not agree or triangles intersect, try cells between the planes, then operands that have
+// the same triangles on planes in common; 7 where none has a result, move the second operand by far less than
+// any bound, and report it.
 #include "brep/boolean/boolean.h"
 
 #include <algorithm>
@@ -143,8 +143,8 @@ struct Attempt {
   Results results;
   Volumes volumes_mm3;
   std::optional<double> disagreement_mm3;
-  std::vector<Corners> widest;  ///< triangles for lines; empty if they still have to be found for each
-                                ///< surface
+  std::vector<Corners> widest;  ///< triangles of the operands through which lines are tested; empty: not
+                                ///< chosen yet
   std::array<std::size_t, 4> films{};
   std::size_t flat = 0;
   double shift_mm = 0.0;
@@ -378,7 +378,8 @@ void tell_coplanar(const Question& question, double moved_mm, Attempt& attempt) 
                              short_text(moved_mm * area_mm2) + " mm3");
 }
 
-/// The first answer without folds, or else the one with the fewest; and why the operands as given had none.
+/// The first answer without folds, or else the one with the fewest; and the reason if the operands as given
+/// had no answer.
 class Best {
  public:
   bool is_found() const { return best_ && best_->unfit == 0; }

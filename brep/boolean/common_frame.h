@@ -24,7 +24,8 @@ struct CommonFrame {
   using PointKey = std::array<double, 3>;
   glm::dmat3 lps_from_frame{1.0};
   glm::dvec3 origin_mm{0.0};
-  double kept_mm = 0.0;  ///< what the last places of turned points leave open
+  double kept_mm = 0.0;  ///< points that come back this near to a given point are that point: rounding moved
+                         ///< them
   std::map<PointKey, glm::dvec3> given_mm;
 };
 

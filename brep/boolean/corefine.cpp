@@ -141,7 +141,7 @@ double film_thickness(const Mesh& a, const Mesh& b) {
 
 struct Films {
   std::size_t dropped = 0;
-  bool has_open = false;  ///< some part with a border is as thin
+  bool has_open = false;  ///< there are also films with a border, which are not deleted
 };
 
 /// Deletes closed shells that are films: their volume is at most the thickness times their area.

@@ -299,7 +299,8 @@ class Imprint {
   }
 
   double tolerance_mm_ = 0.0, moved_mm_ = 0.0;
-  std::vector<glm::dvec3> points_mm_;  ///< of both solids, each place once, and where sides cross
+  std::vector<glm::dvec3> points_mm_;  ///< points of both solids, equal ones once, then the points where
+                                       ///< sides cross
   std::array<std::vector<FacePoints>, 2> faces_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;
   std::array<std::vector<std::vector<std::uint32_t>>, 2> partners_;

@@ -82,8 +82,8 @@ ChainCode chain_code(const Contour& contour, const glm::dvec2& spacing_mm) {
     last = p;
     if (!(std::max(std::abs(p.x), std::abs(p.y)) <= furthest && steps <= most_steps))
       throw Error(ErrorCode::Resource,
-                  "chain_code: the contour goes more than 2^24 steps, or lies more than 2^30 "
-                  "away; take larger steps");
+                  "chain_code: the contour takes more than 2^24 steps, or lies more than 2^30 "
+                  "steps away: choose larger steps");
   }
   const auto sample = [&](const glm::dvec2& p) { return glm::ivec2(glm::round(p / spacing_mm)); };
   ChainCode code{sample(contour.points_mm.front()), {}, contour.closed};

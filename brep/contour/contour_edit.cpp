@@ -31,8 +31,8 @@ void need_finite(const glm::dvec2& p) {
 Contour whole(Contour contour) {
   const std::size_t least = contour.closed ? 3 : 2;
   if (contour.points_mm.size() < least)
-    throw InvalidInput("contour: " + std::to_string(contour.points_mm.size()) + " points would be left, " +
-                       std::to_string(least) + " are the fewest");
+    throw InvalidInput("contour: " + std::to_string(contour.points_mm.size()) +
+                       " points would be left, at least " + std::to_string(least) + " are needed");
   return contour;
 }
 

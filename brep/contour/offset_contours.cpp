@@ -57,7 +57,7 @@ const std::size_t chords = static_cast<std::size_t>(std::ceil(std::numbers::pi /
 }  // namespace
 
 std::vector<Contour> offset(const std::vector<Contour>& contours, double by_mm) {
-  if (!std::isfinite(by_mm)) throw InvalidInput("an offset is by a finite length");
+  if (!std::isfinite(by_mm)) throw InvalidInput("an offset's length must be finite");
   const Polygons polygons = polygons_of(contours);
   Polygons grown;
   if (by_mm == 0.0)

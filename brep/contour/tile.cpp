@@ -109,8 +109,8 @@ class Blame {
  private:
   static constexpr std::uint8_t unknown = 255;
 
-  /// The lowest score at each point of one ring, sought up to the first 0 from the point of the other ring that
-  /// the point before it had found.
+  /// The lowest score at each point of one ring, over the points of the other ring. Each search begins at the
+  /// point at which the one before it ended, and ends at the first score of 0.
   template <typename Score>
   static std::vector<int> least_of(std::size_t count, std::size_t others, const Score& score) {
     std::vector<int> least(count, unknown);
@@ -422,7 +422,7 @@ class LeastPath {
     }
   };
 
-  /// The last step that wins where sums are equal.
+  /// Of two paths with equal sums, the one whose last step is this wins.
   Step preferred() const { return cost_ == TileCost::least_angle ? along_lower : along_upper; }
 
   /// A limit for sums at nodes of paths that end with at most this sum.

@@ -316,7 +316,7 @@ class Strips {
   SlabSurface& surface_;
   TileCost cost_;
   std::optional<double> most_span_mm_;
-  std::vector<FaceList> strips_;  ///< of each group; empty where overlay()'s stands
+  std::vector<FaceList> strips_;  ///< of each group; empty where the surface is overlay()'s
   SpanClearance sides_;
   std::vector<int> attempts_;                      ///< of each group, after the first
   std::vector<FaceList> avoided_;                  ///< of each group, in the numbers of its rings

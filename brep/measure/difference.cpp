@@ -42,10 +42,10 @@ void check(const DifferenceOptions& options, double area_a_mm2, double area_b_mm
   if (!(area_a_mm2 > 0.0)) refuse("the first surface has no area");
   if (!(area_b_mm2 > 0.0)) refuse("the second surface has no area");
   if (options.spacing_mm && !(*options.spacing_mm > 0.0)) refuse("the spacing must be positive");
-  if (options.bins < 1) refuse("a histogram has at least one bin");
+  if (options.bins < 1) refuse("a histogram needs at least one bin");
   double last = 0.0;
   for (const double tolerance : options.tolerances_mm) {
-    if (!(tolerance > last)) refuse("tolerances must be positive and rise");
+    if (!(tolerance > last)) refuse("tolerances must be positive and ascending");
     last = tolerance;
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A ball that touches a plane at one point lies within every larger one that touches there. So one walk
-// through the tree does: the ball shrinks at each triangle that it holds a point of, and a node that it does
-// not reach stays out of reach of the smaller ones.
+// A ball that touches a plane at one point lies within every larger one that touches there. So one pass
+// through the tree suffices: the ball shrinks at each triangle of which it contains a point, and a node that
+// the ball does not reach is out of reach of the smaller balls too.
 #include "brep/measure/inscribed_balls.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 constexpr std::uint32_t leaf_size = 4;
 /// Both relative to a radius: the rounding of distances, with three decimals to spare, and the largest
 /// excess of a radius after `exact_nodes`. All triangles of a sphere touch its largest ball, so excluding
-/// each exactly would cost n a ball.
+/// each exactly would cost n for each ball.
 constexpr double rounding = 1e-12, coarse = 5e-3;
 constexpr int exact_nodes = 128;
 constexpr double touching_share = 0.025;
@@ -78,7 +78,7 @@ void InscribedBalls::add_slab(Node& node) const {
   for (std::uint32_t i = node.begin; i < node.end; ++i)
     sum += glm::cross(triangles_[i].b_mm - triangles_[i].a_mm, triangles_[i].c_mm - triangles_[i].a_mm);
   const double length = glm::length(sum);
-  if (!(length > 0.0)) return;  // a slab through the origin, which `across` of 0 makes 0 thick and 0 away
+  if (!(length > 0.0)) return;  // with `across` of 0 the slab has no thickness and no distance from any point
   node.across = sum / length;
   node.slab_low_mm = std::numeric_limits<double>::infinity();
   node.slab_high_mm = -node.slab_low_mm;
@@ -221,8 +221,8 @@ Ball InscribedBalls::touching(const glm::dvec3& p_mm, const glm::dvec3& normal, 
 bool InscribedBalls::touches_opposite(const Ball& ball, const glm::dvec3& p_mm, double least_rad) const {
   const glm::dvec3 to_point = p_mm - ball.centre_mm, opposite = ball.centre_mm - to_point;
   const double reach = (1.0 + touching_share) * ball.radius_mm;
-  // Points as near to the centre, in directions that enclose so much, are as near as this to the opposite
-  // one.
+  // A point of the touched surface is within `reach` of the centre. If its direction is at least `least_rad`
+  // from that of `p_mm`, it lies within this distance of the point opposite to `p_mm`.
   const double from_opposite = (2.0 * std::sin(0.5 * (std::acos(-1.0) - least_rad)) + touching_share) * reach;
   const double most_cosine = std::cos(least_rad);
   Pending pending(0);

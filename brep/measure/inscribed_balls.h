@@ -56,7 +56,7 @@ class InscribedBalls {
     glm::dvec3 a_mm, b_mm, c_mm;
   };
 
-  double step_mm_ = 0.0;            ///< within which places are one
+  double step_mm_ = 0.0;            ///< places nearer to each other count as one
   std::vector<Corners> triangles_;  ///< in the leaves' order
   std::vector<Node> nodes_;         ///< a parent before its children
 };

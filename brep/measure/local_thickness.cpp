@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 spread points over the surface and over the volume, these along lines; 2 find the largest ball that
 // touches the surface inside at each point of the surface, and at the foot of each point of the volume, whose
-// ball holds that point; 3 find the largest of all these balls that holds each point; 4 again with every
-// fourth ball, to learn how much the mean rises with more of them.
+// ball holds that point; 3 find the largest of all these balls that holds each point; 4 repeat step 3 with
+// every fourth ball, to estimate how much the mean rises with more balls.
 #include "brep/measure/local_thickness.h"
 
 #include <algorithm>
@@ -286,11 +286,11 @@ void check(const Solid& solid, const LocalThicknessOptions& options) {
   if (solid.empty()) throw InvalidInput("local thickness: a surface without triangles has no inside");
   if (!(solid.size().volume_mm3 > 0.0))
     throw InvalidInput("local thickness: the surface faces inward, so that it has no inside");
-  if (options.samples < 64) throw InvalidInput("local thickness: takes at least 64 samples");
+  if (options.samples < 64) throw InvalidInput("local thickness: needs at least 64 samples");
   if (!(options.least_angle_deg >= 1.0 && options.least_angle_deg <= 120.0))
-    throw InvalidInput("local thickness: the least angle of two sheets is from 1 to 120 degrees");
+    throw InvalidInput("local thickness: the least angle of two sheets must be from 1 to 120 degrees");
   if (!(options.wall_angle_deg >= 91.0 && options.wall_angle_deg <= 179.0))
-    throw InvalidInput("local thickness: a wall's angle is from 91 to 179 degrees");
+    throw InvalidInput("local thickness: a wall's angle must be from 91 to 179 degrees");
 }
 
 }  // namespace

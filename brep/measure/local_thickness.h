@@ -31,7 +31,8 @@ struct LocalThicknessOptions {
 struct LocalThicknessAt {
   SurfacePoint point;
   double area_mm2 = 0.0;
-  double ray_mm = 0.0;  ///< straight inward to where the surface is met again; infinity where it is not
+  double ray_mm = 0.0;  ///< distance straight inward to the next point of the surface; infinity if there is
+                        ///< none
   double thickness_mm = 0.0;
   bool is_wall = false;  ///< by the rule of LocalThicknessOptions::wall_angle_deg
 };
@@ -47,7 +48,8 @@ struct LocalThickness {
   /// points, estimated from sums over every second one, and 0.5 % for the searches.
   double mean_half_width_mm = 0.0;
   std::vector<LocalThicknessAt> surface;
-  double reach_mm = 0.0;  ///< no point of the surface lies further than this from one of `surface`
+  double reach_mm = 0.0;  ///< largest distance of any point of the surface from the nearest point in the list
+                          ///< `surface`
   /// The thinnest point of a wall, as an index into `surface`; none if no point belongs to a wall.
   std::optional<std::size_t> thinnest_wall;
 };

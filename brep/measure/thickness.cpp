@@ -21,7 +21,7 @@ std::vector<Thickness> thickness(const Solid& solid, const std::vector<SurfacePo
                                  const ThicknessOptions& options) {
   if (solid.empty()) throw InvalidInput("thickness: the solid has no triangles");
   if (!(options.least_angle_deg >= 1.0 && options.least_angle_deg <= 120.0))
-    throw InvalidInput("thickness: the least angle is from 1 to 120 degrees");
+    throw InvalidInput("thickness: the least angle must be from 1 to 120 degrees");
   const InscribedBalls inscribed(solid.triangles());
   const double least_cosine = std::cos(options.least_angle_deg * std::numbers::pi / 180.0);
   std::vector<Thickness> thickness(points.size());

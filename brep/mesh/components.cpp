@@ -179,9 +179,4 @@ Mesh part_of(const Mesh& mesh, const std::vector<std::uint32_t>& faces) {
   return mesh_of(part);
 }
 
-Mesh largest_component(const Mesh& mesh) {
-  const std::vector<Component> pieces = components(mesh);
-  return pieces.empty() ? Mesh() : part_of(mesh, pieces.front().faces);
-}
-
 }  // namespace octotomy::brep

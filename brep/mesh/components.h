@@ -32,7 +32,4 @@ std::vector<Component> components(const Linked& linked, const std::function<cons
 /// The mesh of some of a mesh's faces, in the order given, without other vertices.
 Mesh part_of(const Mesh& mesh, const std::vector<std::uint32_t>& faces);
 
-/// The component of largest volume with its cavities; empty if the mesh is empty.
-Mesh largest_component(const Mesh& mesh);
-
 }  // namespace octotomy::brep

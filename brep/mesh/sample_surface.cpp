@@ -190,7 +190,8 @@ double widened_spacing_mm(const Triangles& triangles, double spacing_mm, double 
     const double longest_mm = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
     if (longest_mm > spacing_mm) long_mm += longest_mm;
   }
-  // Wedges have two strips for each spacing of the two halves.
+  // A triangle as thin as a needle is divided into two wedges, in which each spacing along the longest side
+  // takes about two strips of cells.
   return std::max(spacing_mm, 4.0 * long_mm / most_samples);
 }
 

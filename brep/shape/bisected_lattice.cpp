@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 level by level, drop tetrahedra that lie farther from the surface than their corners from their middle, by the
-// distances at their corners where those prove it; keep those in which distances are linear, and bisect the
-// others; 2 bisect what is kept and has the middle
-// of an edge where a neighbour was bisected, until there is none. A tetrahedron that is dropped has no corner
-// on the other side, and no neighbour has one within its faces: it needs no bisection for the surface to
-// close.
+// 1 level by level, drop tetrahedra whose middle is farther from the surface than from their corners, where
+// possible by the distances at their corners alone; keep those in which distances are linear, and bisect the
+// others; 2 bisect kept tetrahedra that have on an edge the middle at which a neighbour was bisected, until
+// there is none. All corners of a dropped tetrahedron lie on one side of the surface, and so do the corners
+// that neighbours have within its faces. So the surface is closed although dropped tetrahedra are not
+// bisected.
 #include "brep/shape/bisected_lattice.h"
 
 #include <algorithm>

@@ -38,8 +38,8 @@ struct BisectionOptions {
   double narrowest_mm = 1.0;
 };
 
-/// Signed distances to a surface, negative inside, at places of the lattice: one for each key, and at points
-/// in steps of the lattice. May be called with many.
+/// Signed distances to a surface, negative inside, one for each of the given points, whose coordinates are in
+/// steps of the lattice. One call may pass many points.
 using DistancesAt = std::function<std::vector<double>(const std::vector<glm::dvec3>& places)>;
 
 /// The tetrahedra that the surface passes, and its distances at their corners.

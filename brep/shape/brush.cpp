@@ -93,7 +93,8 @@ std::vector<Plane> ball_planes(double radius_mm) {
     for (int turn = 0; turn < 3; ++turn)
       for (const glm::dvec3& direction : octant) {
         const bool is_diagonal = direction.x != 0.0;
-        // A diagonal stays where it is under a turn of the axes; a zero has no sign.
+        // Lists each direction once: exchanging the axes does not change a diagonal, and the sign of a
+        // component of 0 has no effect.
         if (is_diagonal ? turn > 0 : (signs & 1) != 0) continue;
         const glm::dvec3 signed_direction((signs & 1) != 0 ? -direction.x : direction.x,
                                           (signs & 2) != 0 ? -direction.y : direction.y,

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 see whether the solid is its convex hull; 2 cut a box about it with the plane of each side, moved inward:
-// a polygon for each face, whose cut points make the new one; 3 take the hull of the polygons' corners, which
-// is closed and convex by exact predicates, however corners are rounded.
+// 1 check whether the solid is its convex hull; 2 cut a box around it by the plane of each side, moved
+// inward: the box is a list of polygons, one for each face, and the points of a cut form a new polygon; 3
+// take the hull of the polygons' corners, which is closed and convex by exact predicates, however corners are
+// rounded.
 #include "brep/shape/convex_inset.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

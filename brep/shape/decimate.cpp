@@ -24,10 +24,10 @@
 namespace octotomy::brep {
 namespace {
 
-/// A mesh that edges of are collapsed. The library's own test allocates for each edge and is half of the
-/// time; this one gives the same answers where the vertex that goes is not on a border. The library looks at all edges
-/// from a vertex in turn and takes the collapse of the least error: one whose error is too large, or no less
-/// than that of one before it, is refused without a test.
+/// A mesh whose edges are collapsed. The library's own test allocates memory for each edge and takes half of
+/// the time; this test has the same results if the removed vertex is not on a border. The library looks at
+/// all edges from a vertex in turn and takes the collapse of the least error: one whose error is too large,
+/// or no less than that of one before it, is refused without a test.
 class CollapsedMesh : public Mesh {
  public:
   explicit CollapsedMesh(const Mesh& mesh) : Mesh(mesh) {}
@@ -272,7 +272,8 @@ std::size_t lock_about(const Mesh& coarse, int face, const Mesh& mesh, std::vect
   return count;
 }
 
-/// The given surface as every round is measured against it; not measured where any error is allowed.
+/// The given surface, prepared for measuring every round against it. Nothing is measured if any error is
+/// allowed.
 class Given {
  public:
   Given(const Mesh& mesh, double limit_mm) : limit_mm_(limit_mm) {
@@ -327,7 +328,7 @@ Mesh decimate(const Mesh& mesh, const DecimateOptions& options) {
     for (const auto& [a, b] : found.crossing)
       more += lock_about(coarse.mesh, a, mesh, locked) + lock_about(coarse.mesh, b, mesh, locked);
     if (intersections > 0 && more == 0) break;
-    // Made again, collapses end above a number of faces that was asked for.
+    // Repeated collapses would end above the requested number of faces.
     if (!options.faces) before = std::move(coarse.collapses);
   }
   if (intersections == 0) return mesh;

@@ -81,7 +81,7 @@ double mean_side_mm(const Triangles& surface) {
 
 Lattice lattice_about(const Triangles& surface, const EncloseOptions& options) {
   if (options.cell_mm && !(*options.cell_mm > 0.0 && std::isfinite(*options.cell_mm)))
-    throw InvalidInput("enclose: the cells have an edge above 0 mm");
+    throw InvalidInput("enclose: the cells' edge must be above 0 mm");
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
   for (const auto& face : surface.faces)
     for (const std::uint32_t v : face) {

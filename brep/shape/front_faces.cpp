@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Which triangles are hidden. Divide the view into cells. In one cell, join triangles across the edges that
-// they share. A sheet made so has no border within the cell, unless an edge of it lies there beyond which the
-// surface turns away: then it covers the cell wholly or not at all, and it covers the cell if it covers the
-// cell's middle. Parts deeper than all corners of such a sheet's triangles are hidden in that cell.
+// How hidden triangles are found. Divide the view into cells. In each cell, join triangles across the edges
+// that they share to sheets. A sheet has a border within the cell only if the surface turns away at one of
+// the sheet's edges there. A sheet without a border in the cell covers the whole cell or nothing of it: all
+// if it covers the cell's middle. Parts deeper than all corners of such a covering sheet's triangles are
+// hidden in that cell.
 #include "brep/shape/front_faces.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

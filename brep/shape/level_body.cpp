@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The depth of a point within an intersection is the least of its depths within the operands, and that is exact.
-// The largest depth within the parts of a union is at most the depth within the union, so that balls count that fit
-// into one part. Both change no faster than places do.
-//
-// Distances are computed where they count: a level whose box is far, or that cannot be the least or largest
-// any more, is passed over. Where points are dense, distances at the middles of coarse cells bound theirs, and
-// most levels are passed over: values are the same. Values of points that lie farther than `far_mm` outside are
-// left too small: no surface is near them.
+// The largest depth within the parts of a union is at most the depth within the union, so only balls that fit
+// into one part count. Both depths change by at most the distance between points. Distances are computed only
+// where they decide: a level is skipped if its box is far, or if its depth can no longer be the least or the
+// largest. Where points are dense, distances at the middles of coarse cells bound those at the points, so
+// that most levels are skipped without changing a value. Values of points that lie farther than `far_mm`
+// outside may be too small, because no surface is near them.
 #include "brep/shape/level_body.h"
 
 #include <algorithm>
@@ -33,7 +32,7 @@ double to_box_mm(const Size& box, const glm::dvec3& p_mm) {
   return glm::length(glm::max(glm::max(box.low_mm - p_mm, p_mm - box.high_mm), 0.0));
 }
 
-/// The levels of a body in a row: those that are taken away, then those of each part.
+/// The levels of a body: the subtracted ones, then those of each part.
 std::vector<const Level*> levels_of(const LevelBody& body) {
   std::vector<const Level*> levels;
   for (const Level& level : body.without) levels.push_back(&level);
@@ -42,13 +41,14 @@ std::vector<const Level*> levels_of(const LevelBody& body) {
   return levels;
 }
 
-/// Between which values the distances of points to all levels lie, by level and point.
+/// Lower and upper bounds of the distances of points to all levels, by level and point.
 struct Bounds {
   std::vector<std::vector<double>> least_mm, most_mm;
 };
 
-/// Distances at the middles of cells. They bound those of all points in a cell, as distances change no faster
-/// than places do. A cell's are computed once `enough_points` points lay in it.
+/// Distances at the middles of cells. They bound the distances at all points in a cell, because distances
+/// change by at most the distance between points. They are computed for a cell once `enough_points` points
+/// lay in it.
 class CoarseDistances {
  public:
   CoarseDistances(const LevelBody& body, double edge_mm)
@@ -140,12 +140,12 @@ void for_distances(const Level& level, const std::vector<glm::dvec3>& points_mm,
   for (std::size_t k = 0; k < asked.size(); ++k) take(asked[k], found_mm[k] - level.by_mm);
 }
 
-/// Signed distances to the body, negative inside: exact where it counts, see above.
+/// Signed distances to the body, negative inside: exact near the surface, see above.
 std::vector<double> values_of(const LevelBody& body, CoarseDistances& coarse,
                               const std::vector<glm::dvec3>& points_mm, double far_mm) {
   const std::size_t count = points_mm.size();
   const Bounds bounds = coarse.bounds(points_mm);
-  // What the value of a point is at least and at most, of what is taken away and of the parts.
+  // Bounds of a point's value, by the subtracted levels and by the parts.
   std::vector<double> least_without(count, -infinite), least_united(count, infinite),
       most_united(count, infinite), part(count), most(count);
   for (std::size_t n = 0; n < body.without.size(); ++n)
@@ -186,8 +186,8 @@ std::vector<double> values_of(const LevelBody& body, CoarseDistances& coarse,
       for (std::size_t n = first; n < first + levels.size(); ++n)
         part[i] = std::max(part[i], bounds.least_mm[n][i]);
     }
-    // A part that lies further off than another one does not count, nor does one in which a point lies
-    // deeper than it lies outside what is taken away.
+    // A part's distance is not needed if another part is nearer, or if the subtracted levels already decide
+    // the point's value.
     for (std::size_t k = 0; k < levels.size(); ++k)
       for_distances(
           levels[k], points_mm,
@@ -222,13 +222,13 @@ Size size_of(const LevelBody& body) {
 }
 
 void check(const LevelBody& body) {
-  if (body.parts.empty()) throw InvalidInput("a body of levels has at least one part");
+  if (body.parts.empty()) throw InvalidInput("a body of levels needs at least one part");
   const auto check_level = [](const Level& level) {
-    if (level.solid.empty()) throw InvalidInput("a level is that of a solid that is not empty");
-    if (!std::isfinite(level.by_mm)) throw InvalidInput("a level is moved by a finite length");
+    if (level.solid.empty()) throw InvalidInput("a level needs a solid that is not empty");
+    if (!std::isfinite(level.by_mm)) throw InvalidInput("a level must be moved by a finite length");
   };
   for (const std::vector<Level>& levels : body.parts) {
-    if (levels.empty()) throw InvalidInput("a part of a body of levels has at least one level");
+    if (levels.empty()) throw InvalidInput("a part of a body of levels needs at least one level");
     std::for_each(levels.begin(), levels.end(), check_level);
   }
   std::for_each(body.without.begin(), body.without.end(), check_level);
@@ -239,9 +239,9 @@ void check(const LevelBody& body) {
 Solid core_of(const LevelBody& body, const OffsetOptions& options) {
   check(body);
   if (!std::isfinite(options.by_mm) || options.by_mm > 0.0)
-    throw InvalidInput("the core of a body of levels lies at a depth of 0 mm or more");
+    throw InvalidInput("the depth of a core must be 0 mm or more");
   if (!std::isfinite(options.cell_mm) || options.cell_mm <= 0.0)
-    throw InvalidInput("an offset's cells have an edge above 0 mm");
+    throw InvalidInput("the edge of an offset's cells must be above 0 mm");
   const Size size = size_of(body);
   if (!glm::all(glm::lessThan(size.low_mm, size.high_mm))) return Solid();
   const double far_mm = 4.0 * options.cell_mm;

@@ -29,9 +29,9 @@ LevelField field_of(const SurfaceTree& tree, bool has_inside, double by_mm) {
 
 void check(const Triangles& surface, const OffsetOptions& options) {
   if (surface.faces.empty()) throw InvalidInput("a surface without triangles has no offset");
-  if (!std::isfinite(options.by_mm)) throw InvalidInput("an offset is by a finite length");
+  if (!std::isfinite(options.by_mm)) throw InvalidInput("an offset's length must be finite");
   if (!std::isfinite(options.cell_mm) || options.cell_mm <= 0.0)
-    throw InvalidInput("an offset's cells have an edge above 0 mm");
+    throw InvalidInput("the edge of an offset's cells must be above 0 mm");
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ Solid offset(const Solid& solid, const OffsetOptions& options) {
 
 Solid thickened(const Triangles& surface, const OffsetOptions& options) {
   check(surface, options);
-  if (!(options.by_mm > 0.0)) throw InvalidInput("a wall is thicker than 0 mm");
+  if (!(options.by_mm > 0.0)) throw InvalidInput("the thickness of a wall must be above 0 mm");
   const SurfaceTree tree(surface);
   return level_surface(field_of(tree, false, options.by_mm), size_of(surface), options);
 }

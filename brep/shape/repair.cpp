@@ -28,7 +28,8 @@ void check(const Triangles& surface, const RepairOptions& options) {
     throw InvalidInput("repair: the distance to weld over must be 0 mm or more");
   if (options.longest_hole_mm && !(*options.longest_hole_mm > 0.0))
     throw InvalidInput("repair: the longest border of a hole must be above 0 mm");
-  if (options.wall_mm && !(*options.wall_mm > 0.0)) throw InvalidInput("repair: a wall is thicker than 0 mm");
+  if (options.wall_mm && !(*options.wall_mm > 0.0))
+    throw InvalidInput("repair: a wall must be thicker than 0 mm");
   if (!(options.max_volume_share > 0.0))
     throw InvalidInput("repair: the largest share of the volume must be above 0");
   for (std::size_t f = 0; f < surface.faces.size(); ++f)
@@ -68,7 +69,7 @@ void check_volume(double before_mm3, const Triangles& now, const RepairOptions& 
                       short_text(1.01 * std::abs(now_mm3 - before_mm3) / before_mm3));
 }
 
-/// An answer that was tried, if it has one.
+/// The volume of the region that a surface encloses; none if it encloses nothing.
 std::optional<double> enclosed_mm3(const Triangles& surface, double cell_mm, bool hull,
                                    const Progress& progress) {
   try {
@@ -79,12 +80,13 @@ std::optional<double> enclosed_mm3(const Triangles& surface, double cell_mm, boo
   }
 }
 
-/// Cells of a wall: half of it, so that none of it is missed.
+/// The edge of a lattice's cells for a wall: at most half its thickness, so that no part of the wall is
+/// missed.
 double wall_cell_mm(double wall_mm, const RepairOptions& options) {
   return std::min(options.cell_mm.value_or(0.5 * wall_mm), 0.5 * wall_mm);
 }
 
-/// The surface as given made a wall, without triangles that have no place or repeat a point.
+/// A wall around the given surface, without triangles that have a point that is not finite or repeat a point.
 Solid wall_of(const Triangles& given, double wall_mm, const RepairOptions& options) {
   Mender finite(given);
   finite.remove_not_finite();
@@ -93,7 +95,7 @@ Solid wall_of(const Triangles& given, double wall_mm, const RepairOptions& optio
   return thickened(finite.surface(), {0.5 * wall_mm, wall_cell_mm(wall_mm, options), options.progress});
 }
 
-/// The wall that a sheet could be given: a 50th of its extent. Empty if that fails.
+/// Advice to make a sheet a wall, a 50th of its extent thick, with the resulting volume. Empty if that fails.
 std::string wall_way(const Triangles& given, double extent_mm, const RepairOptions& options) {
   const std::string wall = short_text(0.02 * extent_mm);
   try {
@@ -106,8 +108,8 @@ std::string wall_way(const Triangles& given, double extent_mm, const RepairOptio
   }
 }
 
-/// What would be accepted in place of an enclosing that changed the volume by too much: smaller cells and the
-/// hull are tried.
+/// Advice for an enclosing that changed the volume by too much: the options that were tried and would be
+/// accepted, such as smaller cells or the hull.
 std::string ways_that_work(const Triangles& surface, const Triangles& given, double before_mm3,
                            double now_mm3, double cell_mm, const RepairOptions& options) {
   std::string ways;

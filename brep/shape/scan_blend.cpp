@@ -382,7 +382,7 @@ void check(const Solid& solid, const ScanBlendOptions& options) {
   for (const double mm :
        {options.depth_mm, options.blend_mm, options.reach_mm, options.radius_mm, options.cell_mm})
     if (!(mm > 0.0) || !std::isfinite(mm))
-      throw InvalidInput("depth, border, reach, radius and cells of a scan's crowns are above 0 mm");
+      throw InvalidInput("depth, border, reach, radius and cells of a scan's crowns must be above 0 mm");
 }
 
 /// The largest slope of the mixed distances where the scan lies within half of the reach from the solid. Only streaks

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // 1 Sweep the part away from its place to before the object's near end.
-// 2 Depth changes no faster than places do: a triangle's depth is at most that of its middle and the distance
-//   from there to its farthest corner. It is also at most the distance to any one triangle of the space's
-//   surface, which over a triangle is largest at a corner: that bound is tight where both surfaces are flat.
-//   Level by level, keep the triangles that can still be deeper than the deepest place found, and cut each
-//   into four.
+// 2 Depth changes by at most the distance between points: a triangle's depth is at most that of its middle
+//   and the distance from there to its farthest corner. It is also at most the distance to any one triangle
+//   of the space's surface, which over a triangle is largest at a corner: that bound is tight where both
+//   surfaces are flat. Level by level, keep the triangles that can still be deeper than the deepest place
+//   found, and cut each into four.
 // 3 Follow the direction from the deepest place: where it passes through the part is when the part is there.
 #include "brep/shape/seating.h"
 
@@ -93,8 +93,8 @@ std::optional<Binding> deepest(const Solid& object, const Solid& space, const Se
   return found;
 }
 
-/// The distances before its place at which the part begins and ceases to hold a point: at the first and the
-/// last of its surfaces along the direction.
+/// The distances before its place at which the part begins and ceases to contain a point: at the first and
+/// the last of its surfaces along the direction.
 void find_times(const Solid& part, const glm::dvec3& direction, Binding& binding) {
   // Rays go towards +x.
   const glm::dvec3 beside = std::abs(direction.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
@@ -124,7 +124,7 @@ void find_times(const Solid& part, const glm::dvec3& direction, Binding& binding
 
 Seating seating(const Solid& part, const Solid& object, const SeatingOptions& options) {
   if (part.empty() || object.empty()) throw InvalidInput("seating needs a part and an object");
-  if (!(options.resolution_mm > 0.0)) throw InvalidInput("the resolution of depths is above 0 mm");
+  if (!(options.resolution_mm > 0.0)) throw InvalidInput("the resolution of depths must be above 0 mm");
   const glm::dvec3 away = -options.direction;
   // The path begins so far before the object that the part does not touch it there.
   const glm::dvec3 extent = part.size().high_mm - part.size().low_mm;

@@ -11,7 +11,8 @@ namespace octotomy::brep {
 
 struct SeatingOptions {
   glm::dvec3 direction{0.0, 1.0, 0.0};  ///< unit, LPS: in which the part moves to its place
-  double resolution_mm = 0.01;          ///< depths up to this are not looked for, and depths are good to it
+  double resolution_mm = 0.01;          ///< depths below this are not searched for; also the accuracy of
+                                        ///< depths
   Progress progress = {};
 };
 

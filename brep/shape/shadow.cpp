@@ -56,12 +56,12 @@ glm::dvec2 place_in_view(ViewVertex vertex) {
 }
 
 /// Places in the view are rounded to this share of the extent, far above the rounding of coordinates and far
-/// below what is made: what lies along the direction but for rounding then lies along it exactly, and is no
-/// sliver that faces it. Points that are seen keep their coordinates.
+/// below the size of any part. Triangles that would lie along the direction without rounding then do so
+/// exactly, instead of facing it as slivers. Visible points keep their coordinates.
 constexpr int place_bits = 36;
 
-/// Depths that differ by less are one: coordinates carry 1e-16 of the extent, and a plane 10^5 times as steep
-/// as wide multiplies that.
+/// Depths that differ by less count as equal: coordinates carry 1e-16 of the extent, and a plane 10^5 times
+/// as steep as wide multiplies that.
 constexpr double same_depth_share = 1e-11;
 
 /// The object's points by their places in the view.
@@ -329,8 +329,8 @@ double far_end_mm(const Solid& solid, const glm::dvec3& direction) {
 Shadow shadow(const Solid& solid, const ShadowOptions& options) {
   constexpr double unit_error = 1e-9;  // of a direction that was normalised or typed with ten figures
   if (!(std::abs(glm::length(options.direction) - 1.0) < unit_error))
-    throw std::invalid_argument("the direction of a shadow is a unit vector");
-  if (!std::isfinite(options.end_mm)) throw std::invalid_argument("the end of a shadow is finite");
+    throw std::invalid_argument("the direction of a shadow must be a unit vector");
+  if (!std::isfinite(options.end_mm)) throw std::invalid_argument("the end of a shadow must be finite");
   if (solid.empty()) return {};
   return ShadowSurface(solid, options).made();
 }

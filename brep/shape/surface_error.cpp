@@ -122,6 +122,28 @@ double mean_side_mm(const Triangles& surface, const std::vector<std::array<std::
   return sum_mm / static_cast<double>(sides.size());
 }
 
+/// Where a surface is measured: at its corners, then at the middles of its sides.
+struct Samples {
+  const std::vector<std::uint32_t>& corners;
+  const std::vector<std::array<std::uint32_t, 2>>& sides;
+
+  std::size_t size() const { return corners.size() + sides.size(); }
+
+  glm::dvec3 at_mm(const Triangles& surface, std::size_t i) const {
+    if (i < corners.size()) return surface.points_mm[corners[i]];
+    const auto& [a, b] = sides[i - corners.size()];
+    return 0.5 * (surface.points_mm[a] + surface.points_mm[b]);
+  }
+
+  /// Appends the corner, or both ends of the side.
+  void add_points_of(std::size_t i, std::vector<std::uint32_t>& points) const {
+    if (i < corners.size())
+      points.push_back(corners[i]);
+    else
+      points.insert(points.end(), sides[i - corners.size()].begin(), sides[i - corners.size()].end());
+  }
+};
+
 }  // namespace
 
 FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Triangles& coarse,
@@ -137,6 +159,7 @@ FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Tria
   }
   const std::vector<std::uint32_t>& used = near.given_corners;
   const std::vector<std::array<std::uint32_t, 2>>& sides = near.given_sides;
+  const Samples of_given{used, sides};
 
   // Measures from the given surface to the coarse one, except points and sides that the coarse one still
   // has.
@@ -145,7 +168,7 @@ FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Tria
     for (const std::uint32_t v : triple) is_point_of_coarse[v] = 1;
   const std::vector<std::array<std::uint32_t, 2>> coarse_sides =
       sides_of({.points_mm = given.points_mm, .faces = now.of_face});
-  near.of_sample.resize(used.size() + sides.size(), no_triple);
+  near.of_sample.resize(of_given.size(), no_triple);
   std::vector<glm::dvec3> points;
   std::vector<std::size_t> samples;
   for (std::size_t i = 0; i < near.of_sample.size(); ++i) {
@@ -154,9 +177,7 @@ FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Tria
                                                                sides[i - used.size()]);
     if (is_there || has(now.sorted, near.of_sample[i])) continue;
     samples.push_back(i);
-    points.push_back(i < used.size() ? given.points_mm[used[i]]
-                                     : 0.5 * (given.points_mm[sides[i - used.size()][0]] +
-                                              given.points_mm[sides[i - used.size()][1]]));
+    points.push_back(of_given.at_mm(given, i));
   }
   const std::vector<Nearest> to_coarse = nearest_of(SurfaceTree(coarse), points, limit_mm);
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -166,11 +187,7 @@ FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Tria
     if (to_coarse[k].distance_mm <= limit_mm) continue;
     near.of_sample[i] = no_triple;
     far.coarse_faces.push_back(to_coarse[k].face);
-    if (i < used.size())
-      far.given_points.push_back(used[i]);
-    else
-      far.given_points.insert(far.given_points.end(), sides[i - used.size()].begin(),
-                              sides[i - used.size()].end());
+    of_given.add_points_of(i, far.given_points);
   }
 
   // Measures from the coarse surface to the given one, except triangles of the given one and those measured
@@ -209,20 +226,16 @@ FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Tria
 
   // Measures from the given surface to the coarse one.
   const std::vector<std::uint32_t> used = corners_of(given);
+  const Samples of_given{used, sides};
   std::vector<glm::dvec3> points;
-  points.reserve(used.size() + sides.size());
-  for (const std::uint32_t v : used) points.push_back(given.points_mm[v]);
-  for (const auto& [a, b] : sides) points.push_back(0.5 * (given.points_mm[a] + given.points_mm[b]));
+  points.reserve(of_given.size());
+  for (std::size_t i = 0; i < of_given.size(); ++i) points.push_back(of_given.at_mm(given, i));
   const std::vector<Nearest> to_coarse = nearest_of(SurfaceTree(coarse), points, enough_mm);
   for (std::size_t i = 0; i < to_coarse.size(); ++i) {
     far.largest_mm = std::max(far.largest_mm, to_coarse[i].distance_mm);
     if (to_coarse[i].distance_mm <= limit_mm) continue;
     far.coarse_faces.push_back(to_coarse[i].face);
-    if (i < used.size())
-      far.given_points.push_back(used[i]);
-    else
-      far.given_points.insert(far.given_points.end(), sides[i - used.size()].begin(),
-                              sides[i - used.size()].end());
+    of_given.add_points_of(i, far.given_points);
   }
 
   // Measures from the coarse surface to the given one.

@@ -47,8 +47,6 @@ struct DrawnScene {
   std::vector<DrawnSurface> surfaces;
   std::vector<DrawnLines> lines;
   std::vector<DrawnSheet> sheets;
-
-  std::size_t item_count() const { return surfaces.size() + lines.size() + sheets.size(); }
 };
 
 struct DrawOptions {

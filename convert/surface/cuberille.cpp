@@ -34,7 +34,8 @@ struct Sheets {
 std::array<Sheets, 256> sheets_of(Touching touching) {
   std::array<Sheets, 256> sheets;
   for (int inside = 0; inside < 256; ++inside) {
-    // A case keeps its inside corners apart. The case of the complement keeps the outside corners apart.
+    // A case of marching cubes has a loop for each part of its inside corners, which are joined by edges of
+    // the cube only. Taking the case of the outside corners instead joins the inside corners.
     const MarchingCubesCase& mc = marching_cubes_case(touching == Touching::Apart ? inside : 255 - inside);
     Sheets& target = sheets[static_cast<std::size_t>(inside)];
     for (const std::vector<int>& loop : mc.loops) {

@@ -39,8 +39,8 @@ double crossing(double first, double second, bool first_inside, double low, doub
   return std::clamp(t, closest_to_sample(), 1.0 - closest_to_sample());
 }
 
-/// As crossing(), on an edge from below the lower of two bounds, or from within them, to above the upper one.
-/// An edge from below to above crosses both; there the crossings keep the same distance from each other.
+/// The crossing of the lower bound or, if `is_upper`, of the upper one. On an edge that crosses both bounds,
+/// the two crossings are at least closest_to_sample() apart. On other edges as crossing().
 double crossing_of_two(double first, double second, bool first_inside, double low, double high,
                        bool is_upper) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -159,7 +159,8 @@ class GreySamples {
     return inside(-infinity, infinity);
   }
 
-  /// After the first call whose window contains the background, samples beyond the scan are not measured.
+  /// Once a window contained the background, samples beyond the scan count as not measured, also in later
+  /// calls.
   InsideBits inside(double low, double high) {
     InsideBits bits(lattice_.dims, 16);
     const std::optional<voxel::Window16> window = voxel::window16(low, high);

@@ -29,8 +29,8 @@ struct LabelSurfaceOptions {
 /// its outermost samples.
 ///
 /// Throws std::invalid_argument if the scene fails check(), a sample is no label, or an option is out of
-/// range; std::length_error as voxel::label_layers(); voxel::Error (Input) if a label that was asked for has
-/// no sample, (Resource) if 32 bits do not number the triangles; voxel::Stopped. Parallel; same bits on any
+/// range; std::length_error as voxel::label_layers(); voxel::Error (Input) if a requested label has no
+/// sample, (Resource) if 32 bits do not number the triangles; voxel::Stopped. Parallel; same bits on any
 /// thread count. Memory: two bytes a sample, four where labels are no int16 or overlap, and 80 a triangle.
 /// Cost: linear in samples, and in triangles but for their numbering, n log n.
 brep::PartedSurface label_surfaces(const voxel::Scene& scene, const LabelSurfaceOptions& options = {});

@@ -136,7 +136,9 @@ void move_outward(const voxel::PartialOctree& partial, brep::Triangles& surface,
   const double most_mm = largest_move_voxels() * std::min({spacing.x, spacing.y, spacing.z});
   for (std::size_t v = 0; v < surface.points_mm.size(); ++v) {
     const double length = glm::length(normal_mm2[v]);
-    if (length == 0.0) continue;  // all its triangles are flat, or cancel: there is no outward
+    if (length == 0.0)
+      continue;  // all its triangles are flat, or their normals cancel: no direction is
+                 // outward
     const glm::ivec3 voxel = voxel_of(surface.points_mm[v]);
     const double move_mm = std::clamp(lacks_mm3.about(voxel) / areas_mm2.about(voxel), -most_mm, most_mm);
     surface.points_mm[v] += move_mm / length * normal_mm2[v];

@@ -24,7 +24,8 @@
 // 3 A running sum over the rows gives every row its first vertex and every plane its first triangle, so the
 //   numbers do not depend on who computes what.
 // 4 Every plane writes its vertices, then its triangles. A cell's vertices are numbered by running numbers of
-//   the eight rows of edges about its row, which its case says how to step: no table of vertices is kept.
+//   the eight rows of edges about its row, which advance as the cell's case states: no table of vertices is
+//   kept.
 //
 // Memory beside the surface: one bit a sample, 24 bytes a row of samples and a byte a cell of the surface.
 

@@ -432,7 +432,7 @@ class WindowSurface {
   brep::Triangles low_, high_;    ///< of A and B, in coordinates of samples
   std::uint32_t behind_low_ = 0;  ///< the number of the first point of B
   std::vector<SharedCell> cells_;
-  std::unordered_set<std::uint64_t> plain_;  ///< measured cells that step 5 made plain
+  std::unordered_set<std::uint64_t> plain_;  ///< cells with all samples measured that became plain in step 5
 };
 
 }  // namespace

@@ -142,7 +142,7 @@ void flatten_interfaces(Tetrahedra& made, const FlatInterfaceOptions& options) {
     const std::vector<std::uint32_t> nodes = nodes_of(made, between);
     std::optional<InterfacePlane> plane;
     if (const LabelPlane* known = plane_of(options.planes, between))
-      plane = InterfacePlane{known->on_mm, known->normal};
+      plane = *known;
     else
       plane = plane_of_most(made, between, nodes, near_mm);
     if (!plane) continue;

@@ -12,12 +12,6 @@
 
 namespace octotomy::convert {
 
-/// A plane by a point and its unit normal.
-struct InterfacePlane {
-  glm::dvec3 on_mm{0.0}, normal{0.0};
-  double away_mm(const glm::dvec3& p_mm) const { return glm::dot(p_mm - on_mm, normal); }
-};
-
 /// The plane of least squares through the points within `near_mm` of it, found by iteration from a first
 /// plane.
 InterfacePlane fitted_plane(const std::vector<glm::dvec3>& points_mm, InterfacePlane plane, double near_mm);
@@ -37,15 +31,14 @@ struct FlatInterfaceOptions {
 /// decides by the middle of the element's circumscribed ball, which at a rim may lie beyond the plane.
 void divide_by_planes(Tetrahedra& made, const std::vector<LabelPlane>& planes);
 
-/// Puts the nodes of interfaces that are flat but for their rims on their planes, where that leaves the
-/// elements about them fit. Where no plane is known, an interface counts as flat if most of its nodes lie in one
-/// plane.
+/// Moves the nodes of flat interfaces onto their planes, except where elements around a node would not stay
+/// fit. If no plane is known, an interface counts as flat if most of its nodes lie in one plane.
 void flatten_interfaces(Tetrahedra& made, const FlatInterfaceOptions& options);
 
-/// Splits the sides that pass through a plane between two regions, in elements that touch both, with a node on
-/// the plane, where that leaves the parts fit. Then assigns each part to the region on its side. Elements and
-/// nodes keep their numbers; new ones come after them. Returns the number of new nodes. `boundary_nodes` are
-/// made anew.
+/// Splits elements that have nodes of both regions at the plane between these regions: sides that pass
+/// through the plane get a node on it. Leaves elements alone whose parts would not be fit. Then assigns each
+/// part to the region on its side. Elements and nodes keep their numbers; new ones come after them. Returns
+/// the number of new nodes. `boundary_nodes` are made anew.
 std::size_t split_at_planes(Tetrahedra& made, const FlatInterfaceOptions& options);
 
 /// The findings on nodes of a flat interface that stayed off its plane: surfaces in contact interlock there.

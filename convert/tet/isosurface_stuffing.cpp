@@ -380,8 +380,10 @@ class Stuffing {
     }
   }
 
-  /// The four tetrahedra about each long side that leaves a point: two of its middles' neighbours on a square
-  /// about the side. Each tetrahedron has two long sides, so the side of the corners of cubes counts.
+  /// Adds the four tetrahedra about each long side that leaves a cube's corner. Their other two corners are
+  /// neighbours on the square of cubes' middles about the side. Each tetrahedron has two long sides, one
+  /// between corners and one between middles of cubes, so visiting only the former adds each tetrahedron
+  /// once.
   void add_about(const LatticePoint& p) {
     if ((p.x & 1) != 0) return;
     for (int axis = 0; axis < 3; ++axis) {
@@ -424,7 +426,7 @@ double cell_of_elements_mm(double volume_mm3, double elements) {
 
 Tetrahedra stuff(const brep::Triangles& surface, const StuffingOptions& options) {
   if (!(options.cell_mm > 0.0) || !std::isfinite(options.cell_mm))
-    throw voxel::InvalidInput("isosurface stuffing: cells have an edge above 0 mm");
+    throw voxel::InvalidInput("isosurface stuffing: the cells' edge must be above 0 mm");
   if (surface.faces.empty()) throw voxel::InvalidInput("isosurface stuffing: the surface has no triangles");
   const Lattice lattice = lattice_about(surface, options.cell_mm);
   Tetrahedra made = Stuffing(surface, lattice, options.progress).result();

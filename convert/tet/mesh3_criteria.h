@@ -10,10 +10,10 @@
 namespace octotomy::convert {
 
 // Criteria of Mesh_3's elements, for the meshers' executables. On a surface that nearly touches itself, or
-// has edges sharper than the angles asked for, refinement never ends. So facets and cells whose sides are all
+// has edges sharper than the requested angles, refinement never ends. So facets and cells whose sides are all
 // shorter than a length count as good.
 
-/// Angle of a facet and radius-edge ratio of a cell that CGAL's manual calls safe to ask for.
+/// Angle of a facet and radius-edge ratio of a cell that are safe according to CGAL's manual.
 inline constexpr double safe_facet_angle_deg = 25.0;
 inline constexpr double safe_radius_edge = 2.5;
 

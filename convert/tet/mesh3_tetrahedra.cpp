@@ -11,7 +11,7 @@
 #include "convert/tet/sharp_edges.h"
 #include "voxel/space/rounded.h"
 
-// 1 Mesh_3 refines a Delaunay triangulation until facets and cells have the sizes asked for, and exudes
+// 1 Mesh_3 refines a Delaunay triangulation until facets and cells have the requested sizes, and exudes
 //   slivers. Nodes beside sharp edges of the given surface move onto these (sharp_edges.h).
 // 2 The nodes of its surface lie on the given one, so its facets are chords: they lose volume on a convex
 //   surface and gain some on a hollow one. Every node of the surface, except those of flat faces and sharp

@@ -184,11 +184,11 @@ Reason reason_of_status(int status, const MesherLimits& limits) {
     case mesher_exit_base + 2:
       return {"met an internal error"};
     case mesher_exit_base + 3:
-      return {"found the surface intersecting itself: look at its health, then smooth or remesh it", false};
+      return {"found the surface intersecting itself: look at its health, then repair or smooth it", false};
     case mesher_exit_base + 4:
-      return {"found features too small for its tolerance: remesh the surface"};
+      return {"found features too small for its tolerance: smooth or decimate the surface"};
     case mesher_exit_base + 5:
-      return {"found two triangles too close to each other: remesh the surface"};
+      return {"found two triangles too close to each other: smooth or decimate the surface"};
     case mesher_exit_base + 10:
       return {"refused the surface as malformed", false};
     default:

@@ -23,10 +23,11 @@ struct MesherRequest {
 
   std::uint64_t version = this_version;
   std::array<char, 64> switches{};
-  std::uint64_t points = 0;            ///< three doubles each; of labels, the planes
+  std::uint64_t points = 0;            ///< three doubles each; for an image of labels, the number of its
+                                       ///< planes
   std::uint64_t triangles = 0;         ///< three uint32 each
   std::uint64_t holes = 0;             ///< three doubles each
-  std::uint64_t sizes = 0;             ///< a double each; of labels, the shares
+  std::uint64_t sizes = 0;             ///< a double each; for an image of labels, the number of its shares
   std::uint64_t labels = 0;            ///< a byte each, x fastest
   std::array<std::int32_t, 3> dims{};  ///< of the labels
   std::array<double, 3> spacing_mm{};
@@ -94,12 +95,15 @@ MesherOutcome run_tetgen(const MesherInput& input, const std::string& switches, 
 /// to start from, on each of its parts. Throws as run_tetgen().
 MesherOutcome run_mesh3(const MesherInput& input, const Mesh3Sizes& sizes, const MesherLimits& limits);
 
-/// A plane in which two labels of an image meet; the normal points from the lower label to the higher.
-struct LabelPlane {
+/// A plane by a point and its unit normal.
+struct InterfacePlane {
   glm::dvec3 on_mm{0.0}, normal{0.0};
-  std::uint64_t low = 0, high = 0;  ///< labels
 
   double away_mm(const glm::dvec3& p_mm) const { return glm::dot(p_mm - on_mm, normal); }
+};
+/// A plane in which two labels of an image meet; the normal points from the lower label to the higher.
+struct LabelPlane : InterfacePlane {
+  std::uint64_t low = 0, high = 0;  ///< labels
 };
 
 /// An image of labels, a byte a voxel, x fastest. Label 0 is outside; the border is 0. The centre of voxel

@@ -13,7 +13,8 @@ glm::ivec3 octant_place(int number) {
   return voxel::child_place(voxel::octant_child(number));
 }
 
-/// The places of a word that touch the word beside it, at -1, 0 or 1 along each axis.
+/// The voxels of a word that touch a neighbouring word. `beside` is the neighbour's direction: -1, 0 or 1
+/// along each axis.
 std::uint64_t touching(const glm::ivec3& beside) {
   std::uint64_t mask = 0;
   for (int child = 0; child < 64; ++child) {

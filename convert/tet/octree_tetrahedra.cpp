@@ -23,8 +23,8 @@
 //   middle with their corners on the edges; else two, along the diagonal that ends in the middle of the face
 //   of twice the side. So both sides of a face see the same triangles: two of the fan's are those of a
 //   smaller cell's face. Each triangle and the cell's middle form an element.
-// 4 All cells are cut twice: to mark the lattice's corners that are nodes and to count elements; then, as the
-//   memory is known and there, to number nodes in the order of their first mention.
+// 4 All cells are cut twice: first to mark the lattice's corners that are nodes and to count elements; then,
+//   once there is memory for them, to number nodes in the order of their first mention.
 //
 // A cell's nodes are named by their places in it: 0, 1 or 2 along each axis, in half sides, x + 3y + 9z.
 

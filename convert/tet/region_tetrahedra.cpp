@@ -174,7 +174,7 @@ std::vector<LabelPlane> planes_between(const Labelled& labelled) {
       return std::abs(plane.away_mm(p_mm)) <= near_mm;
     });
     if (static_cast<double>(near) >= near_share * static_cast<double>(points_mm.size()))
-      planes.push_back({plane.on_mm, plane.normal, pair.first, pair.second});
+      planes.push_back({plane, pair.first, pair.second});
   }
   return planes;
 }

@@ -26,11 +26,9 @@
 // 2 A cavity is a connected part of the surface that is inside out. Half way from one of its triangles to
 //   the next surface in front of it lies a point in the cavity and in nothing else: the hole point.
 // 3 TetGen runs, with fewer and fewer demands. Its answer counts only if all volumes are positive and their
-// sum
-//   is the volume that the surface encloses: that shows filled cavities and leaks.
+//   sum is the volume that the surface encloses: that shows filled cavities and leaks.
 // 4 Nodes inside move to improve flat elements. If that is not enough and the surface need not be kept,
-// Mesh_3
-//   makes one of its own.
+//   Mesh_3 makes one of its own.
 // 5 Where that fails, too, or leaves elements that no solver takes, a lattice's cells are cut to the surface.
 
 namespace octotomy::convert {
@@ -236,7 +234,8 @@ std::vector<std::string> ladder(const TetOptions& options) {
 /// would be larger than allowed. Returns the number of triangles before where that changed it.
 std::optional<std::size_t> divide_for_volume(MesherInput& surface, double max_volume_mm3) {
   constexpr double regular =
-      0.75;  // right triangles of halved sides have elements as large as equilateral ones of 4/3
+      0.75;  // halving leaves right triangles, whose elements are as large as those of equilateral triangles
+             // with sides 4/3 as long
   const double side_mm = regular * std::cbrt(6.0 * std::sqrt(2.0) * max_volume_mm3);
   brep::Triangles given{std::move(surface.points_mm), std::move(surface.triangles)};
   const std::size_t before = given.faces.size();

@@ -47,7 +47,7 @@ using BlockWinds = std::array<std::int32_t, std::size_t{row_count} * slab_layers
 struct Stretch {
   int end = 0;  ///< in blocks
   std::optional<std::int32_t> winds;
-  voxel::Block block;  ///< without one number for all: each block
+  voxel::Block block;  ///< if `winds` is empty: the voxels of each block of the stretch
 };
 /// Empty: the surface winds about none of its voxels.
 using BlockRow = std::vector<Stretch>;

@@ -32,8 +32,9 @@ struct Cube {
   int side = slab_layers;
 };
 
-/// The least winding number that a surface with its cap has about a voxel's centre if the surface alone has
-/// more than 1/2: 1 away from holes. Cost of a cube: the cap's triangles.
+/// A voxel is inside if the surface's own winding number about its centre is more than 1/2. The surface
+/// together with its cap has whole winding numbers; this is the least of them with which the voxel is inside.
+/// Away from holes it is 1. Cost of a cube: the cap's triangles.
 class WindingThreshold {
  public:
   WindingThreshold(const voxel::Universe& universe, const Cap& cap);
@@ -62,8 +63,9 @@ class WindingThreshold {
 
 /// A universe's thresholds by cubes of 4^h voxels a side: the largest with one number, down to 16.
 struct ThresholdNode {
-  std::optional<int> number;                                ///< none: see the children
-  std::unique_ptr<std::array<ThresholdNode, 64>> children;  ///< none: a cube of 16 with several
+  std::optional<int> number;                                ///< none: voxels differ, see the children
+  std::unique_ptr<std::array<ThresholdNode, 64>> children;  ///< none: one number, or a cube of 16 voxels a
+                                                            ///< side
 };
 /// The node of the octree's root block. Parallel; throws voxel::Stopped.
 ThresholdNode threshold_tree(const voxel::Universe& universe, const WindingThreshold& threshold,

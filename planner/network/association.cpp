@@ -250,12 +250,12 @@ Association Association::answer(
     std::chrono::milliseconds patience) {
   Association made(std::move(connection), patience);
   if (made.read_unit(most_negotiation) != asks || made.unit_.size() < 68)
-    made.break_off("does not ask for an association");
+    made.break_off("did not begin with a request for an association");
   const std::string_view asked = made.unit_;
   const std::string called = title_of(asked.substr(4, 16)), calling = title_of(asked.substr(20, 16));
   if (!title.empty() && called != title) {
     made.connection_.write(unit(rejects, std::string("\0\1\1\7", 4)));
-    throw PeerError(made.peer() + ": asks for '" + printable(called) + "', which is not this side's title");
+    throw PeerError(made.peer() + ": calls '" + printable(called) + "', which is not this side's title");
   }
   std::string answers;
   int count = 0;
@@ -278,7 +278,7 @@ Association Association::answer(
                               '\0' + item(0x40, chosen.empty() ? implicit_little_endian : chosen));
     return true;
   });
-  if (!is_whole) made.break_off("asks for an association with damaged items");
+  if (!is_whole) made.break_off("sent a request for an association with damaged items");
   made.connection_.write(unit(accepts_it, big(1, 2) + big(0, 2) + padded_title(called) +
                                               padded_title(calling) + std::string(32, '\0') +
                                               item(0x10, application_context) + answers +

@@ -23,7 +23,7 @@ void find(void* library, const char* name, Function& function) {
   if (function == nullptr) refuse_library(std::string("which lacks ") + name);
 }
 
-/// It is never unloaded, because its libraries register what runs when the program ends.
+/// It is never unloaded, because its libraries register functions that run when the program ends.
 CurlLibrary loaded() {
   void* const library = dlopen(file_name, RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) refuse_library(std::string("which cannot be loaded (") + dlerror() + ")");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-// The header's macros check arguments by types, which calls by address cannot have.
+// Without the header's macros, which check the types of arguments only in direct calls.
 #define CURL_DISABLE_TYPECHECK
 #include <curl/curl.h>
 

@@ -8,7 +8,7 @@
 
 PYBIND11_MODULE(_kernel, module) {
   namespace python = octotomy::planner::python;
-  module.doc() = "Both kernels of Octotomy. The package octotomy is what to import.";
+  module.doc() = "Both kernels of Octotomy, for the package octotomy: import that instead.";
   module.attr("__version__") = OCTOTOMY_VERSION;
   module.def("set_helper_folder", &octotomy::voxel::set_helper_folder, pybind11::arg("folder"),
              "The folder of the meshers and codecs that the library starts.");

@@ -238,7 +238,7 @@ void judge_bridges(Certificate& certificate, const Places& places) {
   if (!certificate.worst) certificate.worst = certificate.bridges.front();
 }
 
-/// Share of an object that resampling may lose before the verdict is WARN. The rest is stated alone.
+/// Share of an object that resampling may lose before the verdict is WARN. A smaller share is only stated.
 constexpr double stated_share = 0.002;
 
 /// Adds the volume of the parts that resampling lost, as WARN if it is more than stated_share of the object. Each
@@ -384,7 +384,7 @@ void compare_repeated(Certificate& certificate, const brep::Triangles& mesh) {
                                .difference = area_mm2,
                                .tolerance = 0.0,
                                .formula = "0: no triangle is there twice",
-                               .statement = "Triangles of % are there several times in the mesh"});
+                               .statement = "Triangles of % occur several times in the mesh"});
 }
 
 /// Compares amounts measured along lines with both answers. If the answers agree with each other and not with

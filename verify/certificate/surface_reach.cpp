@@ -4,9 +4,9 @@
 //   vertex belongs to the first triangle that has it, a side to the one that passes it from its smaller
 //   vertex to its larger one.
 // 2 Distances. Each sample's distance to the other surface, up to some multiples of the reach. A search ends
-//   where the sample is surely nearer than one before it, of whatever thread: only the largest distance and
-//   the first sample that has it are told. Samples beyond the multiples are far; the exact distance is
-//   computed for some of them, evenly through their order.
+//   as soon as the sample is surely nearer than another one, of any thread, because only the largest distance
+//   and the first sample that has it are reported. Samples beyond the multiples are far; the exact distance
+//   is computed for some of them, evenly through their order.
 // 3 Border. The answer is cut at the world's border. Its samples on the border have no counterpart, and
 //   neither do the surface's samples that are no farther from it than the comparison allows.
 #include "verify/certificate/surface_reach.h"
@@ -148,8 +148,8 @@ void add_reach(Certificate& certificate, const FarSample& found, double reach_mm
                                             : "A place where a surface must lie is % from the answer's"});
   if (certificate.comparisons.back().verdict == Verdict::Pass) return;
   const WorstPlace place{found.at_mm, found.distance_mm,
-                         is_of_answer ? "the answer has a surface there that its step does not make"
-                                      : "the answer lacks a surface there that its step makes"};
+                         is_of_answer ? "the answer has a surface there that its step must not make"
+                                      : "the answer lacks a surface there that its step must make"};
   certificate.reasons.push_back(text_of(place));
   if (!certificate.worst || certificate.worst->size_mm < place.size_mm) certificate.worst = place;
 }

@@ -340,7 +340,7 @@ class Measuring {
   CellTable<Part> parts_;
   CellTable<double> cells_mm_;  ///< the curvature in cells of three samples along the LPS axes
   AreaAndCurvature triangles_as_they_are_;
-  std::vector<std::uint8_t> cut_;  ///< points of edges that are cuts
+  std::vector<std::uint8_t> cut_;  ///< 1 for the ends of edges along a cut
   Shape shape_;
 };
 

@@ -230,7 +230,7 @@ const std::vector<BuiltKind>& built_kinds() {
       {{"torus", "a ring of radius R, its tube R / 3"}, torus, 4.0 / 3.0},
       {{"cylinder", "radius R / 2, height 2 R"}, cylinder, std::sqrt(1.25)},
       {{"shell", "between radii R and 0.75 R"}, shell, 1.0},
-      {{"lens", "two balls of radius R, R apart: what they share"}, lens, 1.0},
+      {{"lens", "the common part of two balls of radius R, R apart"}, lens, 1.0},
       {{"cut_sphere", "a ball of radius R less a cap of R / 3"}, cut_sphere, 1.0},
       {{"plate", "2 R x 1.5 R, two voxels thick"}, plate, 1.5},
   };
@@ -245,7 +245,7 @@ voxel::Universe universe_of(const SolidPhantomOptions& options) {
   voxel::Universe universe{std::countr_zero(side), glm::dmat4(1.0)};
   for (int axis = 0; axis < 3; ++axis) {
     if (!(options.spacing_mm[axis] > 0.0) || !std::isfinite(options.spacing_mm[axis]))
-      throw voxel::InvalidInput("a voxel's edges are positive lengths in mm");
+      throw voxel::InvalidInput("a voxel's edges must be positive lengths in mm");
     universe.lps_from_voxel[axis][axis] = options.spacing_mm[axis];
     universe.lps_from_voxel[3][axis] = -0.5 * (options.voxels - 1) * options.spacing_mm[axis];
   }

@@ -2,7 +2,7 @@
 //
 // 1 The closed form of a row's teeth and gum on a lattice, its surface, and its points moved onto the closed form.
 // 2 Without what the lattice's box cuts, and without the gum's upper edge, the surface is open.
-// 3 Holes, bend, noise and a pose by chance.
+// 3 Random holes, bend, noise and pose.
 #include "verify/phantom/tooth_scan_phantom.h"
 
 #include <algorithm>
@@ -119,7 +119,7 @@ brep::Triangles true_row(bool is_upper, double spacing_mm) {
       from);
 }
 
-/// Rows are made once.
+/// The true row, computed at the first call and kept until the program ends.
 const brep::Triangles& row_of(bool is_upper, double spacing_mm) {
   static std::mutex mutex;
   static std::map<std::pair<bool, double>, brep::Triangles> rows;
@@ -166,7 +166,7 @@ glm::dvec3 tip_near(const brep::Triangles& row, const glm::dvec2& at_mm, bool is
 
 ToothScanPhantom tooth_scan_phantom(const ToothScanPhantomOptions& options) {
   if (!(options.spacing_mm > 0.0))
-    throw std::invalid_argument("the spacing of a scan's points is above 0 mm");
+    throw std::invalid_argument("the spacing of a scan's points must be above 0 mm");
   const brep::Triangles& row = row_of(options.is_upper, options.spacing_mm);
   // Neighbouring seeds of Chance give one stream, shifted by one number.
   Chance chance(options.seed * 1'000'003);
@@ -181,7 +181,7 @@ ToothScanPhantom tooth_scan_phantom(const ToothScanPhantomOptions& options) {
   }
   const double angle = chance.between(0.0, 2.0 * glm::pi<double>());
   const auto bent = [&](const glm::dvec3& p) {
-    // The arch's ends, 27 mm beside and some 40 mm behind its middle, are shifted by all of the bend.
+    // The arch's ends, 27 mm beside and some 40 mm behind its middle, are shifted by the whole bend.
     const double share = std::pow(std::min(std::abs(p.x) / 27.0, 1.2), 2.0);
     const double side = p.x < 0.0 ? -1.0 : 1.0;
     return p + options.bend_mm * share * glm::dvec3(side * std::cos(angle), 0.0, std::sin(angle));

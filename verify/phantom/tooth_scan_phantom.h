@@ -14,15 +14,15 @@ struct ToothScanPhantomOptions {
   bool is_upper = true;
   double spacing_mm = 0.3;  ///< between the scan's points, about
   double noise_mm = 0.05;   ///< standard deviation of each point along its normal
-  /// The displacement of the arch's ends, in a direction by chance across the arch; the middle keeps its place.
+  /// The displacement of the arch's ends, in a random direction across the arch; the middle keeps its place.
   double bend_mm = 0.1;
   int holes = 8;  ///< round, with a radius of 0.7 to 2 mm
-  /// The standard deviation of `points_mm` along each axis, as points placed by hand are off.
+  /// The standard deviation of `points_mm` along each axis, which imitates points placed by hand.
   double hand_mm = 0.4;
   std::uint64_t seed = 1;
 };
 
-/// An open scan of one row of teeth with some of the gum, in a pose by chance.
+/// An open scan of one row of teeth with some of the gum, in a random pose.
 struct ToothScanPhantom {
   brep::Triangles scan;
   /// The same points on the closed form of teeth and gum, LPS millimetres: where they would be without noise,
@@ -30,7 +30,7 @@ struct ToothScanPhantom {
   std::vector<glm::dvec3> truth_mm;
   glm::dmat4 lps_from_scan{1.0};  ///< the pose
   /// Seven places on biting surfaces along the arch, from the right to the left, in the scan's frame and in LPS.
-  /// Both are off by chance.
+  /// Both have random errors.
   std::vector<glm::dvec3> scan_points_mm, points_mm;
 };
 

@@ -82,7 +82,7 @@ class MeshExpressions {
     Answers answers;
     double shift_mm = 0.0;
   };
-  /// Adds the answers of a corefinement to those of the pair; `operation` is among them.
+  /// Adds the answers of a corefinement, among them that of `operation`, to the answers of the pair.
   void corefine(brep::Operation operation, Pair& pair);
   std::map<std::pair<const brep::Linked*, const brep::Linked*>, Pair> pairs_;
   double shift_mm_ = 0.0;

@@ -236,7 +236,7 @@ const std::vector<Fault>& faults() {
       {flipped_normal, "one triangle of the mesh winds the other way", true},
       {flipped_shell, "all triangles of the mesh wind the other way", true},
       {lost_triangle, "one triangle of the mesh is missing", true},
-      {duplicated_shell, "the mesh's surface is there twice", true},
+      {duplicated_shell, "the mesh contains its surface twice", true},
       {half_voxel, "the mesh is moved along x; in the exact tier by one refined voxel", true},
       {quarter_voxel, "the mesh is moved along y", true},
       {eighth_voxel, "the mesh is moved along z", true},
@@ -249,7 +249,7 @@ const std::vector<Fault>& faults() {
       {stale_result, "one kernel has the object as it was before it was turned and moved", true},
       {stale_box, "one kernel has the box where it was before it moved by two voxels along each axis", true},
       {wrong_pivot, "one kernel turns about the origin instead of the given point", true},
-      {shell_thrice, "the mesh's surface is there three times", true},
+      {shell_thrice, "the mesh contains its surface three times", true},
       {both_empty, "both kernels answer nothing", true},
       {lost_by_both, "both kernels have lost what lies in one half of the universe", true}};
   return all;

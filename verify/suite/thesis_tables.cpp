@@ -218,7 +218,7 @@ const std::vector<ThesisGap>& thesis_gaps() {
       {"table A.1, sphere", "the row is not in the text at hand; render --count computes it"},
       {"tables 7.2, 7.4 and 7.6",
        "times of two computers of 1989; what the operations make is compared, and counted"},
-      {"table 4.3", "the order of a quadtree's children is any"},
+      {"table 4.3", "a quadtree's children may be in any order"},
       {"tables 7.3 and 7.7", "trees of volumes of interest drawn by hand"},
       {"equations 8.9 to 8.12", "definitions of motions without an example in numbers"}};
   return gaps;

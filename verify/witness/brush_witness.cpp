@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A point p lies in the brush at the position t of a piece from a by d if, for each face, n.(p - a) - t n.d <= h.
-// Each face limits t on one side, so that the brush covers the point if an interval is left. Along a line the same
-// limits are half-planes of the position on the line and t; their polygon's extent is the span.
+// Each face limits t on one side, so that the brush covers the point if an interval is left. For points of a
+// line, each limit is a half-plane over the position on the line and t. These half-planes leave a polygon,
+// whose extent along the first coordinate is the covered part of the line.
 #include "verify/witness/brush_witness.h"
 
 #include <algorithm>
@@ -226,7 +227,7 @@ LineReading lines_of(const std::shared_ptr<const std::vector<Piece>>& pieces) {
     return std::any_of(pieces->begin(), pieces->end(),
                        [&](const Piece& piece) { return !are_apart(piece.box(), part); });
   };
-  // Most pieces are passed by their boxes.
+  // The tests of their boxes exclude most pieces.
   return {inside, may_meet, box, static_cast<double>(pieces->size())};
 }
 

@@ -233,7 +233,7 @@ class WindowAlong {
   /// A line in samples: u0 + at_mm * du.
   struct Course {
     glm::dvec3 u0, du;
-    Span ends_mm;  ///< beyond half a sample from the outermost ones a line is not read
+    Span ends_mm;  ///< the part of the line that is read: up to half a sample beyond the outermost samples
 
     /// The position at which the line crosses a plane across an axis.
     double crosses_mm(int axis, int plane) const { return (plane - u0[axis]) / du[axis]; }
@@ -245,7 +245,8 @@ class WindowAlong {
     const int most = dims_[axis] - 1;
     const double u = std::clamp(course.u0[axis] + at_mm * course.du[axis], -1.0, most + 0.5);
     int cell = static_cast<int>(std::floor(u));
-    // The sum above is rounded otherwise than the crossings, which decide.
+    // The position above is rounded differently from the crossings of planes, which decide in which cell it
+    // lies.
     if (course.du[axis] > 0.0) {
       while (cell < most && course.crosses_mm(axis, cell + 1) <= at_mm) ++cell;
       while (cell >= 0 && course.crosses_mm(axis, cell) > at_mm) --cell;

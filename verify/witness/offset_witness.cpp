@@ -9,8 +9,9 @@
 //           Of an object that is known by whole voxels the surface lies up to h / 2 elsewhere, too.
 //   mesh    The surface's triangles have vertices within c / 1000 of the surface and are thinned by at most
 //           c / 50. Between vertices they lie within c / 16 of it where distances are linear; elsewhere
-//           edges are at most sqrt(3) c / 4, so that a point is within c / 4 of a vertex (Jung), and distances
-//           change no faster than places do. Counted is c, as triangles between levels are longer.
+// edges are at most sqrt(3) c / 4, so that a point is within c / 4 of a vertex (Jung), and distances change
+// by at most the distance between points. The bound that is used is c, because triangles between levels are
+// longer.
 //   witness An edge between voxels' centres meets the operand's surface between a place that is certainly
 //           inside and one that is certainly outside. The places between, h / 8 apart, are all taken. Any
 //           point of the surface is within 2/3 D of such an edge's crossing, as above.

@@ -24,14 +24,14 @@ struct WitnessedOffset {
 
 /// The points within by_mm of the operand, or deeper than that within it. Where the operand's surface lies is
 /// read from the operand's own witness, along the edges between voxels' centres at which one of the kernels
-/// has it; where that witness does not know the side, both kernels must have a voxel for it to count as
-/// inside. Where walls or gaps of the operand's mesh pass between voxels' centres, that witness is read beside
-/// the mesh's triangles: there the mesh's word is that of the moved wall, and the voxels' word is `untold`,
-/// because resampling lost the wall. Distances are compared with every such place within reach, on a grid of this source's own. What
-/// each kernel may answer beside the moved surface is derived in offset_witness.cpp: it is coarse, so that
-/// totals decide about errors below a voxel. Empty where the operand has no witness, or both answers are
-/// empty. Cost: some ten readings of the operand for each face of its voxels; of one reading that operand's
-/// and a look at the places about it.
+/// has it. If that witness cannot decide the side, a place counts as inside only if both kernels have a voxel
+/// there. Where walls or gaps of the operand's mesh pass between voxels' centres, the operand's witness is
+/// read beside the mesh's triangles. There the mesh's side is that of the moved wall, and the voxels' side is
+/// `untold`, because resampling lost the wall. Distances are compared with every such place within reach, on
+/// a grid of this source's own. The answers that each kernel may have beside the moved surface are derived in
+/// offset_witness.cpp. They are coarse, so totals decide about errors below a voxel. Empty where the operand
+/// has no witness, or both answers are empty. Cost: some ten readings of the operand for each face of its
+/// voxels. Cost of one reading: one of the operand, and a search among the places nearby.
 Witness witness_of_offset(const OffsetOperand& operand, const WitnessedOffset& asked);
 
 /// The mean distance that two right answers to an offset may have over a surface of `area_mm2`, in addition

@@ -44,9 +44,9 @@ struct Reading {
   int surfaces = 0;
 };
 
-/// The parts of a reading that the caller needs: both kernels' sides and the surfaces, the mesh's sides and
-/// the surfaces, both kernels' sides, or the mesh's sides. Sides without surfaces cost less, because one
-/// operand that decides alone makes the others unnecessary.
+/// The parts of a reading that the caller needs. `Both` and `MeshOnly` include the surfaces; `BothSides` and
+/// `MeshSides` are sides only, which cost less, because one operand that decides alone makes the others
+/// unnecessary.
 enum class ReadingNeeds { Both, MeshOnly, BothSides, MeshSides };
 constexpr bool needs_voxels(ReadingNeeds asked) {
   return asked == ReadingNeeds::Both || asked == ReadingNeeds::BothSides;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// What a right answer's surface may be off by:
+// The allowed distance of a right answer's surface:
 //   smooth    Each of 2 n steps adds up the coordinates of some neighbours, six on average and rarely over
 //             thirty: 32 roundings of numbers as large as the largest coordinate. Steps in and out leave
 //             waves nearly as they were or take them off, so that roundings add up and do not grow.
-//   decimate  The largest error that was asked for: the step measures both surfaces at samples and takes back
-//             what is farther off. Between its samples a right answer may be somewhat farther, a WARN.
+// decimate The largest requested error. The step measures both surfaces at samples and undoes what lies
+// farther off. Between the samples a right answer may lie somewhat farther, which is a WARN.
 #include "verify/witness/reshaped_witness.h"
 
 #include <algorithm>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // A point is `near` where its value changes sign within near_mm, in the plane or across it:
-//   in the plane  A value is a distance, or a weighted mean of two, and changes no faster than places do.
+// in the plane A value is a distance, or a weighted mean of two, and changes by at most the distance between
+// points.
 //   across        The value is read near_mm before and behind the point as well, because it jumps halfway
 //                 between slices and at both ends of the stack.
 // near_mm is the width of contours, and the rounding of coordinates after several motions.

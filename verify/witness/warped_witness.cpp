@@ -2,8 +2,9 @@
 //
 // Flat triangles. Along a triangle's side the field bends where the side passes from one element to the next.
 // Between two such places it is linear. Its distance from the straight line is 0 at both ends of the side; if
-// it has one bend, three quarters of the largest distance or more are seen at one of the points at a quarter,
-// a half and three quarters. Twice what is seen is allowed, for sides that pass through several elements.
+// it has one bend, one of the points at a quarter, a half and three quarters of the side shows at least three
+// quarters of the largest distance. Twice the distance at these points is allowed, for sides that pass
+// through several elements.
 #include "verify/witness/warped_witness.h"
 
 #include <algorithm>

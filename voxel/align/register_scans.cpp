@@ -113,8 +113,8 @@ class Search {
   double value(const ScanPair& pair, const Parameters& at) {
     ++motions_;
     const Likeness likeness = pair.likeness(motion(at));
-    // A value below every likeness that rises with the overlap, so that the search returns to motions with
-    // enough overlap.
+    // This value is below every likeness and rises with the overlap, so that the search returns to motions
+    // with enough overlap.
     if (likeness.overlap < options_.least_overlap) return likeness.overlap - 3.0;
     return likeness.value;
   }
@@ -262,9 +262,9 @@ ScanFit register_scans(const Scene& moving, const Scene& fixed, const ScanFitOpt
   check(moving);
   check(fixed);
   if (!(options.least_overlap > 0.0 && options.least_overlap <= 1.0))
-    throw InvalidInput("the least overlap is above 0 and at most 1");
+    throw InvalidInput("the least overlap must be above 0 and at most 1");
   if (!(options.finest_mm > 0.0 && options.finest_mm <= coarsest_mm))
-    throw InvalidInput("the finest resolution is above 0 and at most 8 mm");
+    throw InvalidInput("the finest resolution must be above 0 and at most 8 mm");
   return Search(moving, fixed, options).run();
 }
 

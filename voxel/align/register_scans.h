@@ -41,7 +41,7 @@ struct ScanFit {
   double overlap = 0.0;               ///< share of the smaller scan that the other covers
   std::size_t starts = 0;             ///< motions from which the search began
   std::size_t refined = 0;            ///< the best of them, which were followed further
-  std::size_t agreeing = 0;           ///< those of the refined that ended at the same motion
+  std::size_t agreeing = 0;           ///< the number of these that ended at the same motion
   std::optional<double> rival;        ///< likeness of the best other motion, at `rival_mm`
   double likeness_there = 0.0;        ///< of the answer at that resolution
   double rival_mm = 8.0;

@@ -26,8 +26,8 @@ struct PlanObjects {
 };
 
 /// Writes a plan as DICOM objects of one study: `plan.dcm`, and its pictures as `picture_001.dcm`, ..., one series each.
-/// - The plan is Encapsulated CDA Storage (PS3.3, A.45.2), because of the standard's encapsulated documents (PDF, CDA, STL,
-///   OBJ, MTL) a CDA's body alone may be of any media type (HL7 CDA R2, nonXMLBody): any reader of XML unpacks it.
+/// - The plan is Encapsulated CDA Storage (PS3.3, A.45.2). The standard also encapsulates PDF, STL, OBJ and MTL, but only
+///   the body of a CDA may be of any media type (HL7 CDA R2, nonXMLBody). Any reader of XML can unpack it.
 /// - A picture is Secondary Capture Image Storage (A.8.1), which every viewer shows; the multi-frame class would need
 ///   pictures of one size. Its pixels are uncompressed.
 /// `source` is the series of the plan's scan: its patient and study are copied, its images listed. None: a study of its own.

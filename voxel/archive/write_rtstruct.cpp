@@ -315,7 +315,7 @@ class StructureSetWriter {
 
 std::vector<ContouredObject> write_rtstruct(Objects objects, const fs::path& path,
                                             const RtstructOptions& options) {
-  if (objects.empty()) throw std::invalid_argument("a structure set has at least one object");
+  if (objects.empty()) throw std::invalid_argument("a structure set needs at least one object");
   check_dicom_text(options.label, "label");
   check_dicom_text(options.series_description, "series_description");
   if (options.label.empty() || options.series_description.empty())

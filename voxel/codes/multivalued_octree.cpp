@@ -54,7 +54,7 @@ class NumberSource {
         std::all_of(tree_.nodes.begin() + static_cast<std::ptrdiff_t>(first),
                     tree_.nodes.begin() + static_cast<std::ptrdiff_t>(next_),
                     [&](std::uint8_t n) { return n == node; }))
-      refuse("ends eight children of one number: write their parent so");
+      refuse("is the last of eight children with one number: write their parent with this number");
   }
   void expect_end() {
     if (next_ == tree_.nodes.size()) return;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // octotomy_dicom_codec: decompresses the DICOM frames that it receives over the socket at its standard input,
-// until the socket closes. voxel/scan/dicom_codec.cpp starts it; users never do. A frame that makes a codec run code of
-// the frame's own reaches no network, no program and no file outside of the process's own folder.
+// until the socket closes. voxel/dicom/dicom_codec.cpp starts it; users never do. A malicious frame may make
+// a codec run code that is hidden in the frame: this process has no access to the network, to other programs
+// or to files outside of its own folder.
 #include <cstdlib>
 #include <exception>
 #include <filesystem>

@@ -4,8 +4,9 @@
 // 2 Add the middles of chords and of rings of crossings, which lie on the surface but for its bending within
 //   a cell: half as far from each other as the crossings are.
 // 3 Put those points into a k-d tree (Bentley 1975).
-// 4 Signed distances change no faster than places do, so a block whose middle is farther from the offset
-//   surface than its corners are from its middle has one value. The others are halved down to voxels.
+// 4 Signed distances change by at most the distance between points, so a block whose middle is farther from
+//   the offset surface than its corners are from its middle has one value. The others are halved down to
+//   voxels.
 // The octree alone decides on which side of the surface a voxel's centre lies: between two centres that
 // differ there is always a crossing, so that sign and distance agree.
 #include "voxel/filter/offset.h"
@@ -192,7 +193,7 @@ void fill(const Depths& depths, const glm::ivec3& block, int side, GreyBrick& br
 Window offset_in(const Octree& octree, const Expression& solid, double by_mm, const Octree* region,
                  const Progress& progress) {
   if (!std::isfinite(by_mm) || by_mm == 0.0)
-    throw InvalidInput("an offset is by a finite length other than 0 mm");
+    throw InvalidInput("an offset's length must be finite and not 0 mm");
   const Universe& universe = octree.universe();
   const Depths depths(octree, solid, by_mm);
   progress.at(0.4);

@@ -25,9 +25,9 @@ namespace octotomy::voxel {
 /// the latter; 2 bytes for each voxel of the blocks of 16 voxels a side that hold a part of it.
 Window offset(const Octree& octree, const Expression& solid, double by_mm, const Progress& progress = {});
 
-/// The same where it is needed: samples are computed in the blocks of 16 voxels a side that hold a voxel of
-/// `region`, and are the same there. All other voxels are outside the window, also those within the offset
-/// solid, so that its surface between a block and the next is no surface of the offset.
+/// The samples of offset() in the blocks of 16 voxels a side that hold a voxel of `region`; other blocks are
+/// not computed. All other voxels are outside the window, even those within the offset solid: the window's
+/// surface along the border of these blocks is not the offset solid's.
 Window offset_near(const Octree& octree, const Expression& solid, double by_mm, const Octree& region,
                    const Progress& progress = {});
 

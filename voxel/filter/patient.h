@@ -32,7 +32,7 @@ enum class Belongs : std::uint8_t {
   Air,       ///< nothing, or air that touches no support
   Patient,   ///< the patient, cavities and blurred edge included
   Support,   ///< behind the patient's coronal middle and not the patient's: boards, couches, foam, holders
-  Doubtful,  ///< solid, but neither for certain: in front of the coronal middle, or not separable
+  Doubtful,  ///< solid, patient or support: in front of the coronal middle, or not separable from the patient
 };
 
 struct PatientParts {

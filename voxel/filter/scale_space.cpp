@@ -140,7 +140,7 @@ ScaleSpace scale_space(const Scene& scene, const ScaleSpaceOptions& options) {
     std::size_t maxima = 0;
     for (std::size_t at = 0; at < top.size(); ++at) maxima += top[at] == at ? 1 : 0;
     made.maxima.push_back(maxima);
-    // A maximum of this level has the region of the coarser level at its place.
+    // A maximum of this level belongs to the region that the coarser level has at the same place.
     if (!region.empty())
       for (std::uint32_t& number : top) number = region[number];
     region = std::move(top);

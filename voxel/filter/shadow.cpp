@@ -4,8 +4,8 @@
 // 2 In each column along the direction keep the least depth of all triangles.
 // 3 Those triangles may still cut sharp edges off. At an outline all that lies behind would be lost with them, so
 //   columns just beside an outline look for the object itself at the depths of the outline.
-// 4 Blocks whose columns all begin before them, or all behind them, have one value. Of the others' voxels
-//   count 5^3 points each: an odd number, so that no share is exactly a half.
+// 4 Blocks whose columns all begin before them, or all behind them, have one value. In the other blocks 5^3
+//   points of each voxel are counted: an odd number, so that no share is exactly a half.
 #include "voxel/filter/shadow.h"
 
 #include <algorithm>
@@ -38,7 +38,7 @@ constexpr double cut_off = 0.59, moved_out = 0.75;
 /// for from `look_before` in front of the depth to `look_behind` behind it, in steps of `look_step`. At an
 /// edge of 90 degrees half a step is lost.
 constexpr float look_before = 0.75F, look_behind = 4.0F, look_step = 0.0625F;
-constexpr int tile_side = 16;  ///< columns whose depths have one range
+constexpr int tile_side = 16;  ///< a range of depths is stored for each square of so many columns a side
 constexpr float no_surface = std::numeric_limits<float>::infinity();
 
 /// Depth is the coordinate along the direction; x and y lie across it.
@@ -302,7 +302,7 @@ void fill_shares(const ShadowShares& shares, const glm::ivec3& block, int side, 
 void check_unit(const glm::dvec3& direction) {
   constexpr double unit_error = 1e-9;  // of a direction that was normalised or typed with ten figures
   if (!(std::abs(glm::length(direction) - 1.0) < unit_error))
-    throw std::invalid_argument("the direction of a shadow is a unit vector");
+    throw std::invalid_argument("the direction of a shadow must be a unit vector");
 }
 
 void check_voxels(const Octree& octree) {
@@ -321,7 +321,7 @@ FirstDepths first_depths(const SurfaceCrossings& crossings, const Universe& univ
 
 Shadow shadow(const Octree& octree, const Expression& solid, const ShadowOptions& options) {
   check_unit(options.direction);
-  if (!std::isfinite(options.end_mm)) throw std::invalid_argument("the end of a shadow is finite");
+  if (!std::isfinite(options.end_mm)) throw std::invalid_argument("the end of a shadow must be finite");
   check_voxels(octree);
   const Universe& universe = octree.universe();
   const SurfaceCrossings crossings(octree, solid);

@@ -24,7 +24,8 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr double no_larger = 1.0 + 1e-3;  ///< balls of nearly one size are not all compared
+constexpr double no_larger = 1.0 + 1e-3;  ///< a ball must be larger than the largest so far by this factor to
+                                          ///< be examined
 constexpr double coverage_99 = 2.576;     ///< standard errors of a normal distribution
 
 std::size_t count_of(const glm::ivec3& dims) {
@@ -168,8 +169,9 @@ double half_planes_mm(const glm::ivec3& direction, const Pyramid& pyramid) {
   return 0.5 * std::min({voxel_mm.x, voxel_mm.y, voxel_mm.z}) / glm::length(primitive);
 }
 
-/// The largest ball about a centre. Outside that is up to a voxel farther away than the nearest outside counts
-/// as a side of the ball, too: the centre lies on a lattice, so it may be off the middle between two sides.
+/// The largest ball about a centre. Places outside that are up to a voxel farther away than the nearest one
+/// also count as sides of the ball: the centre lies on a lattice, so it need not be exactly midway between
+/// two sides.
 LatticeBall ball_about(const glm::ivec3& centre, const Pyramid& pyramid, double most_cosine) {
   const glm::dvec3& step_mm = pyramid.step_mm();
   const double distance = pyramid.distance_mm(centre);
@@ -343,9 +345,9 @@ void summarise(std::vector<double> values, double longest_edge_mm, VoxelThicknes
 }
 
 void check(const LocalThicknessOptions& options) {
-  if (options.samples < 64) throw InvalidInput("local thickness: takes at least 64 samples");
+  if (options.samples < 64) throw InvalidInput("local thickness: needs at least 64 samples");
   if (!(options.wall_angle_deg >= 91.0 && options.wall_angle_deg <= 179.0))
-    throw InvalidInput("local thickness: a wall's angle is from 91 to 179 degrees");
+    throw InvalidInput("local thickness: a wall's angle must be from 91 to 179 degrees");
 }
 
 /// The pyramid of an octree that is not empty.

@@ -36,7 +36,7 @@ struct VoxelThickness {
   /// way; a quarter of that edge for the lattice of centres; and 2.6 standard errors of the sampled voxels.
   double mean_half_width_mm = 0.0;
   std::vector<ThicknessAtVoxel> surface;
-  std::optional<std::size_t> thinnest_wall;  ///< in `surface`; none where no sampled voxel is of a wall
+  std::optional<std::size_t> thinnest_wall;  ///< in `surface`; none if no sampled voxel belongs to a wall
 };
 
 /// Local thickness of an octree's voxels: the diameter of the largest ball inside that holds a voxel's
@@ -52,8 +52,8 @@ struct VoxelThickness {
 /// searched at sampled voxels, where the source paints a ball at each point of the distance ridge.
 VoxelThickness local_thickness(const Octree& octree, const LocalThicknessOptions& options = {});
 
-/// The thinnest wall alone, the same as local_thickness() has it; none where no sampled voxel is of a wall.
-/// Throws as local_thickness(). Cost: most balls' sides are not looked at.
+/// The thinnest wall alone, the same as local_thickness() has it; none if no sampled voxel belongs to a wall.
+/// Throws as local_thickness(). Cost: lower, because the sides of most balls are not searched.
 std::optional<ThicknessAtVoxel> thinnest_wall(const Octree& octree,
                                               const LocalThicknessOptions& options = {});
 

@@ -339,8 +339,9 @@ class SeriesAssembler {
     }
     if (described.size() == 1) return described.front();
     if (described.empty() && with_words.size() == 1) return with_words.front();
-    refuse(path_, (described.empty() && with_words.empty() ? "no series is '" : "several series are '") +
-                      wanted + "'; choose by number: " + choices_);
+    refuse(path_,
+           (described.empty() && with_words.empty() ? "no series matches '" : "several series match '") +
+               wanted + "'; choose by number: " + choices_);
   }
 
   /// Some scanners put scout views into the series of the scan.

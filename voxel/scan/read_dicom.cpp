@@ -467,7 +467,7 @@ class SeriesReader {
              (usual->high > usual->low ? print(" to %g", usual->high) : "") +
              print("): %zu samples of that value in ", count) + slices(names.size()) +
              ", all at the rims of their images, are assumed to be padding, too; if they are measurements, "
-             "take PixelPaddingValue out of the other slices: " +
+             "remove PixelPaddingValue from the other slices: " +
              listed(names),
          names);
   }

@@ -25,7 +25,8 @@ struct ExpressionScan {
   Scene scene;
   std::uint64_t hole_samples = 0;     ///< where the expression contains nothing
   std::uint64_t filled_samples = 0;   ///< where only objects without samples are
-  std::uint64_t changed_samples = 0;  ///< holes, and samples that differ from the frame's
+  std::uint64_t changed_samples = 0;  ///< holes, and samples that differ from the frame's sample at this
+                                      ///< place
   double hole = 0.0, filled = 0.0;    ///< as used
 };
 
@@ -38,10 +39,10 @@ struct ExpressionScan {
 /// steps, such as those of offset(), only bound.
 ///
 /// Throws Error (Input) if the frame has more than 1,024 samples a side or reaches out of the octree's
-/// universe, if a typed value is none that the samples can have, or if no value is left for holes; Stopped.
-/// Parallel; same bits on any thread count. Cost and memory: those of combine() and GreyOwners on the
-/// frame's lattice, and a copy of the frame's samples. Source: thesis, chapter 7: grey octrees of a plan's
-/// objects.
+/// universe, if a typed value is not one that the samples can have, or if no value is left for holes;
+/// Stopped. Parallel; same bits on any thread count. Cost and memory: those of combine() and GreyOwners on
+/// the frame's lattice, and a copy of the frame's samples. Source: thesis, chapter 7: grey octrees of a
+/// plan's objects.
 ExpressionScan expression_scan(const Scene& frame, const GreyOctree& of_frame, const Expression& expression,
                                const ExpressionScanOptions& options = {});
 

@@ -42,7 +42,7 @@ void need_trusted(const fs::path& file) {
     if (!is_ours || (found.st_mode & S_IWOTH) != 0)
       throw Error(ErrorCode::Resource,
                   path.string() +
-                      ": others may write there, so it is not started: take that right away, or "
+                      ": others may write there, so it is not started: remove that permission, or "
                       "install Octotomy again");
   }
 }

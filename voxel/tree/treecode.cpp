@@ -36,7 +36,7 @@ class TreecodeSource {
   void close(bool homogeneous) {
     cursor_.skip_spaces();
     if (homogeneous)
-      cursor_.refuse("the eight children before it are all Full or all Empty: write their parent so");
+      cursor_.refuse("the eight children before it are all Full or all Empty: write their parent as F or E");
     cursor_.expect(")");
   }
   void expect_end() { cursor_.expect_end(); }

@@ -151,7 +151,8 @@ std::optional<Seen> surface_about(RaySamples& samples, float threshold, const Pa
     if (leave.value >= threshold) return surface(middle, leave);
     return std::nullopt;
   }
-  // A trilinear surface lies within a voxel of the object's voxels, which is within two along a slanting ray.
+  // The interpolated surface is at most one voxel away from the object's voxels. Along a slanting ray that is
+  // at most two voxels' lengths, so four half steps back suffice.
   Sample above = enter;
   for (int step = 1; step <= 4; ++step) {
     const float distance_mm = -static_cast<float>(step) * half_voxel_mm;

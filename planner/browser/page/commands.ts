@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Everything that can be asked for by name: the palette, the keys and the menus read this one table.
+// All commands by name: the palette, the keys and the menus read this table.
 import {add_step, change_history, edit, evaluate, free_id, open_plan, try_to} from "./actions";
 import {ask_text} from "./base/dialog";
 import {objects_of_plan} from "./drawn_objects";
@@ -43,7 +43,7 @@ export async function certify_all(): Promise<void> {
 }
 
 export function remove_step(step: Step): void {
-  void edit({remove: step.id}, `${step.id} taken away`, null);
+  void edit({remove: step.id}, `${step.id} removed`, null);
 }
 
 export async function save(): Promise<void> {
@@ -139,17 +139,17 @@ export function all_commands(): Command[] {
                        })) as Command[],
     {name: "Undo", key: "ctrl+z", run: () => void change_history("undo")},
     {name: "Redo", key: "ctrl+y", run: () => void change_history("redo")},
-    {name: "New branch", says: "Tries something beside the present plan.", run: () => void new_branch()},
+    {name: "New branch", says: "Begins a branch, for changes that leave the present plan as it is.", run: () => void new_branch()},
     {name: "Name this version", run: () => void name_version()},
     {name: "Save", key: "ctrl+s", run: () => void save()},
     {
       name: "Load the plan's file again",
-      says: "Takes what another program wrote into it as an edit.",
+      says: "Records changes that another program has made to the file as an edit.",
       run: () => void (state.plan && open_plan({path: state.plan.path}))
     },
     {
       name: "Certify",
-      says: "Asks both kernels and compares their answers.",
+      says: "Computes all objects in both kernels and compares them.",
       key: "ctrl+enter",
       run: () => void certify_all()
     },
@@ -184,7 +184,7 @@ export function all_commands(): Command[] {
     },
     {
       name: "Cut plane",
-      says: "Takes away what lies on one side of a plane, to look inside.",
+      says: "Hides everything on one side of a plane, to show the inside.",
       key: "k",
       run: () => set({cut_plane: state.cut_plane ? null : {axis: 0, side: 1, offset_mm: state.cross_mm[0]}})
     },
@@ -207,7 +207,7 @@ export function all_commands(): Command[] {
     },
     {
       name: "Outcome of the operation",
-      says: "Holds the plan against a scan after the operation: what was achieved, with intervals.",
+      says: "Compares the plan with a scan after the operation: achieved movements, with intervals.",
       run: () => dialogs.outcome()
     },
     {name: "Report", says: "Writes the report with every certificate.", run: () => dialogs.report()},
@@ -256,7 +256,7 @@ export function all_commands(): Command[] {
       run: () => set({maximised: state.maximised === null ? state.active_pane : null})
     },
     {
-      name: "Take the selected step away",
+      name: "Remove the selected step",
       run: () => {
         const step = selected_step();
         if (step) remove_step(step);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The page's frame: the bar on top, the rail of tools, the status line, jobs, notices and the word of a lost
-// connection.
+// The page's frame: the bar on top, the rail of tools, the status line, jobs, notices and the message about a
+// lost connection.
 import {change_history, try_to} from "./actions";
 import {certify_all, compare_selected, dialogs, map_contacts, mirror_selected, new_branch} from "./commands";
 import {button, Child, el, fill} from "./base/html";
@@ -45,7 +45,7 @@ export function make_bar(host: HTMLElement): void {
         plan ? act("procedure", "Procedure", "Procedure. Plans an operation by landmarks and a few values",
                    () => dialogs.procedure()) :
                null,
-        plan ? act("certify", "Certify", "Certify. Asks both kernels and compares their answers. Ctrl Enter",
+        plan ? act("certify", "Certify", "Certify. Computes all objects in both kernels and compares them. Ctrl Enter",
                    () => void certify_all()) :
                null,
         plan ? act("export", "Export", "Export and print. Ctrl E", () => dialogs.export()) : null,
@@ -90,7 +90,7 @@ export function make_rail(host: HTMLElement): void {
             "contact", "Contacts (T). Colours two objects, as the jaws, by their distance to each other",
             state.compare?.mutual === true, map_contacts),
         rail_button(
-            "plane", "Cut plane (K). Takes away what lies on one side, to look inside",
+            "plane", "Cut plane (K). Hides everything on one side, to show the inside",
             state.cut_plane !== null,
             () => set({
               cut_plane: state.cut_plane ? null : {axis: 0, side: 1, offset_mm: state.cross_mm[0]},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The page of `octotomy serve`: makes its parts, opens the wire, and gives what the server tells to the
-// state.
+// The page of `octotomy serve`: makes its parts, opens the connection, and stores the server's messages in
+// the state.
 import {evaluate, greet, take_plan, use_wire} from "./actions";
 import {command_of, dialogs} from "./commands";
 import {objects_of_plan} from "./drawn_objects";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the planner's server and its page say to each other.
+// The messages between the planner's server and its page.
 import {Vec3} from "./base/vector";
 import {View, ViewFrame} from "./base/view_frame";
 

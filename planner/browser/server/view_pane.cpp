@@ -128,7 +128,7 @@ struct ViewPane::Drawing {
   Render render;
   glm::vec3 background{1.0f};
   bool is_moving = false;
-  bool is_of_plan = true;  ///< a step of the plan could draw the same
+  bool is_of_plan = true;  ///< a plan's `render` step can draw the same picture
   std::vector<voxel::DrawnObject> objects;
   std::vector<const Object*> of_plan;      ///< those that are drawn
   const Object* last = nullptr;            ///< the last of them

@@ -23,7 +23,8 @@ interface Exports {
 /// The kernel refused something and its instance is gone. The message is the kernel's.
 export class Refusal extends Error {}
 
-/// The four calls of WASI that the kernel links: only writing its last words and ending mean anything here.
+/// The four calls of WASI that the kernel links: only writing its last message and ending have an effect
+/// here.
 function wasi(memory: () => ArrayBuffer): WebAssembly.ModuleImports {
   let words = "";
   return {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the kernel asks of the language's runtime, where that knows neither exceptions nor threads.
-//
-// What would be thrown ends the instance; its message goes to WASI's standard error. A page then makes a new
-// instance. Every type that the voxel kernel throws is a std::exception.
+// The functions of the language's runtime that the kernel needs, for a platform without exceptions and
+// threads. Throwing an exception ends the instance; the exception's message goes to WASI's standard error. A
+// page then makes a new instance. Every type that the voxel kernel throws is a std::exception.
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>

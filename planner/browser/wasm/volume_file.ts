@@ -8,7 +8,8 @@ export interface Volume {
   dims: [number, number, number];
   lps_from_voxel: number[];
   samples: Int16Array;
-  /// What was changed on the way in, for people; empty if nothing was.
+  /// Sentences for the user about what reading assumed or changed: rounded samples, a unit that is not
+  /// stated.
   remarks: string[];
 }
 
@@ -164,7 +165,7 @@ export async function read_nrrd(bytes: Uint8Array): Promise<Volume> {
     const colon = line.indexOf(": ");
     if (line[0] !== "#" && colon > 0) fields[line.slice(0, colon).toLowerCase()] = line.slice(colon + 2).trim();
   }
-  if (fields["data file"] ?? fields["datafile"]) throw new Error("its samples lie in another file; the program reads those");
+  if (fields["data file"] ?? fields["datafile"]) throw new Error("its samples are in another file, which this page does not read: open it in Octotomy");
   const type = nrrd_types[(fields["type"] ?? "").toLowerCase()];
   if (type === undefined) throw new Error(`its samples are of type '${fields["type"]}', which is not read here`);
   const sizes = (fields["sizes"] ?? "").split(/\s+/).map(Number);

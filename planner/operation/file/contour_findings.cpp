@@ -95,7 +95,7 @@ void tell_crossings(const voxel::SliceMask& mask, const std::string& where,
                        "; redraw them as one outline if the parts belong to it");
   if (!unknown.text().empty())
     findings.push_back(where +
-                       ": too many edges lie over each other to tell all contours that cross: "
+                       ": too many edges lie over each other to find all contours that cross: "
                        "planes at " +
                        unknown.text() + " mm");
 }

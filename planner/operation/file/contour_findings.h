@@ -12,7 +12,8 @@
 // What is doubtful about contours on slices, in sentences. `where` begins each.
 namespace octotomy::planner {
 
-/// A plane may be off by as much as a decimal string rounds: a part of the least distance of planes.
+/// The largest error of a plane's position that rounding to a decimal string causes, as a share of the least
+/// distance of planes.
 constexpr double off_plane_mm() {
   return 0.01;
 }
@@ -22,8 +23,8 @@ constexpr double off_plane_mm() {
 void add_contour_findings(voxel::SliceMask& mask, const std::string& where,
                           std::vector<std::string>& findings);
 
-/// Lines on polygons of a region that repeat or cross another, of which the even-odd rule makes something
-/// else than painting them would.
+/// Lines on polygons of a region that repeat or cross another, for which the even-odd rule yields another
+/// region than painting them would.
 std::vector<std::string> findings_of(const voxel::Region& region);
 
 /// A line on contours that reach beyond a scan's samples: in how many planes, how far, where and with how

@@ -294,7 +294,8 @@ void add_rows(Names& table, const Rows& rows, const std::string& where, bool is_
       continue;
     }
     const std::optional<int> label = whole(number);
-    if (!label) refuse(at, "has no label from 0 to " + std::to_string(voxel::most_label) + " and a name");
+    if (!label)
+      refuse(at, "must have a label from 0 to " + std::to_string(voxel::most_label) + " and a name");
     table.add(*label, name, at);
   }
 }

@@ -128,9 +128,10 @@ Span span_of(const std::vector<glm::dvec3>& contour, const voxel::View& view) {
 }
 
 struct PlaneDistances {
-  double least_mm = std::numeric_limits<double>::infinity();  ///< of planes that are told apart
-  double nearest_mm = least_mm;                               ///< of those that count as one as well
-  double one_plane_mm = 2.0 * off_plane_mm();                 ///< places that are no farther apart are one
+  double least_mm = std::numeric_limits<double>::infinity();  ///< of planes that count as different
+  double nearest_mm = least_mm;                               ///< also of planes that count as one
+  double one_plane_mm = 2.0 * off_plane_mm();                 ///< planes that are no farther apart count as
+                                                              ///< one
 };
 
 /// The distances between the planes of all structures that lie across the view; infinite if there is only

@@ -22,13 +22,13 @@ voxel::Region read_region(const voxel::View& view, const std::filesystem::path& 
 /// and what check(SliceMask) refuses.
 ///
 /// Of a DICOM structure set, the region of this name, or of this ROI number where no name or several are it:
-/// its closed contours as polygons of its planes, holes by the even-odd rule. Planes as far apart as the
-/// set's nearest ones; where one of them has no contour, nothing is there, and the first and last plane speak
-/// for half a distance beyond. A region that the file says to be interpolated, by the type
+/// its closed contours as polygons of its planes, holes by the even-odd rule. Planes are as far apart as the
+/// set's nearest ones. The region is empty at a plane without a contour; the first and the last plane stand
+/// for half a distance beyond them. A region that the file declares as interpolated, by the type
 /// INTERPOLATED_PLANAR or by slabs as thick as its planes are apart, goes on between its planes. Throws
 /// std::runtime_error if the name is not one of the set's or several have it, or none is given and there are
-/// several; if the region's contours cannot be read, lie in no parallel planes, or all in one plane or in
-/// planes within 0.02 mm, which tell no distance.
+/// several; if the region's contours cannot be read, lie in no parallel planes, or lie all in one plane or in
+/// planes within 0.02 mm, which determine no distance.
 ///
 /// A voxel whose centre lies on a contour, within a millionth of a millimetre, is inside where the region
 /// goes on towards growing u, v or position, so that it counts once among regions that share the contour.

@@ -41,7 +41,7 @@ std::string place_of(const voxel::SliceMask::Slice& slice) {
                            ", near [" + std::to_string(at.x) + ", " + std::to_string(at.y) + "]");
 }
 
-/// The pairs of slices at either end that hold nothing, but for one that shows where the object ends.
+/// Removes the empty slices at either end except the innermost one, which shows where the object ends.
 void drop_empty_ends(std::vector<voxel::SliceMask::Slice>& slices) {
   const auto empty = [](const auto& slice) { return slice.polygons_mm.empty(); };
   while (slices.size() > 2 && empty(slices.back()) && empty(slices[slices.size() - 2])) slices.pop_back();
@@ -50,7 +50,7 @@ void drop_empty_ends(std::vector<voxel::SliceMask::Slice>& slices) {
   slices.erase(slices.begin(), slices.begin() + static_cast<std::ptrdiff_t>(leading));
 }
 
-/// A contour's thinning or smoothing that does not make it cross itself. Nothing if it does.
+/// The points of a thinned or smoothed contour; none if it crosses itself.
 std::optional<Polygon> uncrossed(const brep::Contour& contour) {
   if (brep::first_crossing(contour)) return std::nullopt;
   return contour.points_mm;
@@ -58,7 +58,7 @@ std::optional<Polygon> uncrossed(const brep::Contour& contour) {
 
 struct Refined {
   Polygon points_mm;
-  std::size_t harmonics = 0;  ///< more than asked for, where those made a crossing
+  std::size_t harmonics = 0;  ///< more than requested if the contour would otherwise cross itself
   bool is_left = false;       ///< nothing was done, as it would cross itself
 };
 

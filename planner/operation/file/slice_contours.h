@@ -35,9 +35,9 @@ voxel::SliceMask slice_contours(const voxel::Scene& scene, const std::optional<S
 /// What is done to every contour, in this order.
 struct Refinement {
   double least_area_mm2 = 0.0;           ///< smaller contours go, holes too
-  double thin_mm = 0.0;                  ///< points within that of a straight piece go
+  double thin_mm = 0.0;                  ///< removes points within this distance of a straight piece
   std::optional<std::size_t> harmonics;  ///< smoothed by its lowest ones
-  double offset_mm = 0.0;                ///< out, or in below 0; contours that meet unite
+  double offset_mm = 0.0;                ///< outward, or inward if below 0; contours that meet are united
 };
 
 /// A contour that thinning or smoothing makes cross itself takes twice the harmonics, and so on, or stays as

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Shapes of SVG 1.1: elements are read in their order, each with the transforms of the groups that hold it;
-// outlines are taken to millimetres before curves become lines, so that the tolerance is one of millimetres.
+// outlines are converted to millimetres before curves become lines, so that the tolerance is in millimetres.
 #include "planner/operation/file/svg_outlines.h"
 
 #include <algorithm>
@@ -167,7 +167,7 @@ class Drawing {
     const std::optional<double> width_mm = length_mm("width"), height_mm = length_mm("height");
     const std::vector<double> box = numbers_of(elements, root, "viewBox");
     if (box.empty()) return;
-    if (box.size() != 4) elements.refuse_at(root.line, "viewBox has no four numbers");
+    if (box.size() != 4) elements.refuse_at(root.line, "viewBox must be four numbers");
     const glm::dvec2 size(box[2], box[3]);
     if (!(size.x > 0.0 && size.y > 0.0)) elements.refuse_at(root.line, "viewBox has no size");
     if (!width_mm && !height_mm) return;

@@ -12,8 +12,8 @@ namespace octotomy::planner {
 
 /// The picture that an SVG file was drawn over: the first image of it.
 struct SvgPicture {
-  std::string link;             ///< as the file says it: a path relative to the file, or data:image/png
-  glm::dvec2 shown_units{0.0};  ///< width and height that the file gives it
+  std::string link;             ///< as the file states it: a path relative to the file, or data:image/png
+  glm::dvec2 shown_units{0.0};  ///< width and height that the file states
   bool keeps_aspect = true;     ///< it is fitted into them, in their middle
   glm::dmat3 user_from_shown{
       1.0};  ///< from a place within its rectangle, in its own units, from the top left

@@ -26,8 +26,9 @@ void check(const Flap& flap, const FieldLocation& place) {
     place.at("segments").refuse("must name " + std::to_string(count) + " objects, one a segment");
   if (flap.contacts.size() != count + 1 && flap.contacts.size() != count)
     place.at("contacts")
-        .refuse("must name " + std::to_string(count + 1) +
-                " objects, one an osteotomy; without the last where the new bone ends free");
+        .refuse(
+            "must name " + std::to_string(count + 1) +
+            " objects, one for each osteotomy; leave out the last one if the new bone has a free end there");
 }
 
 std::optional<std::string> verdict_of(const Object& object) {
@@ -104,7 +105,7 @@ Operation flap_operation() {
       .takes(field("segments", &Flap::segments, "The placed segments, in order along the curve.").required())
       .takes(field("contacts", &Flap::contacts,
                    "The common volume of both bones in each osteotomy's slab, in order along the curve; "
-                   "without the last slab where the new bone ends free, as in a joint.")
+                   "without the last slab if the new bone has a free end there, as in a joint.")
                  .required())
       .takes(field("slab_mm", &Flap::slab_mm, "The thickness of these slabs.").greater_than(0).to(10))
       .example(R"({"id": "flap", "do": "flap", "segments": ["skull"], "contacts": ["skull", "skull"],

@@ -25,7 +25,8 @@ constexpr double orbit_above_nose = 6.0;   ///< a height within the orbits, over
 constexpr double least_orbit = 18.0, most_orbit = 42.0;  ///< from the mid-plane
 constexpr double orbit_height = 32.0;
 constexpr double two_rims = 8.0;  ///< largest distance between two rules' results for a rim
-constexpr double crest = 6.0;     ///< below a rim's crest nothing stands before it for so long
+constexpr double crest = 6.0;     ///< no bone within this distance below a rim's crest stands in front of the
+                                  ///< crest
 /// Places within these distances of the outermost count as equally far out, because of noise, and as
 /// equally far down and back, because of pitch.
 constexpr double as_far_out = 0.25, as_far_down = 1.0;

@@ -49,7 +49,8 @@ constexpr std::array<std::array<double, 3>, 4> other_ways{
 constexpr double threshold_share = 1.25;  ///< a higher threshold over the usual one, from -150 on
 /// Factors of the error interval: on the scatter of the trials, and on the edge of the coarsest voxel.
 constexpr double of_scatter = 1.3, of_voxel = 0.7;
-constexpr double scan_end_mm = 2.0;      ///< a voxel and more, as with skull_profile.cpp's
+constexpr double scan_end_mm = 2.0;      ///< more than a voxel; as the constant of this meaning in
+                                         ///< skull_profile.cpp
 constexpr double most_within_mm = 15.0;  ///< a landmark with a larger error is not reported
 constexpr double least_plane_deg = 0.5;
 
@@ -229,8 +230,8 @@ void add_brain_case(const HeadPart& head, const HeadFrame& frame, FoundPlaces& f
   reach("midline_top", frame.up, "the scan ends below the top of the skull");
 }
 
-/// Removes points of one side only that were searched for from points which are missing in the end: no other
-/// evidence for them remains.
+/// A point was searched for from other points. Removes it if one of those is missing in the end, and so is
+/// the point's counterpart on the other side: then nothing confirms it.
 void take_out_unfounded(std::vector<LandmarkGuess>& found, std::map<std::string, std::string>& missing) {
   const auto take_out = [&](const std::string& name, const std::string& opposite,
                             const std::vector<std::string>& sources) {

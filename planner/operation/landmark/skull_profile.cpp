@@ -186,7 +186,8 @@ class Reader {
     if (most < tooth_step) return -1;
     int k = first;
     while (fall(k) < 0.6 * most) ++k;
-    // The edge of the ridge may fall back as far as the edge of its teeth, which lies lower.
+    // The profile may step back at the ridge's edge as far as at the edge of the teeth. The teeth's edge is
+    // the lower one.
     const int near = tip + static_cast<int>(least_upper_tooth * nose_height_ / profile_.step_mm) + 1;
     const int far =
         std::min(lowest, tip + static_cast<int>(most_upper_tooth * nose_height_ / profile_.step_mm));

@@ -61,7 +61,8 @@ Operation airway_operation() {
                           "it is narrowest.",
                           Makes::Measurement)
       .takes(field("object", &Airway::object,
-                   "The air: a window of air within its limits, and of that the part at a point.")
+                   "The air in the airway: usually a window on air, cut at the airway's limits, of which one "
+                   "part is kept.")
                  .required())
       .takes(field("begin", &Airway::begin, "Its beginning: a point or a landmark in it.").required())
       .takes(field("end", &Airway::end, "Its end.").required())

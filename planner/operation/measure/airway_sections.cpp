@@ -158,7 +158,7 @@ Station fitted(const RawLine& line, double place) {
   return {(w2 * p0 - w1 * p1) / determinant, glm::normalize((w0 * p1 - w1 * p0) / determinant)};
 }
 
-/// Adds the part of a voxel section around its middle.
+/// Adds the connected part of a voxel section that contains its middle.
 void cut_voxels(const voxel::Octree& octree, const brep::Plane& plane, double reach_mm, AirwaySection& made) {
   const glm::dvec3 spacing_mm = octree.universe().lattice().spacing_mm();
   voxel::Sheet sheet;

@@ -34,7 +34,7 @@ struct SurfaceSamples {
                                                      ///< octree
   bool voxels_are_samples = false;                   ///< the voxels of the grey octree are the scan's samples
   std::optional<double> window_shift_mm = {};
-  std::optional<glm::dvec3> along_lps_mm = {};  ///< as in verify::SampledFrom
+  std::optional<glm::dvec3> along_lps_mm = {};  ///< as the member of this name in verify::SampledFrom
   /// The sample values at which the surface lies, by which several sources are distinguished.
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
   bool has_upper() const { return high < std::numeric_limits<double>::infinity(); }

@@ -119,7 +119,7 @@ void triangles(const Boolean& asked, const MeshBench& bench, MeshSide& made) {
       // Exact arithmetic finds gaps and overlaps between faces that coincide except for rounding. These are
       // no solids.
       if (error.code() != brep::ErrorCode::Geometry) throw;
-      result.findings.emplace_back("empty, but for what is thinner than the rounding of points");
+      result.findings.emplace_back("empty, except perhaps for parts thinner than the rounding of points");
     }
     if (!result.solid.empty() && is_film(result.solid)) result.solid = brep::Solid();
     if (!result.solid.empty())
@@ -127,7 +127,7 @@ void triangles(const Boolean& asked, const MeshBench& bench, MeshSide& made) {
                                 three_figures(result.solid.size().volume_mm3) + " mm3");
   }
   if (result.solid.empty() && !proof.is_null())
-    result.findings.emplace_back("empty, as exact numbers prove but for the rounding of points");
+    result.findings.emplace_back("empty: proven with exact numbers for the points as they are rounded");
   made.whole = std::move(result.solid);
   made.shift_mm = result.shift_mm;
   made.findings = std::move(result.findings);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A brush that takes away from an object along strokes, or adds to it.
+// A brush that removes material from an object along strokes, or adds material.
 #include "brep/shape/brush.h"
 
 #include <algorithm>

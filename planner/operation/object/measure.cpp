@@ -396,8 +396,9 @@ Operation measure_operation() {
       .takes(
           field("along", &Measure::along, "Two points: the shortest path along the surface.").from(2).to(2))
       .takes(field("thickness", &Measure::thickness,
-                   "Local thickness: the largest ball inside that holds a point, over the volume and "
-                   "the surface, and the thinnest wall away from edges; of a mesh or an octree."))
+                   "Local thickness of a mesh or an octree: at each point of the volume and of the "
+                   "surface, the diameter of the largest ball inside that contains the point; and the "
+                   "thinnest wall, without edges."))
       .takes(field("curvature", &Measure::curvature, "Mean and Gaussian curvature of the surface."))
       .verb_takes(field("distance", &Measure::distance, "Two points: their straight distance.").from(2).to(2))
       .verb_takes(field("angle", &Measure::angle, "Three points: the angle at the second.").from(3).to(3))

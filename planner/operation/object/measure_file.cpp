@@ -127,7 +127,7 @@ std::optional<double> volume_by_lines_mm3(const brep::Triangles& triangles) {
   return volumes.all.a_mm3 * lines / (lines - open);
 }
 
-/// What triangles have that enclose nothing: an area and a place.
+/// Measures triangles that enclose nothing: their area and place.
 FileAnswer measure_open(const brep::Triangles& triangles, const brep::Health& health) {
   if (health.faces == 0) throw std::runtime_error("there are no triangles to measure");
   const brep::Size size = brep::size_of(triangles);
@@ -179,7 +179,7 @@ std::optional<OneSurface> one_surface(const brep::Triangles& given, const brep::
   const bool is_split = !health.closed || !health.manifold || is_turned;
   brep::Triangles joined = is_turned ? brep::turned_alike(given).surface : given;
   if (is_split) joined = brep::joined_surface(std::move(joined)).surface;
-  // Merged points may be where shells touch.
+  // Shells may touch at merged points.
   if (is_split) joined = brep::split_fans(joined).surface;
   const brep::Health now = is_split ? brep::health(joined, {.self_intersections = false}) : health;
   if (!now.closed || !now.manifold || now.misoriented_edges > 0 || now.shells > most_united)

@@ -142,8 +142,8 @@ Made of_octree(const FileBench& bench, const Meshed& asked, std::vector<std::str
   if (cubes) return cuberille_of(octree, asked);
   findings.push_back(
       "surface: the octree stores voxels only as inside or outside, so that the isosurface runs half way "
-      "between "
-      "them in steps and its area is too large, on a ball by 9 %: a grey or partial octree has a smooth one");
+      "between them in steps, and its area is too large, by 9 % on a ball: make a grey or partial octree for "
+      "a smooth surface");
   return convert::isosurface(octree.universe(), octree);
 }
 

@@ -86,8 +86,9 @@ void voxels(const Offset& offset, const VoxelBench& bench, VoxelSide& made) {
   made.lineage = "distances to where the surface passes between voxels";
 }
 
-/// A level set, the cells it was made with, and how far its volume may be off: what cells twice as large change
-/// it by, of which second order explains a third, and the tolerance of flat parts over the surface.
+/// A level set, the cells with which it was made, and the half-width of its volume: the change of volume by
+/// cells twice as large, three times the error at second order, and the tolerance of flat parts times the
+/// area.
 struct LevelSet {
   brep::Solid moved;
   brep::OffsetOptions options;
@@ -111,7 +112,7 @@ LevelSet level_set(const brep::Solid& solid, const brep::OffsetOptions& options,
     try {
       found = {brep::offset(solid, finer), finer};
     } catch (const brep::TooLarge&) {
-      return found;  // as fine as the lattice goes; the half-width says how fine that is
+      return found;  // the lattice can be no finer; the half-width states the remaining error
     }
     coarse_mm3 = mm3;
   }

@@ -273,8 +273,8 @@ std::optional<Differing> ranked(const WholeObject& whole, const brep::Solid& sol
     return whole.witness ? whole.witness.allowed_sides(p_mm)
                          : verify::Reading{verify::either_side, verify::either_side};
   };
-  // A component that passes between the voxels' centres may be several pieces of voxels. It stays if one of
-  // them is the voxels', too.
+  // A component that passes between the voxels' centres may be several pieces of voxels. It stays if the
+  // voxels keep one of them.
   std::vector<std::size_t> unwanted;
   voxel::Octree by_mesh = voxel::Octree::empty(by_voxels.universe());
   for (const auto& [i, digitised] : components_of(solid, apart_in_mesh)) {

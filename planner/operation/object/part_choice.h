@@ -19,7 +19,7 @@ struct WholeObject {
   std::function<voxel::Octree()> voxels;
   std::function<brep::Solid()> mesh;
   verify::Witness witness;
-  std::size_t count = 1;  ///< of the largest parts that were asked for; not read with a least volume
+  std::size_t count = 1;  ///< number of the largest parts that were requested; not read with a least volume
 };
 
 /// Replaces the mesh's parts by those of the voxels where the kernels selected different parts and each

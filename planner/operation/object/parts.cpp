@@ -262,7 +262,7 @@ void triangles(const Parts& parts, const MeshBench& bench, MeshSide& made) {
   made.details = {{"parts", kept.kept}, {"of", kept.of}};
   made.whole = brep::trusted_solid(kept.mesh, brep::proof_of_part(solid.proof()));
   made.lineage = "triangles that share vertices";
-  // What was cut is no part of the object any more, nor of those that are left out.
+  // What was cut belongs neither to the object nor to the parts that are left out.
   if (!bridges.cut_mm.empty()) return;
   std::vector<std::uint32_t> others;
   for (std::uint32_t face = 0, next = 0; face < solid.triangles().faces.size(); ++face)

@@ -37,7 +37,7 @@ double cell_of(const Shell& shell, const MeshSide& made) {
   return cell != made.details.end() && cell->is_number() ? cell->get<double>() : cell_for(shell);
 }
 
-/// What is deeper than the thickness, by a lattice of cells that are doubled until it is not too large.
+/// The points deeper than the thickness, from a lattice whose cells are doubled until it is small enough.
 brep::Solid core_of(const brep::Solid& solid, const Shell& shell, const brep::Progress& progress,
                     MeshSide& made) {
   constexpr int most_rounds = 4;
@@ -48,10 +48,11 @@ brep::Solid core_of(const brep::Solid& solid, const Shell& shell, const brep::Pr
           brep::offset(solid, {.by_mm = -shell.thickness_mm, .cell_mm = cell_mm, .progress = progress});
       if (round > 0) {
         made.details = {{"cell_mm", cell_mm}};
-        made.findings.push_back("the object is too large for cells of " + plain(cell_for(shell)) +
-                                " mm: its inner surface was made with cells of " + plain(cell_mm) +
-                                " mm, and walls of its inside thinner than that may be missing from what is "
-                                "taken out; cut off the part that matters for smaller cells");
+        made.findings.push_back(
+            "the object is too large for cells of " + plain(cell_for(shell)) +
+            " mm: its inner surface was made with cells of " + plain(cell_mm) +
+            " mm, so that parts of the inside thinner than that may have stayed: cut off the "
+            "part that matters, for which smaller cells suffice");
       }
       return core;
     } catch (const brep::TooLarge&) {

@@ -8,8 +8,8 @@
 // 3 The region's bone grown by clearance and thickness, so that the guide's rim is round; about each slot walls
 //   that reach as far before the bone as the slot is deep: that shadow moved back along the saw; a rod for each
 //   sleeve. Edges of the walls are rounded.
-// 4 3 less 2, less slots and holes. Of that only what balls as wide as the least wall hold: slots and holes leave
-//   slivers at the edges of the bone, which no printer makes.
+// 4 3 minus 2, minus slots and holes. Only the part that is covered by balls within it as wide as the least
+//   wall: slots and holes leave slivers at the edges of the bone, which no printer makes.
 // 5 The largest piece, with points that files for printers can hold.
 //
 // The mesh kernel does 3 and 4 without Booleans, on distances to the surfaces (brep/shape/level_body.h). The voxel
@@ -307,7 +307,8 @@ void bound(const Guide& guide, const BoundBench& bench, Object& made) {
   inherit(object, made);
   if (object.mesh.whole && made.mesh.whole && !made.mesh.whole->empty()) {
     const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
-    // The mesh kernel keeps exact distances up to the last surface, which is thick_part()'s.
+    // In the mesh kernel, only the last surface, which thick_part() makes, adds an error: distances are exact
+    // before it.
     double apart_mm =
         verify::offset_allowance_mm({object.witness,
                                      voxel::combine(bench.universe, voxel::Expression(object.voxel.octree) &

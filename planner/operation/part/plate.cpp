@@ -7,10 +7,12 @@
 //   bending radius and the clearance, then shrunk by the radius: its surface has no hollow narrower than the
 //   radius, so that the plate bridges gaps. It still contains all that lies behind it, so that the plate slides
 //   on.
-// 3 What is left of the thickness above the rounding, on a band narrower by the rounding; grown by the rounding,
-//   so that all outer edges are round. Less 2, less the holes.
-// 4 Of that only what balls as wide as the least wall hold: where the bone falls away beside the plate, a flange
-//   runs out to nothing. The largest piece, with points that files for printers can hold.
+// 3 The plate: 2 grown by the thickness minus the rounding, within a band that is narrower by the
+//   rounding on each side; all of this grown by the rounding, so that all outer edges are round. Minus 2,
+//   minus the holes.
+// 4 Only the part that is covered by balls within it as wide as the least wall: where the bone falls away
+//   beside the plate, a flange would get ever thinner. The largest piece, with points that files for printers
+//   can hold.
 //
 // The mesh kernel does 3 and 4 without Booleans, on distances to the surfaces (brep/shape/level_body.h). The voxel
 // kernel combines windows of distances.
@@ -237,9 +239,10 @@ double through_mm(const Plate& plate) {
   return plate.clearance_mm + plate.thickness_mm + plate.bend_radius_mm + plate_room_mm;
 }
 
-/// What lies behind the bone, grown by bending radius and clearance and shrunk by the radius: right within the
-/// plate's thickness about its band, and nothing beyond. To shrink reaches as far as the radius about that, and
-/// beyond all counts as grown, so that only the surface before the band is measured to.
+/// Everything behind the bone, grown by bending radius and clearance and shrunk by the radius. Correct only
+/// within the plate's thickness about its band, where it is read. Shrinking needs the grown body within the
+/// radius about that region; beyond, all points count as grown, so that distances are measured only to the
+/// surface before the band.
 voxel::Expression closed_about(const Plate& plate, const voxel::Expression& behind, const VoxelBench& bench) {
   const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
   const double voxel_mm = std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
@@ -459,8 +462,8 @@ void bound(const Plate& plate, const BoundBench& bench, Object& made) {
   inherit(bone, made);
   if (bone.mesh.whole && made.mesh.whole && !made.mesh.whole->empty()) {
     const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
-    // What is hidden behind other bone does not count: the shadow is what is grown. To shrink it again by the
-    // radius moves no point of the surface farther than the grown surface is off.
+    // Bone hidden behind other bone has no effect, because the shadow is grown, not the bone. Shrinking it
+    // again by the radius moves no point of the surface by more than the error of the grown surface.
     const voxel::Octree near =
         voxel::combine(bench.universe, voxel::Expression(bone.voxel.octree) & plate.site.near.expression());
     const voxel::Octree behind =
@@ -555,11 +558,11 @@ Operation plate_operation() {
                    "Objects at their planned places that the screws must not touch, such as roots or the "
                    "nerve's canal.")
                  .in_plans_only())
-      .takes(
-          field("least_mm", &Plate::least_mm,
-                "The least distance to these; nearer ones are findings. The default is a project's choice.")
-              .from(0.0)
-              .to(20.0))
+      .takes(field("least_mm", &Plate::least_mm,
+                   "The least distance from the screws to 'away_from'; a smaller one is a finding. The "
+                   "default is a project's choice.")
+                 .from(0.0)
+                 .to(20.0))
       .takes(least_wall(&Plate::least_wall_mm))
       .example(R"({"id": "left_plate", "do": "plate", "object": "advanced", "side": "anterior",
         "points": [[18, -82, -36], [18, -82, -20]], "screws": ["left_1"]})")

@@ -2,7 +2,7 @@
 // Whether an object can be printed, one line a question: is it closed, without self-crossings, outward, one
 // piece, without closed cavities; its smallest wall and gap; overhangs for a build direction; the printer's
 // bed. Both kernels answer about pieces, cavities, walls and gaps; the mesh's answer counts, and voxels must
-// agree within what voxels can tell. The others are exact questions about triangles.
+// agree within their resolution. The others are exact questions about triangles.
 
 #include "planner/operation/file/mesh_in.h"
 #include "planner/operation/measure/result_json.h"

@@ -385,11 +385,11 @@ Operation screw_operation() {
       .takes(
           field("cuts", &Screw::cuts,
                 "Saw steps, masks and flaps' spaces of this plan whose cuts the screw must stay away from."))
-      .takes(
-          field("least_mm", &Screw::least_mm,
-                "The least distance to these; nearer ones are findings. The default is a project's choice.")
-              .from(0.0)
-              .to(20.0))
+      .takes(field("least_mm", &Screw::least_mm,
+                   "The least distance from the screw to 'away_from' and 'cuts'; a smaller one is a finding. "
+                   "The default is a project's choice.")
+                 .from(0.0)
+                 .to(20.0))
       .example(R"({"id": "left_1", "do": "screw", "object": "maxilla", "at": [18, -80, -34],
         "direction": [0, 1, 0], "length_mm": 5, "cuts": ["sawn"]})")
       .tool()

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Whether a part can be put on: how deep bone or teeth reach into the space that it passes through on its way
 // to its place. Each kernel sweeps its own answer to the part and compares it with its own answers to the
-// objects. The mesh's depth is the answer; the voxels' must agree within what voxels can tell.
+// objects. The mesh's depth is the answer; the voxels' must agree within their resolution.
 #include "brep/shape/seating.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // An object with all that lies behind it along an insertion direction: its undercuts blocked out. A part from
-// which this is taken away can be slid on along the direction. Each kernel works on its own answer to the
-// object; the direction and the end plane are settled first, so that both take the same.
+// which this is subtracted can be slid on along the direction. Each kernel works on its own answer to the
+// object; the direction and the end plane are determined first, so that both kernels use the same.
 //
 // With a tolerated undercut the shadow is that of the object's points deeper than the tolerance, united with
 // the object. On its way a part then meets points of the object that are at most so deep below its surface.

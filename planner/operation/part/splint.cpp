@@ -7,7 +7,8 @@
 // 3 From the slab are taken the teeth grown by the offset, and the shadow of the teeth grown by the offset less
 //   the tolerated undercut. That shadow lies within the grown teeth where there is no undercut, so that there
 //   the fitting surface is that of the grown teeth.
-// 4 Walls thinner than asked are cut off: only what balls of that diameter within the splint hold stays.
+// 4 Walls thinner than asked are cut off: only the part that is covered by balls of that diameter within the
+//   splint stays.
 // 5 The largest piece, with points that files for printers can hold.
 //
 // The mesh kernel does 3 and 4 without Booleans, on distances to the surfaces (brep/shape/level_body.h). The voxel

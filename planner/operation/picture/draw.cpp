@@ -73,7 +73,7 @@ std::string name_of(const std::string& name) {
   return fs::path(name).stem().string();
 }
 
-/// A drawn surface, line set or slice, as the answer and the legend list it.
+/// An entry of the answer and the legend: a drawn surface, line set or slice.
 struct Item {
   std::string name, kind;
   std::optional<glm::vec3> colour;  ///< none: its own tones

@@ -46,7 +46,7 @@ voxel::Octree voxels_of_mesh(const std::filesystem::path& path,
     refuse(
         "encloses no voxel to be drawn: it is a sheet, inside out, thinner than a voxel, or elsewhere; "
         "octotomy "
-        "info tells which");
+        "info reports which");
   return octree;
 }
 

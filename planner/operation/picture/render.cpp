@@ -517,14 +517,13 @@ Operation render_operation() {
                 "How samples look in composite pictures: bone, skin, vessels (CT in HU; default: bone), or a "
                 "JSON file of points with sample, colour and per_mm."))
       .takes(
-          field(
-              "cut_planes", &Render::cut_planes,
-              "NX,NY,NZ,OFFSET_MM in LPS: takes away what lies on the normal's side of the plane; the offset "
-              "is the plane's place along the normal; may be repeated.")
+          field("cut_planes", &Render::cut_planes,
+                "NX,NY,NZ,OFFSET_MM in LPS: removes what lies on the normal's side of the plane; the offset "
+                "is the plane's place along the normal; may be repeated.")
               .repeated()
               .called("cut-plane"))
       .takes(field("cut_boxes", &Render::cut_boxes,
-                   "X0,Y0,Z0,X1,Y1,Z1 in LPS mm: takes away what lies in the box; may be repeated.")
+                   "X0,Y0,Z0,X1,Y1,Z1 in LPS mm: removes what lies in the box; may be repeated.")
                  .repeated()
                  .called("cut-box"))
       .takes(field("cut_face", &Render::cut_face,
@@ -578,12 +577,12 @@ Operation render_operation() {
                       .read_if<Render>(draws_samples, "only scans and grey octrees have one: leave it out")
                       .read_if<Render>([](const Render& render) { return !render.steeper_per_mm; },
                                        "changes of samples end the rays at any sample value: leave it out"))
-      .verb_takes(
-          field("voxel_mm", &Render::voxel_mm,
-                "Edge of a voxel. Default: as fine as the scan, at most 512 a side.")
-              .greater_than(0.0)
-              .read_if<Render>([](const Render& render) { return !is_octree(first_file(render)); },
-                               "the first file is an octree, whose voxels all are drawn in: leave it out"))
+      .verb_takes(field("voxel_mm", &Render::voxel_mm,
+                        "Edge of a voxel. Default: as fine as the scan, at most 512 a side.")
+                      .greater_than(0.0)
+                      .read_if<Render>(
+                          [](const Render& render) { return !is_octree(first_file(render)); },
+                          "the first file is an octree, whose voxels are used for everything: leave it out"))
       .reads_scans()
       .uses(uses)
       .example(R"({"id": "front", "do": "render", "objects": ["rest", "advanced"], "path": "front.png",

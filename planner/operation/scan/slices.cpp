@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Slices as far apart as is asked for, between those of the scan.
+// Slices at a requested distance, interpolated between those of the scan.
 #include <map>
 
 #include "planner/operation/table/operation.h"

@@ -159,7 +159,8 @@ struct AnswerBench {
   voxel::Progress progress(const std::string& doing) const;
 };
 
-/// The bench of a verb that answers from files by itself, and of a step that writes the same file of objects.
+/// The bench of a verb that answers from files by itself, and of a step of this operation, which writes the
+/// same kind of file from objects.
 struct FileBench {
   Timings& timings;
   std::stop_token stop = {};

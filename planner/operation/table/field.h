@@ -93,7 +93,8 @@ struct Field {
   std::optional<double> least = {};     ///< numbers are at least this, lists have at least this many entries
   std::optional<double> most = {};      ///< numbers are at most this, lists have at most this many entries
   std::optional<double> below = {};     ///< numbers are less
-  std::vector<std::string> words = {};  ///< the texts that are allowed; empty: any that is not empty
+  std::vector<std::string> words = {};  ///< the allowed texts; without any, every text but an empty one is
+                                        ///< allowed
   std::string sample = {};              ///< an example for error messages, as JSON
 
   std::optional<std::string> argument = {};  ///< on the command line a positional argument of this name
@@ -135,7 +136,7 @@ struct Field {
   std::string unit() const;  ///< unit_of_name() of its name
 };
 
-/// A field that holds a value of a type of Slot.
+/// A field whose type is one of Slot's alternatives.
 template <typename Owner, typename Value>
 Field field(std::string name, Value Owner::*member, std::string says) {
   return {std::move(name), std::move(says),

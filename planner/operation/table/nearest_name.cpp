@@ -37,7 +37,8 @@ bool is_near(std::size_t edits, std::string_view a, std::string_view b) {
   return 2 * edits <= std::max(a.size(), b.size());
 }
 
-/// Whether the edits are worth counting: they are at least as many as one word is longer than the other.
+/// Whether counting the edits may yield a suggestion: at least as many are needed as one word is longer than
+/// the other.
 bool may_be_near(std::string_view a, std::string_view b) {
   const std::size_t shorter = std::min(a.size(), b.size()), longer = std::max(a.size(), b.size());
   return longer <= longest_suggested && is_near(longer - shorter, a, b);

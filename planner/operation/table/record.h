@@ -109,7 +109,7 @@ void read_value(const Json& json, std::optional<Type>& value) {
   if (!json.is_null()) read_value(json, value.emplace());
 }
 
-/// Whether the value is no empty optional, list or text.
+/// Whether the value is present: neither an empty optional nor an empty list or text.
 template <typename Type>
 bool has_any(const Type& value) {
   if constexpr (requires { value.has_value(); })

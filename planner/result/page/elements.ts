@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What all pages are made of: tables, lists, verdicts as labels, SVG. Text enters as text nodes and attributes, so
-// that no name in a result can become markup.
+// The elements of all pages: tables, lists, verdicts as labels, SVG. Text enters as text nodes and
+// attributes, so that no name in a result can become markup.
 import {Attributes, Child, el, put} from "../../browser/page/base/html";
 import {grouped, three_figures} from "../../browser/page/base/numbers";
 import {Counts, Interval, Verdict} from "./result";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What pages read of `result.json`, and what the program adds to it for a page. The C++ side: members_of() of the
-// measured values in `planner/operation`, `planner/result/report/result_record.h` and `report_page.cpp`.
+// The members of `result.json` that pages read, and those that the program adds for a page. The C++ side:
+// members_of() of the measured values in `planner/operation`, `planner/result/report/result_record.h` and
+// `report_page.cpp`.
 import {AuditRow, PlanDocument} from "../../browser/page/protocol";
 import {Vec2, Vec3} from "../../browser/page/base/vector";
 

@@ -139,7 +139,7 @@ function not_covered({counts, answer, not_covered: lines}: Verification): Child 
     ...[...shared].sort(([a], [b]) => a < b ? -1 : 1).map(
         ([entry, count]) => `both answers of ${plural(count, "certificate")} share ${entry}`),
     "what every certificate takes from one place: how scans are read, which whole samples a window holds, plans' names " +
-        "and motions' matrices, convert::voxelise, which says what lies inside of a mesh, and whether a window is the " +
+        "and motions' matrices, convert::voxelise, which decides what lies inside a mesh, and whether a window is the " +
         "tissue that it is meant for"
   ]));
 }

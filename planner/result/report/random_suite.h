@@ -73,9 +73,10 @@ inline constexpr double least_substance = 0.3;
 
 /// Asks both kernels random questions: expressions up to six operators deep, of sets of up to 48 voxels a
 /// side in general position and of up to four as given; and plans. Questions are asked in parallel; answers
-/// depend on the seed only. A disagreement is simplified (operators, motions and regions taken away, sets cut
-/// down) as long as it stays one, and written as a plan with its scans. Throws Stopped, and as voxel::write_file().
-/// Cost in processor time: a question to the exact tier about 0.3 s, as given 3 ms, to the bounded tier 1 s.
+/// depend on the seed only. A disagreement is simplified (without some operators, motions or regions, by
+/// smaller sets) as long as the kernels still disagree, and written as a plan with its scans. Throws Stopped,
+/// and as voxel::write_file(). Cost in processor time: a question to the exact tier about 0.3 s, as given 3
+/// ms, to the bounded tier 1 s.
 RandomSuite ask_random(const RandomSuiteOptions& options);
 
 }  // namespace octotomy::planner

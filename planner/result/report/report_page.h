@@ -5,7 +5,7 @@
 
 namespace octotomy::planner {
 
-/// What the report draws: result_json(), and what only people see, which is patients and pictures. Members:
+/// The data of the report page: result_json(), and patients and pictures, which only people see. Members:
 /// interface Report of planner/result/page/result.ts.
 nlohmann::ordered_json report_data(const Result& result);
 

@@ -22,7 +22,7 @@ Tetrahedra about_a_side() {
 
 FlatInterfaceOptions at_a_fifth(double least_deg) {
   FlatInterfaceOptions options;
-  options.planes = {{{0, 0, 0.2}, {0, 0, 1}, 1, 2}};
+  options.planes = {{{{0, 0, 0.2}, {0, 0, 1}}, 1, 2}};
   options.least_deg = least_deg;
   return options;
 }
@@ -66,7 +66,7 @@ TEST(FlatInterfaces, NodesGoToThePlaneUnlessAnElementWouldBeUnfit) {
     if (six_volumes(corners_mm(t, i)) < 0.0) std::swap(t.tets[i][0], t.tets[i][1]);
   t.region_of_tet = {0, 1};
   FlatInterfaceOptions options;
-  options.planes = {{{0, 0, 0}, {0, 0, 1}, 1, 2}};
+  options.planes = {{{{0, 0, 0}, {0, 0, 1}}, 1, 2}};
   Tetrahedra strict = t;
   flatten_interfaces(t, options);
   EXPECT_EQ(t.nodes_mm[2], glm::dvec3(0, 1, 0));

@@ -119,3 +119,29 @@ export function button(
   const name = label instanceof SVGElement ? {"aria-label": tip.split(". ")[0] ?? tip} : {};
   return el("button", {type: "button", "data-tip": tip, ...name, onclick, ...more}, label);
 }
+
+/// A slider and a number field of one value. `shared` are attributes of both, `of_slider` of the slider only.
+/// `take` receives a number while the slider moves, and from the field when it was typed.
+export function slider(
+    label: string, key: string, shared: Attributes, of_slider: Attributes, take: (value: number) => void): Child {
+  const number = (event: Event): number => Number((event.target as HTMLInputElement).value);
+  const field = el("input", {
+    type: "number",
+    ...shared,
+    "data-key": key,
+    name: key,
+    onchange: (event: Event) => take(number(event))
+  });
+  return el(
+      "label", {class: "slider"}, el("span", {}, label), el("input", {
+        type: "range",
+        ...of_slider,
+        ...shared,
+        "data-key": `${key}-range`,
+        oninput: (event: Event) => {
+          field.value = String(number(event));
+          take(number(event));
+        }
+      }),
+      field);
+}

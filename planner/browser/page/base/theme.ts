@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Light or dark, as the person or the system says.
+// Light or dark, as the person or the system has chosen.
 import {set, state, watch} from "../state";
 
 export const is_dark = (): boolean => state.theme === "dark" ||

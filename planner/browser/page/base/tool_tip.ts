@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tool tips: every element with `data-tip` tells what it is for, on hover and on keyboard focus.
+// Tool tips: every element with `data-tip` shows its purpose on hover and on keyboard focus.
 import {el} from "./html";
 
 export function attach_tips(): void {

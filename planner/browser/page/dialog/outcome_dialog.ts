@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What an operation achieved of the plan: a later scan, and planned and achieved movement side by side, with
-// intervals.
+// How near an operation came to its plan: takes a scan from after the operation, and shows the planned and
+// the achieved movements side by side, with intervals.
 import {busy, done, try_to} from "../actions";
 import {word_of} from "../base/anatomical";
 import {open_dialog} from "../base/dialog";

@@ -83,7 +83,7 @@ export function open_help(): void {
          el("table", {}, row("Drag", "turn"), row("Shift drag, middle button", "move the picture"),
             row("Wheel, Ctrl drag", "zoom"), row("Click", "cross-hair to the surface, select the object"),
             row("Double click", "enlarge the pane"), row("Arrow keys", "turn by 5°, with Shift by 15°"),
-            row("Arrow keys, with a tool for places", "carry a place, with Shift finely; Space clicks it"))),
+            row("Arrow keys, with a tool for positions", "move a position, with Shift in small steps; Space clicks there"))),
       el("section", {}, el("h3", {}, "In a slice"),
          el("table", {}, row("Drag", "move the cross-hair"), row("Wheel, Page Up, Page Down", "next slice"),
             row("Right drag", "level and width of the greys"), row("Ctrl wheel", "zoom"))),
@@ -99,7 +99,7 @@ export function open_help(): void {
                         el("tr", {}, el("td", {}, key_cap(command.key!)), el("td", {}, command.name))))),
       el("section", {}, el("h3", {}, "Certificates"),
          el("p", {},
-            "Two kernels compute every object: one counts voxels, one measures triangles. A green badge says that they agree within what the scan can tell, amber that there is a doubt, red that they disagree. Click a badge to see the place."),
+            "Two kernels compute every object: one counts voxels, one measures triangles. A green badge means that they agree within the resolution of the scan, amber that there is a doubt, red that they disagree. Click a badge to see the place."),
          el("p", {}, "Not a medical device. Nothing leaves this machine."))));
   // The help scrolls, so it must be able to have the focus.
   document.querySelector<HTMLElement>("dialog.help .dialog-body")!.tabIndex = 0;

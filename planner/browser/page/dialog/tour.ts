@@ -115,7 +115,7 @@ const stops: Stop[] = [
   },
   {
     title: "Certify and report",
-    says: "Certify asks both kernels. Green badges say that they agree. Then write the report.",
+    says: "Certify compares both kernels. A green badge means that they agree. Then write the report.",
     is_done: () => (state.plan?.objects ?? []).some((object) => object.certificate),
     show: () => set({right_tab: "numbers"}),
     do_it: () => void certify_all()

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a pane asks the server to draw, and what its pictures depend on besides.
+// A pane's requests for pictures, and everything else that its pictures depend on.
 import {drawn_objects, is_overlap} from "../drawn_objects";
 import {makes_shape} from "../operations";
 import type {Pane} from "./panes";

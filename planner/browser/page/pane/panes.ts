@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A pane: a 2D canvas that shows the newest picture of the server, asks for the next, and picks by the depth
+// A pane: a 2D canvas that shows the newest picture of the server, requests the next, and picks by the depth
 // and object planes of the picture at rest. At most two pictures are under way; the latest setting wins.
 import {ask} from "../actions";
 import {drawn_objects} from "../drawn_objects";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What is set about the views for a while, and is no step: the cut plane, colours by distance, contacts.
+// Temporary settings of the views, which are no steps: the cut plane, colours by distance, contacts.
 import {add_step, free_id} from "../actions";
 import {clear_compare} from "../commands";
 import {object_ids} from "../drawn_objects";
@@ -17,7 +17,7 @@ export function cut_plane_card(): Child {
       "section", {class: "card"},
       el("h3", {}, icon("plane", 16), "Cut plane", el("span", {class: "spring"}),
          button(
-             icon("close", 14), "Take the cut plane away", () => set({cut_plane: null}),
+             icon("close", 14), "Remove the cut plane", () => set({cut_plane: null}),
              {class: "ghost small"})),
       el("div", {class: "presets"},
          names.map(
@@ -28,7 +28,7 @@ export function cut_plane_card(): Child {
                  }),
                  {class: cut.axis === axis ? "on" : ""})),
          button(
-             "Other side", "Takes away the other side",
+             "Other side", "Hides the other side of the plane instead",
              () => set({cut_plane: {...cut, side: cut.side === 1 ? -1 : 1}}))),
       el("label", {class: "slider"}, el("span", {}, "At"), el("input", {
            type: "range",

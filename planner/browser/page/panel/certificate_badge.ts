@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A certificate as a badge on every number: both kernels agree, doubt, disagree, or have not been asked.
+// A certificate as a badge on every number: both kernels agree, there is a doubt, they disagree, or nothing
+// is certified yet.
 import {Child, el} from "../base/html";
 import {grouped, unit_text} from "../base/numbers";
 import {show_place} from "../pane/pane_grid";
@@ -44,7 +45,7 @@ export function badge(
           class: "badge none",
           role: "img",
           "aria-label": `${id}: not certified`,
-          "data-tip": "Not certified yet. Certify asks both kernels and compares their answers."
+          "data-tip": "Not certified yet. Certify computes all objects in both kernels and compares them."
         },
         "·");
   const resolved = certificate.resolved === false ? " Not resolved: smaller than the voxels can tell." : "";

@@ -29,11 +29,11 @@ export function numbers(): Child {
     el("section", {class: "card"},
        el("h3", {}, "Certificates", el("span", {class: "spring"}),
           button(
-              [icon("certify", 15), "Certify"], "Certify. Asks both kernels and compares their answers",
+              [icon("certify", 15), "Certify"], "Certify. Computes all objects in both kernels and compares them",
               () => void certify_all(), {class: "primary"})),
        el("p", {class: "says"},
           certified ? `${counts.PASS} agree, ${counts.WARN} in doubt, ${counts.FAIL} disagree; ${
-                          objects.length - certified} not asked.` :
+                          objects.length - certified} not certified.` :
                       "No number is certified yet.")),
     el("table", {class: "numbers"}, el("caption", {}, "Objects"), el("tbody", {}, objects.map((object) => {
          const step = step_of(object.id)!;

@@ -181,13 +181,13 @@ function step_menu(step: Step): Child {
   const menu =
       el("div", {class: "menu", role: "menu", hidden: step.id !== step_of_menu},
          button(
-             "Copy as command", "A line for the terminal that does this step",
+             "Copy as command", "Copies a command for the terminal that runs this step",
              () => void copy_command(step, "shell"), {role: "menuitem"}),
          button(
-             "Copy as Python", "A line of Python that adds this step",
+             "Copy as Python", "Copies a line of Python that adds this step",
              () => void copy_command(step, "python"), {role: "menuitem"}),
          button(
-             "Take away", "Takes the step out of the plan; undo brings it back", () => remove_step(step),
+             "Remove", "Removes the step from the plan; undo restores it", () => remove_step(step),
              {role: "menuitem", class: "danger"}));
   const open = button(icon("more", 16), `More for ${step.id}`, (event) => {
     event.stopPropagation();

@@ -3,7 +3,7 @@
 // is a step.
 import {add_step, replace_step, window_step} from "../actions";
 import {look_for_cleaning} from "./cleaning";
-import {button, Child, el} from "../base/html";
+import {button, Child, el, slider} from "../base/html";
 import {ScanState, Step, Tissue} from "../protocol";
 import {bone_low, DraftWindow, first_scan, selected_step, set, state, step_of, steps} from "../state";
 import {take_tool, Tool} from "../tool/tool";
@@ -71,30 +71,8 @@ function panel(): Child {
   const [least, most] = range(draft.scan);
   const tissues = state.hello?.tissues.length ? state.hello.tissues : usual;
   const change = (part: Partial<DraftWindow>): void => set({draft_window: {...draft, ...part}});
-  const slider = (label: string, value: number, key: string, take: (value: number) => void): Child => {
-    const shared = {step: 1, value, "aria-label": label};
-    const number = (event: Event): number => Number((event.target as HTMLInputElement).value);
-    const typed = el("input", {
-      type: "number",
-      ...shared,
-      "data-key": key,
-      name: key,
-      onchange: (event: Event) => take(number(event))
-    });
-    return el(
-        "label", {class: "slider"}, el("span", {}, label), el("input", {
-          type: "range",
-          min: least,
-          max: most,
-          ...shared,
-          "data-key": `${key}-range`,
-          oninput: (event: Event) => {
-            typed.value = String(number(event));
-            take(number(event));
-          }
-        }),
-        typed);
-  };
+  const bound = (label: string, value: number, key: string, take: (value: number) => void): Child =>
+      slider(label, key, {step: 1, value, "aria-label": label}, {min: least, max: most}, take);
   return [
     !is_in_hu(draft.scan) ?
         el("p", {class: "says"},
@@ -117,8 +95,8 @@ function panel(): Child {
           },
           {class: on ? "on" : "", "aria-pressed": String(on)});
     })),
-    slider("From", draft.low, "low", (low) => change({low})),
-    slider("To", draft.high ?? most, "high", (high) => change({high: high >= most ? undefined : high})),
+    bound("From", draft.low, "low", (low) => change({low})),
+    bound("To", draft.high ?? most, "high", (high) => change({high: high >= most ? undefined : high})),
     el("div", {class: "row"},
        button(
            draft.replaces ? `Set ${draft.replaces}` : "Make object", "Makes it a step of the plan",

@@ -2,7 +2,7 @@
 // The brush: a drag over the selected object erases it along the stroke, or paints onto it. Each stroke is one change
 // of the plan; further strokes of the same mode are added to the same step.
 import {add_step, free_id, replace_step} from "../actions";
-import {button, Child, el} from "../base/html";
+import {button, Child, el, slider} from "../base/html";
 import {ink, line, text} from "../base/ink";
 import {add, distance, dot, hundredths, normalised, scaled, sub, length, Vec2, Vec3} from "../base/vector";
 import {makes_body} from "../operations";
@@ -242,38 +242,24 @@ function panel(): Child {
         set({tool: state.tool});
       },
       {class: now === value ? "on" : "", "aria-pressed": String(now === value), "data-key": `brush-${label}`});
-  const slider = (label: string, value: number, most: number, key: string, take: (mm: number) => void): Child => {
-    const shared = {min: least_mm, max: most, step: 0.5, value, "aria-label": `${label} in mm`};
-    const number = (event: Event): number => Number((event.target as HTMLInputElement).value);
-    const typed = el("input", {type: "number", ...shared, "data-key": key, name: key, onchange: (event: Event) => take(number(event))});
-    return el(
-        "label", {class: "slider"}, el("span", {}, label), el("input", {
-          type: "range",
-          ...shared,
-          "data-key": `${key}-range`,
-          oninput: (event: Event) => {
-            typed.value = String(number(event));
-            take(number(event));
-          }
-        }),
-        typed);
-  };
+  const size = (label: string, value: number, most: number, key: string, take: (mm: number) => void): Child =>
+      slider(label, key, {min: least_mm, max: most, step: 0.5, value, "aria-label": `${label} in mm`}, {}, take);
   const name = on ? String(on.going_on ? on.step.object : on.step.id).replace(/_/g, " ") : "";
   return [
     el("div", {class: "presets", role: "group", "aria-label": "What a stroke does"},
-       choice<Mode>("Erase", "A stroke takes away from the object", mode, "erase", (value) => mode = value),
+       choice<Mode>("Erase", "A stroke removes material from the object", mode, "erase", (value) => mode = value),
        choice<Mode>("Paint", "A stroke adds to the object", mode, "paint", (value) => mode = value)),
     el("div", {class: "presets", role: "group", "aria-label": "Shape of the brush"},
        choice<Shape>("Ball", "Reaches as deep as it is wide", shape, "ball", (value) => shape = value),
        choice<Shape>("Slab", "A disc that faces you, as thick as you set it", shape, "slab", (value) => shape = value)),
-    slider("Radius", radius_mm, 30, "brush-radius", set_radius),
-    shape === "slab" ? slider("Depth", thickness_mm, 60, "brush-thickness", (mm) => {
+    size("Radius", radius_mm, 30, "brush-radius", set_radius),
+    shape === "slab" ? size("Depth", thickness_mm, 60, "brush-thickness", (mm) => {
       if (mm > 0) thickness_mm = Math.min(200, Math.max(least_mm, Math.round(mm * 10) / 10));
     }) :
                        null,
     el("p", {class: "says"},
        !on ? "Select the object to draw on." :
-             `The next stroke ${mode === "paint" ? "adds to" : "takes away from"} ${name}${on.going_on ? ", in the same step" : ", as a new step"}.`),
+             `The next stroke ${mode === "paint" ? "adds to" : "erases from"} ${name}${on.going_on ? ", in the same step" : ", as a new step"}.`),
     mode === "paint" ? el("p", {class: "says"}, "No scan measures what is painted; its findings state how much it is.") : null,
   ];
 }

@@ -114,7 +114,7 @@ async function change(place: Place, what: string, take: (now: Polygon[]) => Poly
     return add_step(
         {id, do: "tile", view: place.view, contours: all as unknown as Json, end_mm: hundredth(slice_mm(place) / 2)}, what);
   }
-  if (!all.some((slice) => slice.polygons_mm.length)) return edit({remove: step.id}, `${step.id} taken away`, null);
+  if (!all.some((slice) => slice.polygons_mm.length)) return edit({remove: step.id}, `${step.id} removed`, null);
   return replace_step(step.id, {...step, contours: all as unknown as Json}, what);
 }
 function then(place: Place, what: string, take: (now: Polygon[]) => Polygon[]|null): void {
@@ -399,7 +399,7 @@ function panel(): Child {
        choice("Draw", "A drag draws a contour, or a stretch of one anew; clicks set corners, Enter closes", "draw"),
        choice("Drag", "Drags a place of a contour, and what is near it", "drag"),
        choice("Smooth", "Smooths a contour along the drag", "smooth"),
-       choice("Erase", "A click takes a contour away", "erase"),
+       choice("Erase", "A click removes a contour", "erase"),
        choice("Seed", "A click finds the region of the slice around a pixel", "seed")),
     mode === "drag" || mode === "smooth" ? number("Reach", reach_mm, 60, "contour-reach", set_reach) : null,
     mode === "seed" ? number("Tolerance", tolerance, 5000, "contour-tolerance", (value) => {

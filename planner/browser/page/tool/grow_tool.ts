@@ -2,7 +2,7 @@
 // Region growing: a click sets a seed, and a drag from it the tolerance. The region that grows is shown meanwhile, and
 // is a step of the plan once it is accepted.
 import {add_step, free_id, try_to} from "../actions";
-import {button, Child, el} from "../base/html";
+import {button, Child, el, slider} from "../base/html";
 import {dot_at, ink, label} from "../base/ink";
 import {grouped} from "../base/numbers";
 import {add, dot, hundredths, scaled, Vec2, Vec3} from "../base/vector";
@@ -177,24 +177,14 @@ function panel(): Child {
       },
       {class: is_on ? "on" : "", "aria-pressed": String(is_on), "data-key": `grow-${key}`});
   const most = is_in_hu() ? 1000 : span() / 2;
-  const shared = {min: 0, step: is_in_hu() ? 1 : "any", value: tolerance(), "aria-label": `Tolerance in ${unit()}`};
-  const number = (event: Event): number => Number((event.target as HTMLInputElement).value);
-  const field = el("input", {type: "number", ...shared, "data-key": "grow-tolerance", name: "tolerance", onchange: (event: Event) => set_tolerance(number(event))});
   return [
-    el("label", {class: "slider"}, el("span", {}, unit()), el("input", {
-         type: "range",
-         ...shared,
-         max: Math.max(most, tolerance()),
-         "data-key": "grow-tolerance-range",
-         oninput: (event: Event) => {
-           field.value = String(number(event));
-           set_tolerance(number(event));
-         }
-       }),
-       field),
+    slider(
+        unit(), "grow-tolerance",
+        {min: 0, step: is_in_hu() ? 1 : "any", value: tolerance(), "aria-label": `Tolerance in ${unit()}`},
+        {max: Math.max(most, tolerance())}, set_tolerance),
     el("div", {class: "presets", role: "group", "aria-label": "What the tolerance is measured from"},
-       choose("Seed", "Samples within the tolerance of the seeds' own", "seed", !running_mean, () => running_mean = false),
-       choose("Running mean", "Samples within the tolerance of the mean of the region as it grows", "mean", running_mean, () => running_mean = true)),
+       choose("Seed", "Samples that differ from the seeds' samples by at most the tolerance", "seed", !running_mean, () => running_mean = false),
+       choose("Running mean", "Samples that differ from the mean of the growing region by at most the tolerance", "mean", running_mean, () => running_mean = true)),
     el("div", {class: "presets", role: "group", "aria-label": "What a click does"},
        choose("New seed", "The next click begins anew", "new", !adds, () => adds = false),
        choose("Further seed", "The next click adds a seed", "further", adds, () => adds = true)),

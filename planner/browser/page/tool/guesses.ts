@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A first guess of landmarks. None of it is in the plan until a person keeps it, or clicks where it is.
+// A first guess of landmarks. A guess enters the plan only when a person keeps it, or clicks the landmark's
+// true position.
 import {try_to} from "../actions";
 import {button, Child, el} from "../base/html";
 import {ink, label} from "../base/ink";
@@ -77,6 +78,6 @@ export function guess_card(guess: LandmarkGuess, keep: () => void, pass: () => v
        `${guess.says[0]!.toUpperCase()}${guess.says.slice(1)}. Keep it, or click where it is.`),
     el("div", {class: "row"},
        button("Keep", "Keep. The guess becomes a landmark of the plan", keep, {class: "primary", "data-key": "keep-guess"}),
-       button("Pass over", "Pass over. The guess is taken away", pass, {"data-key": "pass-guess"})),
+       button("Pass over", "Pass over. Removes the guess", pass, {"data-key": "pass-guess"})),
   ];
 }

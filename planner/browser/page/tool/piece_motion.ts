@@ -120,5 +120,3 @@ export async function commit_motion(move: Motion): Promise<void> {
 const clean = (values: {[field: string]: Json|undefined}): {[field: string]: Json} =>
     Object.fromEntries(Object.entries(values).filter(
         ([, value]) => typeof value === "number" && value !== 0)) as {[field: string]: Json};
-
-export const can_move = (): boolean => piece() !== null;

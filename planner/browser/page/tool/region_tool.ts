@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Regions: polygons drawn in a view or on a slice, whose back-projections enclose a mask. Click adds a
-// corner, Enter or the first corner closes; corners are dragged, Delete takes one away.
+// corner, Enter or the first corner closes; corners are dragged, Delete removes one.
 import {add_step, add_steps, edit, free_id, replace_step} from "../actions";
 import {look_of} from "../drawn_objects";
 import {makes_body, operands} from "../operations";
@@ -211,9 +211,9 @@ async function remove_corner(): Promise<void> {
   last_corner = null;
   const left = regions_of(copy).filter((one) => one.polygons_mm.length);
   if (!left.length) {
-    await edit({remove: step.id}, `${step.id} taken away`, null);
+    await edit({remove: step.id}, `${step.id} removed`, null);
     return;
   }
   await replace_step(
-      step.id, {...copy, regions: left as unknown as Json}, `a corner of ${step.id} taken away`);
+      step.id, {...copy, regions: left as unknown as Json}, `a corner of ${step.id} removed`);
 }

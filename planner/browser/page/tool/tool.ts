@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a tool is, and which one is in hand. A tool takes the pointer in a pane; what it leaves, the pane's
-// own navigation takes.
+// Tools, and the one in use. A tool handles the pointer in a pane; events that it ignores go to the pane's
+// own navigation.
 import type {Child} from "../base/html";
 import type {Pane} from "../pane/panes";
 import {on_leaving_plan, set, state} from "../state";

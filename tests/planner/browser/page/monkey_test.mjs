@@ -139,7 +139,7 @@ const actions = {
   },
   async remove() {
     await select_random();
-    await one.command('Take the selected step away');
+    await one.command('Remove the selected step');
   },
   async operation() {
     const names = await one.page.evaluate(async () => {

@@ -141,7 +141,7 @@ TEST(FlapSteps, RefusalsPointAtThePlace) {
   EXPECT_NE(refusal(R"("do": "flap", "segments": [], "contacts": [], )" + same).find("segments"),
             std::string::npos);
   const std::string two = R"("do": "flap", "segments": ["p", "q"], "contacts": ["p"], )";
-  EXPECT_NE(refusal(two + same).find("must name 3 objects, one an osteotomy; without the last"),
+  EXPECT_NE(refusal(two + same).find("must name 3 objects, one for each osteotomy; leave out the last"),
             std::string::npos);
 }
 
