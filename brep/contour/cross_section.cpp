@@ -9,7 +9,9 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <stdexcept>
+#include <utility>
 
 #include "brep/mesh/error.h"
 #include "brep/mesh/mesh_point.h"
@@ -61,7 +63,8 @@ class PlaneSection {
     assert(below > 0.0 && above >= 0.0);
     const glm::dvec3 from = glm_of(mesh_.point(low)) - plane_.origin_mm,
                      to = glm_of(mesh_.point(high)) - plane_.origin_mm;
-    const glm::dvec3 p = from + below / (below + above) * (to - from);
+    // All edges to a point in the plane give that point, without a rounding of their own.
+    const glm::dvec3 p = above == 0.0 ? to : from + below / (below + above) * (to - from);
     return {glm::dot(p, plane_.right), glm::dot(p, plane_.up)};
   }
 
@@ -135,6 +138,27 @@ Plane plane_through(const glm::dvec3& point_mm, const glm::dvec3& normal) {
 
 CrossSection cross_section(const Mesh& mesh, const Plane& plane) {
   return PlaneSection(mesh, plane).run();
+}
+
+void part_touching(std::vector<Contour>& contours) {
+  std::map<std::pair<double, double>, int> passes;  // of contours through a point
+  for (const Contour& contour : contours)
+    for (const glm::dvec2& p : contour.points_mm) ++passes[{p.x, p.y}];
+  constexpr double share = 1.0 / 1024.0;
+  for (Contour& contour : contours) {
+    const std::vector<glm::dvec2> points = std::move(contour.points_mm);
+    contour.points_mm.clear();
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const bool is_end = !contour.closed && (k == 0 || k + 1 == points.size());
+      const glm::dvec2& p = points[k];
+      if (is_end || passes.at({p.x, p.y}) == 1) {
+        contour.points_mm.push_back(p);
+        continue;
+      }
+      contour.points_mm.push_back(glm::mix(p, points[(k + points.size() - 1) % points.size()], share));
+      contour.points_mm.push_back(glm::mix(p, points[(k + 1) % points.size()], share));
+    }
+  }
 }
 
 }  // namespace octotomy::brep

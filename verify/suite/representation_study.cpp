@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <memory>
 #include <numbers>
+#include <optional>
 
 #include "verify/phantom/head_phantom.h"
 #include "verify/phantom/solid_phantom.h"
@@ -224,12 +225,12 @@ void table_a_2(const Octree& skull, RepresentationStudy& study) {
     const std::string item = "level " + std::to_string(level) + ", ";
     study.beside.push_back({"table A.2", item + "visits per node: BTFU BTFM FTB trace direct, all",
                             row.visits, joined(per_node)});
-    study.beside.push_back({"table A.2",
-                            item + "share unvisited: BTFU BTFM FTB trace (direct printed, not counted), all",
+    study.beside.push_back({"table A.2", item + "share unvisited: BTFU BTFM FTB trace direct, all",
                             row.unvisited,
                             joined({with_decimals(unmasked.unvisited_fraction().value_or(0.0), 2),
                                     with_decimals(1.0 - visits[1] / nodes, 2),
-                                    with_decimals(front_to_back.unvisited_fraction().value_or(0.0), 2), "-",
+                                    with_decimals(front_to_back.unvisited_fraction().value_or(0.0), 2),
+                                    with_decimals(traced.directly_unvisited_fraction().value_or(0.0), 2),
                                     with_decimals(traced.unvisited_fraction().value_or(0.0), 2)})});
     study.beside.push_back({"table A.2", item + "visits per pixel: BTFU BTFM FTB trace direct, all",
                             row.per_pixel, joined(per_pixel)});
@@ -249,6 +250,7 @@ void tables_4_2_and_a_3(const voxel::GreyOctree& grey, const Octree& skull, Repr
   const voxel::Visits in_ranges = drawn(head, voxel::Algorithm::NodeTrace);
   const auto axes = axis_view(grey.universe(), voxel::parse_view("anterior"));
   const voxel::Visits plain = visits_without_ranges(grey, bone, *axes);
+  const voxel::Visits in_depths = visits_with_depths(grey, bone, *axes);
   const auto row = [&](const voxel::Visits& visits) {
     return joined(
         {with_decimals(
@@ -262,9 +264,11 @@ void tables_4_2_and_a_3(const voxel::GreyOctree& grey, const Octree& skull, Repr
   study.beside.push_back(
       {"table A.3", std::string("node trace, min-max") + columns, "0.08 0.94 0.58", row(in_ranges)});
   study.beside.push_back({"table A.3", std::string("node trace, min-max, depth interpolated") + columns,
-                          "0.09 0.94 0.58", row(in_ranges)});
-  study.entries.push_back({"table A.3", "grey trees by visits per node", "no min-max > min-max",
+                          "0.09 0.94 0.58", row(in_depths)});
+  study.entries.push_back({"table A.3", "grey trees by visits per node",
+                           "no min-max > interpolated > min-max",
                            order({{static_cast<double>(sum(plain.all.octree)), "no min-max"},
+                                  {static_cast<double>(sum(in_depths.all.octree)), "interpolated"},
                                   {static_cast<double>(sum(in_ranges.all.octree)), "min-max"}})});
 
   const voxel::MaskedOctree masked = masked_octree(skull);
@@ -285,27 +289,88 @@ void tables_4_2_and_a_3(const voxel::GreyOctree& grey, const Octree& skull, Repr
        order({{by_mask, "binary masked"}, {unmasked, "binary unmasked"}, {all_grey, "grey"}})});
 }
 
+/// The walk through two masked trees at once that makes or draws their intersection (7.2, 7.3.1).
+class PairWalk {
+ public:
+  /// Draws what an observer sees of `seen`; without it, makes the intersection.
+  PairWalk(const voxel::MaskedOctree& a, const voxel::MaskedOctree& b, std::optional<voxel::FaceSet> seen)
+      : a_(a), b_(b), seen_(seen) {
+    visit(place(a, 0), place(b, 0));
+  }
+  /// Visits to pairs of nodes of levels 1..n.
+  std::uint64_t visits() const { return visits_; }
+
+ private:
+  /// A node, or a part of a homogeneous one.
+  struct Place {
+    voxel::Status status;
+    voxel::FaceSet covered;
+    std::size_t node;  ///< of a Partial node
+  };
+  static Place place(const voxel::MaskedOctree& tree, std::size_t node) {
+    return {tree.nodes[node].status, tree.nodes[node].covered, node};
+  }
+
+  static std::array<Place, 8> children(const voxel::MaskedOctree& tree, const Place& outer) {
+    std::array<Place, 8> inner;
+    std::size_t node = outer.node + 1;
+    for (unsigned i = 0; i < 8; ++i) {
+      if (outer.status == voxel::Status::Partial) {
+        inner[i] = place(tree, node);
+        node += tree.nodes[node].size;
+        continue;
+      }
+      // The faces inside a Full node are covered by its own voxels.
+      inner[i] = {outer.status,
+                  static_cast<voxel::FaceSet>(outer.covered | voxel::view_code(7 - static_cast<int>(i))),
+                  outer.node};
+    }
+    return inner;
+  }
+
+  void visit(const Place& a, const Place& b) {
+    if (a.status == voxel::Status::Empty || b.status == voxel::Status::Empty) return;
+    if (a.status == voxel::Status::Full && b.status == voxel::Status::Full) return;
+    if (seen_ && (*seen_ & ~(a.covered & b.covered)) == 0) return;
+    const std::array<Place, 8> of_a = children(a_, a), of_b = children(b_, b);
+    for (std::size_t i = 0; i < 8; ++i) {
+      ++visits_;
+      visit(of_a[i], of_b[i]);
+    }
+  }
+
+  const voxel::MaskedOctree &a_, &b_;
+  std::optional<voxel::FaceSet> seen_;
+  std::uint64_t visits_ = 0;
+};
+
 /// The skull cut by a cylinder seen from the left, as the thesis cuts by volumes of interest.
 void table_7_5(const Octree& skull, RepresentationStudy& study) {
   const voxel::Universe& universe = skull.universe();
+  const voxel::FaceSet seen = voxel::view_code(0);
   const Octree cut = combine(universe, voxel::Box{{-200.0, -100.0, -70.0}, {200.0, -20.0, 40.0}});
-  struct Row {
-    const char *name, *printed;
-    Octree octree;
+  const voxel::MaskedOctree a = masked_octree(skull), b = masked_octree(cut),
+                            both = masked_octree(combine(universe, voxel::Expression(skull) & cut));
+  const auto drawn = [&](const voxel::MaskedOctree& tree, bool is_masked) {
+    return sum(draw_back_to_front(tree, seen, is_masked).visits);
   };
-  const std::array<Row, 3> rows{
-      {{"A", "38 -", skull},
-       {"B", "68 -", cut},
-       {"intersection", "52 50", combine(universe, voxel::Expression(skull) & cut)}}};
-  for (const Row& row : rows) {
-    const voxel::MaskedOctree masked = masked_octree(row.octree);
-    const auto visits = [&](bool is_masked) {
-      return std::to_string(sum(draw_back_to_front(masked, voxel::view_code(0), is_masked).visits));
-    };
+  const auto row = [&](const char* name, const char* printed, const std::vector<std::string>& ours) {
     study.beside.push_back({"table 7.5",
-                            std::string(row.name) + ": display before and after linking, s; ours visits",
-                            row.printed, joined({visits(false), visits(true)})});
-  }
+                            std::string(name) +
+                                ": create, display, link, display linked, display the expression; " +
+                                "printed s; ours visits, linked nodes",
+                            printed, joined(ours)});
+  };
+  const auto count = [](std::uint64_t n) { return std::to_string(n); };
+  row("A", "- 38 543 - -", {"-", count(drawn(a, false)), count(a.nodes.size()), "-", "-"});
+  row("B", "- 68 698 - -", {"-", count(drawn(b, false)), count(b.nodes.size()), "-", "-"});
+  const std::uint64_t made = PairWalk(a, b, std::nullopt).visits(), shown = PairWalk(a, b, seen).visits();
+  row("intersection", "58 52 308 50 52",
+      {count(made), count(drawn(both, false)), count(both.nodes.size()), count(drawn(both, true)),
+       count(shown)});
+  study.entries.push_back({"table 7.5", "the intersection by cost", "create > display the expression",
+                           order({{static_cast<double>(made), "create"},
+                                  {static_cast<double>(shown), "display the expression"}})});
 }
 
 // ---------------------------------------------------------------------------------------------- chapter 5

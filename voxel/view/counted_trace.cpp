@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <tbb/parallel_for.h>
+#include <utility>
 
 #include "voxel/measure/grey_level_counts.h"
 #include "voxel/view/axis_walk.h"
@@ -27,11 +28,17 @@ struct Ancestors {
   std::array<Node, Universe::max_depth + 1> nodes;
 };
 
-template <typename Node, typename Counter>
+/// Ignores that a quadtree node is painted.
+struct NoReads {
+  void painted(int, int, int, int) {}
+};
+
+/// `reads.painted()` is called for each quadtree node that is painted, with its level, corner and depth.
+template <typename Node, typename Counter, typename Reads = NoReads>
 class NodeTracer {
  public:
-  NodeTracer(const AxisFrame& frame, Counter& counter, ColumnDepths& columns)
-      : frame_(frame), counter_(counter), columns_(columns) {}
+  NodeTracer(const AxisFrame& frame, Counter& counter, ColumnDepths& columns, Reads reads = {})
+      : frame_(frame), counter_(counter), columns_(columns), reads_(std::move(reads)) {}
 
   /// Traces a quadtree node's ray from the octree node on the path at the recursion level.
   void trace(Ancestors<Node> path, int recursion, int p, int q, int d) {
@@ -40,6 +47,7 @@ class NodeTracer {
       const Status status = path[level].status();
       if (status == Status::Full) {
         frame_.paint(columns_, p, q, recursion, d);
+        reads_.painted(recursion, p, q, d);
         return;
       }
       if (status == Status::Partial) {
@@ -90,6 +98,78 @@ class NodeTracer {
   const AxisFrame& frame_;
   Counter& counter_;
   ColumnDepths& columns_;
+  Reads reads_;
+};
+
+/// Counts what interpolated depths read in addition (thesis 5.2.2.2, figure 5.7). The ray of a quadtree node that
+/// ends at a Full node needs the samples at the node's front and those of the node before it. The ray has both
+/// nodes. A node whose samples differ is opened, and the quadtree node is split with it.
+class DepthReads {
+ public:
+  DepthReads(const GreyOctree& grey, Window16 window, const AxisFrame& frame, VisitCounter& counter)
+      : grey_(&grey),
+        root_{GreyNode::root(grey, window), glm::ivec3(0)},
+        frame_(&frame),
+        counter_(&counter) {}
+
+  void painted(int level, int p, int q, int d) {
+    if (d == 0) return;  // no voxel lies before the surface
+    split(level, p, q, d, find(level, p, q, d - 1), find(level, p, q, d));
+  }
+
+ private:
+  struct Place {
+    GreyNode node;
+    glm::ivec3 origin;
+  };
+
+  bool is_even(const Place& place) const {
+    const MinMax range = range_of_node(*grey_, place.origin, place.node.side_log2());
+    return range.low == range.high;
+  }
+  glm::ivec3 corner(int level, int p, int q, int d) const {
+    return glm::ivec3(p, q, d) & -(frame_->side() >> level);
+  }
+  Place child(const Place& outer, int level, int p, int q, int d) const {
+    const int number = frame_->child_at(level, p, q, d);
+    const glm::ivec3 octant(number & 1, (number >> 1) & 1, number >> 2);
+    return {outer.node.child(number), outer.origin + (octant << (outer.node.side_log2() - 1))};
+  }
+
+  /// The node of a level, or the larger node of equal samples that contains it. Passes the nodes below the one
+  /// that the ray has.
+  Place find(int level, int p, int q, int d) {
+    Place place = root_;
+    for (int at = 0; at < level && !is_even(place); ++at) {
+      const bool is_below = place.node.status() != Status::Partial;
+      place = child(place, at, p, q, d);
+      if (is_below) counter_->indirect(at + 1, place.node.status(), corner(at + 1, p, q, d));
+    }
+    return place;
+  }
+
+  void split(int level, int p, int q, int d, const Place& before, const Place& surface) {
+    const bool opens_before = !is_even(before), opens_surface = !is_even(surface);
+    if (!opens_before && !opens_surface) return;
+    const int half = frame_->side() >> (level + 1);
+    for (int i = 0; i < 4; ++i) {
+      const int at_p = p + (i & 1) * half;
+      const int at_q = q + (i >> 1) * half;
+      counter_->quadtree(1, 0);
+      split(level + 1, at_p, at_q, d, opens_before ? open(before, level, at_p, at_q, d - 1) : before,
+            opens_surface ? open(surface, level, at_p, at_q, d) : surface);
+    }
+  }
+  Place open(const Place& outer, int level, int p, int q, int d) {
+    const Place inner = child(outer, level, p, q, d);
+    counter_->direct(level + 1, inner.node.status(), corner(level + 1, p, q, d));
+    return inner;
+  }
+
+  const GreyOctree* grey_;
+  Place root_;
+  const AxisFrame* frame_;
+  VisitCounter* counter_;
 };
 
 /// A node of a grey octree whose samples are used only if they are all equal.
@@ -350,6 +430,18 @@ Visits visits_without_ranges(const GreyOctree& grey, Window16 window, const Axis
   counter.quadtree(1, 0);
   NodeTracer<PlainGreyNode, VisitCounter>(frame, counter, columns)
       .trace(Ancestors<PlainGreyNode>(root), 0, 0, 0, 0);
+  return counter.visits();
+}
+
+Visits visits_with_depths(const GreyOctree& grey, Window16 window, const AxisView& axes) {
+  const AxisFrame frame(axes, grey.universe().depth);
+  ColumnDepths columns(frame.column_count(), -1);
+  VisitCounter counter(level_counts(grey, window), frame.column_count());
+  const GreyNode root = GreyNode::root(grey, window);
+  counter.direct(0, root.status(), glm::ivec3(0));
+  counter.quadtree(1, 0);
+  NodeTracer<GreyNode, VisitCounter, DepthReads>(frame, counter, columns, {grey, window, frame, counter})
+      .trace(Ancestors<GreyNode>(root), 0, 0, 0, 0);
   return counter.visits();
 }
 

@@ -20,13 +20,30 @@ void add_levels(std::vector<LevelCount>& to, const std::vector<LevelCount>& from
   }
 }
 
+/// Share of the nodes that are not among `visited` of them.
+std::optional<double> share_without(const std::vector<LevelCount>& levels, std::uint64_t visited) {
+  std::uint64_t nodes = 0;
+  for (const LevelCount& level : levels) nodes += level.partial + level.full + level.empty;
+  if (nodes == 0) return std::nullopt;
+  return 1.0 - static_cast<double>(visited) / static_cast<double>(nodes);
+}
+
+/// The node's number among all nodes: sixteen bits for each coordinate and for the level.
+std::uint64_t key_of(int level, const glm::ivec3& corner) {
+  assert(glm::all(glm::greaterThanEqual(corner, glm::ivec3(0))) && level < 16);
+  static_assert(Universe::max_depth <= 12);
+  return static_cast<std::uint64_t>(corner.x) | static_cast<std::uint64_t>(corner.y) << 16 |
+         static_cast<std::uint64_t>(corner.z) << 32 | static_cast<std::uint64_t>(level) << 48;
+}
+
 }  // namespace
 
 std::optional<double> Visits::unvisited_fraction() const {
-  std::uint64_t nodes = 0;
-  for (const LevelCount& level : existing) nodes += level.partial + level.full + level.empty;
-  if (nodes == 0) return std::nullopt;
-  return 1.0 - static_cast<double>(visited_count) / static_cast<double>(nodes);
+  return share_without(existing, visited_count);
+}
+
+std::optional<double> Visits::directly_unvisited_fraction() const {
+  return share_without(existing, directly_visited_count);
 }
 
 void Visits::add(const Visits& other) {
@@ -36,6 +53,7 @@ void Visits::add(const Visits& other) {
   direct.quadtree += other.direct.quadtree;
   all.quadtree += other.all.quadtree;
   visited_count += other.visited_count;
+  directly_visited_count += other.directly_visited_count;
   pixel_count = other.pixel_count;
 }
 
@@ -52,26 +70,20 @@ void VisitCounter::direct(int level, Status status, const glm::ivec3& corner) {
   if (level == 0) return;
   ++of_status(visits_.direct.octree[static_cast<std::size_t>(level - 1)], status);
   ++of_status(visits_.all.octree[static_cast<std::size_t>(level - 1)], status);
-  note(level, corner);
+  visited_.insert(key_of(level, corner));
+  directly_visited_.insert(key_of(level, corner));
 }
 
 void VisitCounter::indirect(int level, Status status, const glm::ivec3& corner) {
   if (level == 0) return;
   ++of_status(visits_.all.octree[static_cast<std::size_t>(level - 1)], status);
-  note(level, corner);
-}
-
-void VisitCounter::note(int level, const glm::ivec3& corner) {
-  assert(glm::all(glm::greaterThanEqual(corner, glm::ivec3(0))) && level < 16);
-  // The key uses sixteen bits for each coordinate and for the level.
-  static_assert(Universe::max_depth <= 12);
-  visited_.insert(static_cast<std::uint64_t>(corner.x) | static_cast<std::uint64_t>(corner.y) << 16 |
-                  static_cast<std::uint64_t>(corner.z) << 32 | static_cast<std::uint64_t>(level) << 48);
+  visited_.insert(key_of(level, corner));
 }
 
 Visits VisitCounter::visits() const {
   Visits visits = visits_;
   visits.visited_count = visited_.size();
+  visits.directly_visited_count = directly_visited_.size();
   return visits;
 }
 

@@ -26,9 +26,10 @@ struct VisitTally {
 struct Visits {
   std::vector<LevelCount> existing;  ///< all nodes of levels 1..n
   VisitTally direct;
-  VisitTally all;                   ///< direct and indirect
-  std::uint64_t visited_count = 0;  ///< nodes of levels 1..n with a visit of any kind
-  std::uint64_t pixel_count = 0;    ///< pixels of the quadtree for views along axes, of the picture otherwise
+  VisitTally all;                            ///< direct and indirect
+  std::uint64_t visited_count = 0;           ///< nodes of levels 1..n with a visit of any kind
+  std::uint64_t directly_visited_count = 0;  ///< those with a direct visit
+  std::uint64_t pixel_count = 0;  ///< pixels of the quadtree for views along axes, of the picture otherwise
 
   /// Visits to the quadtree per pixel (A.4.1).
   double per_pixel(const VisitTally& tally) const {
@@ -36,6 +37,8 @@ struct Visits {
   }
   /// Share of the existing nodes without a visit; none if there is no node.
   std::optional<double> unvisited_fraction() const;
+  /// Share of the existing nodes without a direct visit; none if there is no node.
+  std::optional<double> directly_unvisited_fraction() const;
   /// Adds the visits to another object in the same picture.
   void add(const Visits& other);
 };
@@ -64,10 +67,8 @@ class VisitCounter {
   Visits visits() const;
 
  private:
-  void note(int level, const glm::ivec3& corner);
-
   Visits visits_;
-  std::unordered_set<std::uint64_t> visited_;
+  std::unordered_set<std::uint64_t> visited_, directly_visited_;
 };
 
 /// Visits of node tracing through a grey octree whose Partial nodes store nothing (thesis A.4.2): a node is
@@ -75,5 +76,10 @@ class VisitCounter {
 /// DrawnObject::counted_in_grey is the saving by the minimum and maximum at each node. Precondition: the
 /// axes are of the octree's universe, and the window excludes the background.
 Visits visits_without_ranges(const GreyOctree& grey, Window16 window, const AxisView& axes);
+
+/// Visits of node tracing through a grey octree that interpolates each depth (thesis 5.2.2.2): those that render()
+/// counts with DrawnObject::counted_in_grey, and those to read the samples of the surface's voxels and of the voxels
+/// before them, for which nodes of unequal samples are opened. Preconditions as of visits_without_ranges().
+Visits visits_with_depths(const GreyOctree& grey, Window16 window, const AxisView& axes);
 
 }  // namespace octotomy::voxel

@@ -93,11 +93,13 @@ PlaneContours contours_in_plane(const voxel::Scene& scene, double low, double hi
   return polygons;
 }
 
-PlaneContours contours_in_plane(const brep::Mesh& surface, const ViewPlane& plane) {
+PlaneContours contours_in_plane(const brep::Mesh& surface, const ViewPlane& plane, std::size_t* open) {
   // brep::Plane is right-handed, and right x up = -look.
-  return points_of(brep::cross_section(surface, {plane.position_mm * plane.view.look, plane.view.right,
-                                                 plane.view.up, -plane.view.look})
-                       .contours);
+  brep::CrossSection section = brep::cross_section(
+      surface, {plane.position_mm * plane.view.look, plane.view.right, plane.view.up, -plane.view.look});
+  if (open != nullptr) *open += section.open;
+  brep::part_touching(section.contours);
+  return points_of(std::move(section.contours));
 }
 
 PlaneContours region_around(const PlaneContours& contours, const glm::dvec2& p_mm) {

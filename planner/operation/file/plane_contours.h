@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -28,8 +29,10 @@ using PlaneContours = std::vector<std::vector<glm::dvec2>>;
 /// window. Throws voxel::Error (Resource) if the plane has over 2^26 such points. Cost: linear in them; parallel.
 PlaneContours contours_in_plane(const voxel::Scene& scene, double low, double high, const ViewPlane& plane);
 
-/// The contours at which a plane cuts a closed surface. Cost: linear in its triangles.
-PlaneContours contours_in_plane(const brep::Mesh& surface, const ViewPlane& plane);
+/// The closed contours at which a plane cuts a surface, parted where they touch (brep::part_touching()). Contours that
+/// end at the border of an open surface are left out; their number is added to `open`. Cost: linear in the triangles.
+PlaneContours contours_in_plane(const brep::Mesh& surface, const ViewPlane& plane,
+                                std::size_t* open = nullptr);
 
 /// Of contours that do not cross, the one around the region that contains a point, and those of its holes. Empty if
 /// the point lies outside all regions or in a hole.

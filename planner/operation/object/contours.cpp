@@ -263,7 +263,9 @@ Operation contours_operation() {
       .verb_takes(field("codes", &Contours::codes, "Writes Freeman's chain codes too, to this .json."))
       .verb_takes(field("code_spacing_mm", &Contours::code_spacing_mm,
                         "The spacing of the samples on which chain codes step.")
-                      .greater_than(0.0))
+                      .greater_than(0.0)
+                      .read_if<Contours>([](const Contours& contours) { return !contours.codes.empty(); },
+                                         "needs 'codes': add it"))
       .reads_scans()
       .example(
           R"({"id": "lines", "do": "contours", "scan": "ct", "path": "bone.json",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "planner/operation/file/path_checks.h"
 #include "planner/operation/file/step_on_files.h"
@@ -33,6 +34,10 @@ struct Eval {
 
   std::vector<std::string> inputs() const { return voxel::names_in(expression); }
 };
+
+bool has_motions(const Eval& asked) {
+  return !asked.motions.empty();
+}
 
 voxel::Resampling resampling_of(const Eval& asked) {
   using voxel::Interpolation;
@@ -79,26 +84,51 @@ glm::dmat4 parse_motion(const std::string& name, const std::string& text) {
   return voxel::moved_from_still(motion);
 }
 
+/// Motions by name, and which of them the expression names.
+class Motions {
+ public:
+  Motions(const std::vector<std::string>& texts, const std::string& option)
+      : texts_(bound(texts, option, "X,Y,Z")), option_(option) {}
+
+  /// The motion of a name; `remedy` ends the refusal of a name that is not known.
+  glm::dmat4 at(const std::string& name, const std::string& remedy) {
+    const auto found = texts_.find(name);
+    if (found == texts_.end())
+      throw voxel::InvalidInput("no motion is called '" + name + "'" + suggestion(name, names_of(texts_)) +
+                                ": " + remedy);
+    used_.insert(name);
+    return parse_motion(found->first, found->second);
+  }
+  /// Refuses motions that no name asked for, because they would change nothing.
+  void need_all_used() const {
+    for (const auto& [name, unused] : texts_)
+      if (!used_.contains(name))
+        throw voxel::InvalidInput(option_ + ": the expression does not name '" + name + "': leave it out");
+  }
+  const std::map<std::string, std::string>& texts() const { return texts_; }
+
+ private:
+  std::map<std::string, std::string> texts_;
+  std::string option_;
+  std::set<std::string> used_;
+};
+
 /// Checks a step, whose expression names objects of the plan and motions of its own.
 void check(const Eval& asked, const FieldLocation& place) {
   if (place.scope == nullptr) return;
   check_output_path(asked.out, {".octree"}, place.at("path"));
   const FieldLocation at = place.at("expression");
   try {
-    const auto motions = bound(asked.motions, "motions", "X,Y,Z");
+    Motions motions(asked.motions, "'motions'");
     // Any object will do to check the grammar and the names.
     voxel::parse_expression(asked.expression, {[&](std::string_view name) -> voxel::Expression {
                                                  at.need_object(std::string(name));
                                                  return voxel::Sphere{};
                                                },
                                                [&](std::string_view name) {
-                                                 const auto found = motions.find(std::string(name));
-                                                 if (found == motions.end())
-                                                   throw voxel::InvalidInput("no motion is called '" +
-                                                                             std::string(name) +
-                                                                             "': add it to 'motions'");
-                                                 return parse_motion(found->first, found->second);
+                                                 return motions.at(std::string(name), "add it to 'motions'");
                                                }});
+    motions.need_all_used();
   } catch (const voxel::InvalidInput& error) {
     at.refuse(error.what());
   }
@@ -109,6 +139,7 @@ struct Operand {
   voxel::Expression expression;
   voxel::Universe universe;
   std::optional<voxel::ShareBracket> shares;  // of a file that stores the filled shares of voxels
+  bool is_grey = false;
 };
 
 Operand operand_of(const FileBench& bench, const std::string& name, const fs::path& path,
@@ -122,7 +153,7 @@ Operand operand_of(const FileBench& bench, const std::string& name, const fs::pa
     if (window == windows.end())
       throw std::runtime_error(path.string() + ": is grey: choose which object '" + name + "' is: --window " +
                                name + "=LOW:HIGH, for example --window " + name + "=300:");
-    return {window_on(*grey, parse_sample_window(window->second)), grey->universe(), std::nullopt};
+    return {window_on(*grey, parse_sample_window(window->second)), grey->universe(), std::nullopt, true};
   }
   if (window != windows.end())
     throw std::runtime_error(path.string() + ": holds no samples to take a --window of: leave '" + name +
@@ -179,12 +210,25 @@ ShareResult combine_shares(const voxel::Expression& expression,
   return result;
 }
 
+/// Refuses files that the expression does not name, and options of samples where no operand has any.
+void need_options_read(const Eval& asked, const std::vector<std::string>& bound_names,
+                       const std::map<std::string, Operand>& operands) {
+  for (const std::string& name : bound_names)
+    if (!operands.contains(name))
+      throw std::runtime_error("--let " + name + ": the expression does not name it: leave it out");
+  if (std::any_of(operands.begin(), operands.end(), [](const auto& one) { return one.second.is_grey; }))
+    return;
+  if (asked.grey) throw std::runtime_error("--grey: no operand has samples to keep: leave it out");
+  if (asked.interpolate != Eval().interpolate)
+    throw std::runtime_error("--interpolate: no operand has samples to interpolate: leave it out");
+}
+
 FileAnswer on_files(const Eval& asked, const FileBench& bench) {
   need_octree_extension(asked.out);
   need_folder_of(asked.out);
   auto lets = bound(asked.lets, "--let", "FILE");
   const auto windows = bound(asked.windows, "--window", "LOW:HIGH");
-  const auto motions = bound(asked.motions, "--motion", "X,Y,Z");
+  Motions motions(asked.motions, "--motion");
   if (bench.step != nullptr)
     for (const std::string& object : asked.inputs()) lets.emplace(object, object);
   const std::vector<std::string> known = names_of(lets);
@@ -195,9 +239,6 @@ FileAnswer on_files(const Eval& asked, const FileBench& bench) {
   // Only the files that the expression names are read.
   const std::vector<std::string> used = asked.inputs();
   std::vector<std::string> findings;
-  for (const std::string& name : known)
-    if (std::find(used.begin(), used.end(), name) == used.end())
-      findings.push_back("--let " + name + ": the expression does not name it");
   Timings& timings = bench.timings;
   std::map<std::string, Operand> operands;
   for (const std::string& name : used)
@@ -212,15 +253,12 @@ FileAnswer on_files(const Eval& asked, const FileBench& bench) {
                              return found->second.expression;
                            },
                            [&](std::string_view name) {
-                             const auto found = motions.find(std::string(name));
-                             if (found == motions.end())
-                               throw voxel::InvalidInput("no motion is called '" + std::string(name) + "'" +
-                                                         suggestion(name, names_of(motions)) +
-                                                         ": bind it with --motion " + std::string(name) +
-                                                         "=X,Y,Z");
-                             return parse_motion(found->first, found->second);
+                             return motions.at(std::string(name),
+                                               "bind it with --motion " + std::string(name) + "=X,Y,Z");
                            }};
   const voxel::Expression expression = voxel::parse_expression(asked.expression, names);
+  need_options_read(asked, known, operands);
+  motions.need_all_used();
   const voxel::Universe universe = operands.at(used.front()).universe;
   for (const std::string& name : used)
     if (!(operands.at(name).universe == universe))
@@ -234,7 +272,6 @@ FileAnswer on_files(const Eval& asked, const FileBench& bench) {
     const Stopwatch watch(timings, "combine");
     const voxel::Resampling resampling = resampling_of(asked);
     if (with_shares) {
-      if (asked.grey) throw std::runtime_error("--grey: filled shares are no samples: leave it out");
       ShareResult combined = combine_shares(expression, operands);
       result.tree = std::move(combined.tree);
       more = std::move(combined.said);
@@ -249,7 +286,7 @@ FileAnswer on_files(const Eval& asked, const FileBench& bench) {
   Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION}, {"expression", asked.expression}};
   for (const std::string& name : used) made["let"][name] = fs::path(lets.at(name)).filename().string();
   for (const auto& [name, window] : windows) made["window"][name] = window;
-  for (const auto& [name, motion] : motions) made["motion"][name] = motion;
+  for (const auto& [name, motion] : motions.texts()) made["motion"][name] = motion;
   result.metadata = json_text(made);
   return octree_written(result, asked.out, bench.stop, timings, findings, more);
 }
@@ -285,10 +322,12 @@ Operation eval_operation() {
       .takes(field("digitise", &Eval::digitise,
                    "The voxels of a moved octree: those whose centre it contains, or those that it fills at "
                    "least half.")
-                 .one_of({"centre", "half"}))
+                 .one_of({"centre", "half"})
+                 .read_if<Eval>(has_motions, "applies only to what moves: add 'motions'"))
       .verb_takes(field("interpolate", &Eval::interpolate,
                         "How samples of a moved grey octree are read: nearest, linear or cubic.")
-                      .one_of({"nearest", "linear", "cubic"}))
+                      .one_of({"nearest", "linear", "cubic"})
+                      .read_if<Eval>(has_motions, "applies only to what moves: add 'motions'"))
       .example(R"({"id": "rest", "do": "eval", "expression": "skull - cut", "path": "rest.octree"})")
       .on_files(
           "octotomy eval \"skull - cut\" -o rest.octree --let skull=skull.octree --let cut=cut.octree\n"

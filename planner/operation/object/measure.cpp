@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "planner/operation/file/path_checks.h"
 #include "planner/operation/measure/counted_window.h"
 #include "planner/operation/measure/digitised.h"
 #include "planner/operation/measure/gap.h"
@@ -403,9 +404,13 @@ Operation measure_operation() {
       .verb_takes(field("distance", &Measure::distance, "Two points: their straight distance.").from(2).to(2))
       .verb_takes(field("angle", &Measure::angle, "Three points: the angle at the second.").from(3).to(3))
       .verb_takes(field("window", &Measure::window, "LOW:HIGH or LOW: in sample units, or a tissue."))
-      .verb_takes(field("voxel_mm", &Measure::voxel_mm,
-                        "Edge of a voxel. Default: as fine as the scan, at most 512 a side.")
-                      .greater_than(0.0))
+      .verb_takes(
+          field("voxel_mm", &Measure::voxel_mm,
+                "Edge of a voxel. Default: as fine as the scan, at most 512 a side.")
+              .greater_than(0.0)
+              .read_if<Measure>(
+                  [](const Measure& asked) { return !asked.object || !is_octree(asked.object->name); },
+                  "an .octree file keeps its own voxels: leave it out"))
       .verb_takes(field("out", &Measure::out,
                         "The mesh with thickness, or curvature, as scalars: a .vtp or .ply file."))
       .reads_scans()

@@ -5,12 +5,16 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include "brep/contour/contour.h"
 #include "brep/mesh/mesh.h"
+#include "brep/mesh/mesh_point.h"
 #include "convert/surface/expression_surface.h"
 #include "convert/surface/isosurface.h"
 #include "convert/surface/partial_surface.h"
+#include "planner/operation/file/mesh_file.h"
 #include "planner/operation/file/outputs.h"
 #include "planner/operation/file/path_checks.h"
 #include "planner/operation/file/plane_contours.h"
@@ -58,6 +62,8 @@ void check(const Outline& outline, const FieldLocation& place) {
 struct Cutter {
   std::function<PlaneContours(const ViewPlane& plane)> cut;
   double low_mm = std::numeric_limits<double>::infinity(), high_mm = -low_mm;
+  /// The number of contours so far that ended at the border of an open surface.
+  std::shared_ptr<std::size_t> open = std::make_shared<std::size_t>(0);
 
   void add(double position_mm) {
     low_mm = std::min(low_mm, position_mm);
@@ -65,11 +71,11 @@ struct Cutter {
   }
 };
 
-Cutter cutter_of(brep::Triangles triangles, const voxel::View& view) {
+Cutter cutter_of(brep::Mesh surface, const voxel::View& view) {
   Cutter cutter;
-  for (const glm::dvec3& p : triangles.points_mm) cutter.add(glm::dot(p, view.look));
-  cutter.cut = [surface = brep::mesh_of(triangles)](const ViewPlane& plane) {
-    return contours_in_plane(surface, plane);
+  for (const auto v : surface.vertices()) cutter.add(glm::dot(brep::glm_of(surface.point(v)), view.look));
+  cutter.cut = [surface = std::move(surface), open = cutter.open](const ViewPlane& plane) {
+    return contours_in_plane(surface, plane, open.get());
   };
   return cutter;
 }
@@ -89,13 +95,16 @@ brep::Triangles surface_of(const std::string& file, const FileBench& bench,
   return convert::isosurface(binary.universe(), binary);
 }
 
-Cutter cutter_of(const Outline& outline, const FileBench& bench, const voxel::View& view) {
+Cutter cutter_of(const Outline& outline, const FileBench& bench, const voxel::View& view,
+                 std::vector<std::string>& findings) {
   const std::string& file = outline.file.name;
   if (bench.step != nullptr || is_mesh(file)) {
     if (outline.window) throw std::runtime_error(file + ": is a mesh: leave --window out");
-    return cutter_of(triangles_named(file, bench), view);
+    return cutter_of(bench.step != nullptr ? brep::mesh_of(triangles_named(file, bench))
+                                           : read_surface(file, bench.timings, &findings),
+                     view);
   }
-  if (is_octree(file)) return cutter_of(surface_of(file, bench, outline.window), view);
+  if (is_octree(file)) return cutter_of(brep::mesh_of(surface_of(file, bench, outline.window)), view);
   if (!outline.window)
     throw std::runtime_error("--window: choose what the contours outline: --window 300: or --window skin");
   const SampleWindow window = *outline.window;
@@ -159,12 +168,15 @@ FileAnswer on_files(const Outline& outline, const FileBench& bench) {
   need_extension(outline.out, {".json"}, "contours are");
   if (bench.step == nullptr) need_outputs({outline.out}, {outline.file.name});
   const voxel::View view = voxel::parse_view(outline.view);
-  const Cutter cutter = cutter_of(outline, bench, view);
   std::vector<std::string> findings;
+  const Cutter cutter = cutter_of(outline, bench, view, findings);
   voxel::SliceMask mask = [&] {
     const Stopwatch watch(bench.timings, "cut");
     return cut_in(outline, cutter, view);
   }();
+  if (*cutter.open > 0)
+    findings.push_back(outline.file.name + ": the surface is open, and " + std::to_string(*cutter.open) +
+                       " contours that end at its border are left out: close it by octotomy repair --solid");
   Refinement thinning;
   thinning.thin_mm = outline.thin_mm;
   if (outline.thin_mm > 0.0) mask = refined(mask, thinning, findings);

@@ -299,7 +299,10 @@ MadeScan made(const ScanOf& step, const ScanBench& bench) {
     findings.push_back(std::to_string(result.filled_samples) + " samples lie in objects without samples" +
                        without_samples(step, *bench.objects, frame) + " and have the value " +
                        plain(result.filled) + ": nothing was scanned there");
-  if (compared.compared == 0)
+  if (result.hole_samples == frame.scene().lattice.sample_count())
+    findings.push_back("no sample of the scan lies in '" + step.expression +
+                       "': all have the value of holes; correct the expression");
+  else if (compared.compared == 0)
     findings.emplace_back("no sample could be read a second time: nothing confirms this scan");
   if (compared.differing > 0)
     findings.push_back(std::to_string(compared.differing) + " of " + std::to_string(compared.compared) +

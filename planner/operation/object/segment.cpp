@@ -569,7 +569,13 @@ Operation segment_operation() {
                  .greater_than(0.0))
       .takes(field("fill", &Segment::fill, "Fills cavities."))
       .takes(
-          field("neighbours", &Segment::neighbours, "Parts touch by faces (6), edges (18) or corners (26)."))
+          field("neighbours", &Segment::neighbours, "Parts touch by faces (6), edges (18) or corners (26).")
+              .read_if<Segment>(
+                  [](const Segment& segment) {
+                    return chooses_parts(segment) || segment.tolerance || !segment.seeds_mm.empty();
+                  },
+                  "applies only where parts are chosen: add 'largest', 'components', 'at_least_mm3' or "
+                  "'seeds_mm'"))
       .verb_takes(field("windows", &Segment::windows,
                         "LOW:HIGH or LOW: in sample units, or a tissue: " + names_of_tissues() +
                             "; again for more objects.")
@@ -597,7 +603,9 @@ Operation segment_operation() {
               "The patient and study of a DICOM segmentation: keep the scan's; remove them by the Basic "
               "Application Level Confidentiality Profile of PS3.15, also names from files; or new, a patient "
               "without a name in a study of its own.")
-              .one_of({"keep", "remove", "new"}))
+              .one_of({"keep", "remove", "new"})
+              .read_if<Segment>([](const Segment& segment) { return segment.out.extension() == ".dcm"; },
+                                "applies only to a DICOM segmentation: leave it out, or write a .dcm"))
       .reads_scans()
       .on_files(
           "octotomy segment head.nrrd -o skull.octree --window bone --largest\n"

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "brep/boolean/boolean.h"
+#include "brep/contour/tile_sections.h"
 #include "brep/mesh/measure.h"
 #include "tests/brep/shapes.h"
 
@@ -33,6 +34,37 @@ TEST(CrossSection, ABallsSectionsConvergeToTheirCirclesInAnyDirection) {
       area_error = error;
     }
   }
+}
+
+TEST(CrossSection, ContoursThatTouchAtAVertexInThePlaneArePartedAndTile) {
+  // The middle sections of two pyramids meet with a corner at the origin.
+  const auto pyramid = [](double side) {
+    Triangles made;
+    made.points_mm = {{0, 0, 0}, {side * 4, -3, -2}, {side * 4, 3, -2}, {side * 4, 0, 3}};
+    made.faces = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
+    if (volume_mm3(mesh_of(made)) < 0.0) made = shapes::inside_out(made);
+    return made;
+  };
+  const Triangles both = shapes::together(pyramid(1.0), pyramid(-1.0));
+  CrossSection section = cross_section(mesh_of(both), plane_through({0, 0, 0}, {0, 0, 1}));
+  ASSERT_EQ(section.contours.size(), 2u);
+  const auto common = [&] {
+    std::size_t count = 0;
+    for (const glm::dvec2& a : section.contours[0].points_mm)
+      for (const glm::dvec2& b : section.contours[1].points_mm) count += a == b ? 1 : 0;
+    return count;
+  };
+  EXPECT_EQ(common(), 1u);
+  const double before_mm2 = signed_area_mm2(section.contours[0]);
+  part_touching(section.contours);
+  EXPECT_EQ(common(), 0u);
+  EXPECT_EQ(section.contours[0].points_mm.size(), 4u);
+  // The corner that is cut off is the contour at 1/1024 of its size.
+  EXPECT_NEAR(signed_area_mm2(section.contours[0]) / before_mm2, 1.0 - 1.0 / (1024.0 * 1024.0), 1e-12);
+  std::vector<Contour> parted = section.contours;
+  part_touching(parted);
+  EXPECT_EQ(parted[0].points_mm, section.contours[0].points_mm) << "nothing touches any more";
+  EXPECT_NO_THROW(tile_sections({Section{0.0, section.contours}, Section{1.0, section.contours}}));
 }
 
 TEST(CrossSection, HolesRunTheOtherWayRoundAndAreTakenOff) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Node tracing, ray casting, front to back and back to front on the same scenes.
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
 
 #include "tests/voxel/dense.h"
+#include "tests/voxel/field_scene.h"
 #include "tests/voxel/spaced_universe.h"
 #include "tests/voxel/view/axis_views.h"
 #include "voxel/solid/combine.h"
@@ -182,6 +184,38 @@ TEST(Visits, OfFigure48AreThoseWorkedOutInTheThesis) {
   EXPECT_EQ(visits.all.octree[0].empty, visits.direct.octree[0].empty);
   EXPECT_EQ(visits.direct.quadtree, 1u + 7u + 3u * 3u + 2u);
   EXPECT_EQ(visits.all.quadtree, visits.direct.quadtree + 3u);
+}
+
+TEST(Visits, OfInterpolatedDepthsOpenTheNodesWhoseSamplesDiffer) {
+  // Four layers of voxels, from front to back. The surface is that of 50, in the middle.
+  const Universe universe = spaced_universe(2);
+  const AxisView axes = axis_view(universe, parse_view("anterior")).value();
+  const auto of_layers = [&](const std::array<double, 4>& layers) {
+    const auto sample = [&](const glm::dvec3& p_mm) {
+      return layers[static_cast<std::size_t>(std::lround(p_mm.y - universe.lps_from_voxel[3].y))];
+    };
+    const GreyOctree grey =
+        grey_octree_of(universe, tests::field_scene<std::int16_t>(universe.lattice(), sample), 0);
+    return visits_with_depths(grey, *window16(50, 200), axes);
+  };
+  // Even nodes: the rays of the four front octants step into those behind, and no node is opened.
+  const Visits even = of_layers({10, 10, 100, 100});
+  EXPECT_EQ(even.direct.octree[0].empty, 4u);
+  EXPECT_EQ(even.direct.octree[0].full, 4u);
+  EXPECT_EQ(even.direct.octree[1].empty + even.direct.octree[1].full, 0u);
+  EXPECT_EQ(even.direct.quadtree, 1u + 4u + 4u);
+  // The Empty octants' samples differ: each is opened at its back, for the four columns of each quadtree node.
+  const Visits before = of_layers({0, 10, 100, 100});
+  EXPECT_EQ(before.direct.octree[1].empty, 16u);
+  EXPECT_EQ(before.direct.octree[1].full, 0u);
+  EXPECT_EQ(before.direct.quadtree, 1u + 4u + 4u + 16u);
+  // The Full ones' samples differ, too: they are opened at their front, with the same columns.
+  const Visits both = of_layers({0, 10, 100, 90});
+  EXPECT_EQ(both.direct.octree[1].empty, 16u);
+  EXPECT_EQ(both.direct.octree[1].full, 16u);
+  EXPECT_EQ(both.direct.quadtree, 1u + 4u + 4u + 16u);
+  EXPECT_EQ(both.directly_visited_count, 8u + 32u);
+  EXPECT_EQ(both.directly_unvisited_fraction(), 1.0 - 40.0 / 72.0);
 }
 
 TEST(Visits, OfNodeTracingInTheIsometricViewAreThoseOfTheNodesThatItsBeamsOpen) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // Surfaces as other programs leave them, through the verbs that take any of them.
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -30,6 +31,32 @@ class BadSurfaces : public tests::CommandLine {
     return answer.status == 0 ? SortedJson::parse(answer.out) : SortedJson();
   }
 };
+
+TEST_F(BadSurfaces, AreOutlinedAsTheyAreAndTheirOutlinesTiled) {
+  using namespace brep::shapes;
+  // Two cubes meet in an upright edge of four triangles, so that their contours touch in every plane.
+  const std::string cubes =
+      off("cubes.off", welded(together(box({0, 0, 0}, {10, 10, 10}), box({10, 10, 0}, {20, 20, 10}))));
+  const SortedJson lines = json_of("outline " + cubes + " --at 2,4,6,8 -o " + at("cubes.json"));
+  EXPECT_FALSE(lines["findings"].empty());
+  EXPECT_EQ(lines["contours"], 8);
+  EXPECT_NEAR(lines["slices"][1]["area_mm2"].get<double>(), 200.0, 0.001);
+  const SortedJson tiled = json_of("mesh " + at("cubes.json") + " -o " + at("tiled.stl"));
+  EXPECT_EQ(tiled["components"], 2);
+  EXPECT_EQ(tiled["self_intersections"], 0);
+  EXPECT_NEAR(tiled["volume_mm3"].get<double>(), 200.0 * 8.0, 20.0);
+  // A cube without its side at x = 10 leaves open lines.
+  brep::Triangles open = box({0, 0, 0}, {10, 10, 10});
+  std::erase_if(open.faces, [&](const auto& face) {
+    return std::all_of(face.begin(), face.end(), [&](const auto k) { return open.points_mm[k].x == 10.0; });
+  });
+  ASSERT_EQ(open.faces.size(), 10u);
+  const std::string cup = off("cup.off", welded(together(open, box({30, 0, 0}, {40, 10, 10}))));
+  const SortedJson half = json_of("outline " + cup + " --at 3,6 -o " + at("cup.json"));
+  EXPECT_EQ(half["contours"], 2) << "of the closed cube";
+  EXPECT_NE(half["findings"].dump().find("2 contours that end at its border are left out"), std::string::npos)
+      << half["findings"];
+}
 
 TEST_F(BadSurfaces, AreComparedMirroredAndMeasuredAsTheyAre) {
   using namespace brep::shapes;

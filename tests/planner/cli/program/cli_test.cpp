@@ -416,13 +416,29 @@ TEST_F(CommandLine, OctreesOfAScanTellTheirLevelsAndEvaluate) {
   // The same object by way of its samples, moved by whole voxels there and back.
   ASSERT_EQ(run("octree " + at("ball.nrrd") + " --grey -o " + at("grey.octree")).status, 0);
   const std::string lets = " --let ball=" + at("ball.octree") + " --let grey=" + at("grey.octree") +
-                           " --window grey=0: --motion there=2,0,-1 --motion back=-2,0,1 --json -o " +
-                           at("result.octree");
-  EXPECT_EQ(SortedJson::parse(run("eval 'move(move(ball, there), back) ^ grey'" + lets).out)["voxels"], 0);
+                           " --window grey=0: --motion there=2,0,-1 --json -o " + at("result.octree");
+  const std::string back = " --motion back=-2,0,1";
+  EXPECT_EQ(SortedJson::parse(run("eval 'move(move(ball, there), back) ^ grey'" + lets + back).out)["voxels"],
+            0);
   const SortedJson moved = SortedJson::parse(run("eval 'move(grey, there) | ball'" + lets).out);
   EXPECT_GT(moved["voxels"], ball["voxels"]);
   expect_refused(run("eval 'bal | grey'" + lets), "did you mean 'ball'");
   expect_refused(run("eval 'ball |'" + lets), "character");
+  // What changes nothing is refused: a motion and a file that are not named, and options without an object.
+  expect_refused(run("eval 'move(grey, there) | ball'" + lets + back),
+                 "--motion: the expression does not name 'back'");
+  expect_refused(run("eval 'move(grey, there)'" + lets), "--let ball: the expression does not name it");
+  const std::string alone = " --let ball=" + at("ball.octree") + " -o " + at("x.octree");
+  expect_refused(run("eval ball --grey" + alone), "--grey: no operand has samples");
+  expect_refused(run("eval ball --digitise half" + alone), "--motion");
+  expect_refused(run("eval ball --interpolate nearest" + alone), "--motion");
+  expect_refused(run("eval 'move(ball, m)' --motion m=1,0,0 --interpolate nearest" + alone),
+                 "--interpolate: no operand has samples");
+  expect_refused(run("contours " + at("ball.nrrd") + " --window 0: --code-spacing 2 -o " + at("x.json")),
+                 "--codes");
+  expect_refused(run("segment " + at("ball.nrrd") + " --window 0: --identity remove -o " + at("x.octree")),
+                 ".dcm");
+  expect_refused(run("measure " + at("ball.octree") + " --voxel 2"), "keeps its own voxels");
   expect_refused(run("eval grey --let grey=" + at("grey.octree") + " -o " + at("x.octree")),
                  "--window grey=");
   expect_refused(run("octree " + at("ball.nrrd") + " -o " + at("x.octree")), "--window LOW:HIGH");

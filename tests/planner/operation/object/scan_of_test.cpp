@@ -179,6 +179,14 @@ TEST(ScanOf, CountsSamplesOfObjectsThatComeFromNoScan) {
       std::to_string(beside) + " samples lie in objects without samples ('thick') and have the value 77"));
 }
 
+TEST(ScanOf, WarnsThatAnExpressionHoldsNothing) {
+  const ScratchFolder folder;
+  const std::string head = R"({"id": "head", "do": "window", "scan": "ct", "low": -30000})";
+  EXPECT_TRUE(warns(evaluate(ball_plan(folder, scan_of(head, "head & ~head"))),
+                    "no sample of the scan lies in 'head & ~head'"));
+  EXPECT_FALSE(warns(evaluate(ball_plan(folder, scan_of(head, "head"))), "no sample of the scan"));
+}
+
 TEST(ScanOf, PaddingThatStaysIsNoDifference) {
   const ScratchFolder folder;
   const Evaluation evaluation = evaluate(ball_plan(folder, moved_cap("moved | rest") + R"json(,

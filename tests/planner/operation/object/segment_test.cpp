@@ -244,7 +244,8 @@ TEST(SegmentStep, WhatCannotBeMeantIsRefused) {
   EXPECT_NE(refusal(R"(, "clusters": 3, "otsu": 3)").find("exactly one of"), std::string::npos);
   EXPECT_NE(refusal(R"(, "window": "0:", "running_mean": true)").find("'tolerance'"), std::string::npos);
   EXPECT_NE(refusal(R"(, "window": "bonne")").find("did you mean 'bone'"), std::string::npos);
-  EXPECT_NE(refusal(R"(, "window": "0:", "neighbours": 7)").find("18"), std::string::npos);
+  EXPECT_NE(refusal(R"(, "window": "0:", "largest": true, "neighbours": 7)").find("18"), std::string::npos);
+  EXPECT_NE(refusal(R"(, "window": "0:", "neighbours": 26)").find("'largest'"), std::string::npos);
 }
 
 }  // namespace
