@@ -5,10 +5,15 @@
 //   height of the point above the depth, its distance within the radius of the chosen crowns, and what is left of
 //   the reach.
 // 2 In a box about the crowns: the surface on which the mixed distances, (1 - w) solid + w scan, are 0. It is made
-//   from cells of one size, of six tetrahedra each. Mixed distances may jump where the scan's nearest point does; the
-//   surface from such cells is closed nevertheless. It ends at the box's walls. Blocks of cells far from it are skipped.
+//   from cells of one size, of six tetrahedra each; its corners are searched on the cells' edges. It ends at the box's
+//   walls. Blocks of cells far from it are skipped and keep one value.
 // 3 The solid less a slightly smaller box, united with that. Between both boxes the new surface lies a little
 //   within the solid, so that both cross each other nowhere but at the box.
+//
+// The side of a point of the scan follows from the scan's winding number. Above the plane through its border, that is
+// at least 1/2 inside a scan of crowns and at most 0 outside. The normal at the nearest point decides between both, as
+// inside a flat scan. Normals alone fail where noise makes the scan cross itself, as it does between teeth that touch:
+// the points whose nearest one lies there reach a millimetre and more from the scan.
 //
 // Where the weight changes, the slope of mixed distances exceeds 1: it is up to 1 plus the distance between scan and
 // solid times 1.5 / width, the steepest slope of the weight.
@@ -27,6 +32,7 @@
 #include "brep/mesh/distance.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/short_text.h"
+#include "brep/mesh/winding_number.h"
 #include "brep/shape/kuhn_cells.h"
 #include "brep/shape/prism.h"
 
@@ -117,7 +123,8 @@ class Weight {
         border_(border_of(scan, options.blend_mm)),
         scan_(down_to(scan, options, options.depth_mm + 2.0 * far_mm_)),
         normals_(smooth_normals(scan_)),
-        tree_(scan_) {}
+        tree_(scan_),
+        turns_(triangles_of(scan)) {}
 
   double far_mm() const { return far_mm_; }
 
@@ -132,7 +139,10 @@ class Weight {
   }
 
   std::vector<Mixed> at(const std::vector<glm::dvec3>& points_mm) const {
+    // A third on either side is far more than a winding number's error.
+    constexpr double surely_inside = 2.0 / 3.0, surely_outside = 0.0;
     const std::vector<Foot> feet = tree_.feet(points_mm);
+    const std::vector<double> turns = turns_.at(points_mm);
     std::vector<Mixed> mixed(points_mm.size());
     for (std::size_t i = 0; i < points_mm.size(); ++i) {
       const Foot& foot = feet[i];
@@ -141,7 +151,8 @@ class Weight {
       const auto& face = scan_.faces[foot.face];
       const glm::dvec3 normal = foot.weights.x * normals_[face[0]] + foot.weights.y * normals_[face[1]] +
                                 foot.weights.z * normals_[face[2]];
-      const bool is_inside = glm::dot(points_mm[i] - foot.p_mm, normal) < 0.0;
+      const bool is_inside = turns[i] > surely_inside ||
+                             (turns[i] >= surely_outside && glm::dot(points_mm[i] - foot.p_mm, normal) < 0.0);
       const double share =
           std::clamp(std::min(within, border_.distance_mm(foot.p_mm)) / options_.blend_mm, 0.0, 1.0);
       mixed[i] = {is_inside ? -foot.distance_mm : foot.distance_mm, share * share * (3.0 - 2.0 * share)};
@@ -156,6 +167,7 @@ class Weight {
   Triangles scan_;
   std::vector<glm::dvec3> normals_;
   SurfaceTree tree_;
+  WindingTree turns_;
 };
 
 /// A box that is turned against all axes, so that no plane of a cut lies in its sides.
@@ -206,10 +218,32 @@ struct TurnedBox {
 /// `inset_mm` within the solid's.
 class MixedField {
  public:
-  MixedField(const Solid& solid, const Weight& weight, const TurnedBox& box, double strip_mm, double inset_mm)
-      : solid_(solid), weight_(weight), box_(box), strip_mm_(strip_mm), inset_mm_(inset_mm) {}
+  MixedField(const Solid& solid, const Weight& weight, const TurnedBox& box, double strip_mm, double inset_mm,
+             std::stop_token stop)
+      : solid_(solid),
+        weight_(weight),
+        box_(box),
+        strip_mm_(strip_mm),
+        inset_mm_(inset_mm),
+        stop_(std::move(stop)) {}
 
+  /// Throws Stopped within a part of a second after a stop is requested.
   std::vector<double> at(const std::vector<glm::dvec3>& points_mm) const {
+    constexpr std::size_t part = 1 << 14;
+    std::vector<double> values;
+    values.reserve(points_mm.size());
+    for (std::size_t from = 0; from < points_mm.size(); from += part) {
+      Progress{stop_, {}}.at(0.0);
+      const std::size_t to = std::min(from + part, points_mm.size());
+      const std::vector<double> more = values_of({points_mm.begin() + static_cast<std::ptrdiff_t>(from),
+                                                  points_mm.begin() + static_cast<std::ptrdiff_t>(to)});
+      values.insert(values.end(), more.begin(), more.end());
+    }
+    return values;
+  }
+
+ private:
+  std::vector<double> values_of(const std::vector<glm::dvec3>& points_mm) const {
     const double far_mm = weight_.far_mm();
     std::vector<double> values(points_mm.size());
     std::vector<std::size_t> inside;
@@ -233,102 +267,170 @@ class MixedField {
     return values;
   }
 
- private:
   const Solid& solid_;
   const Weight& weight_;
   const TurnedBox& box_;
   double strip_mm_, inset_mm_;
+  std::stop_token stop_;
 };
 
-/// The field's values at the points of a lattice about the box, x fastest. Blocks of points that lie farther from
-/// the surface than their size have the value of their middle: only its sign counts there.
-struct LatticeValues {
+/// The field's values at the points of a lattice about the box, in blocks of points, x fastest. Blocks that lie
+/// farther from the surface than their size have the value of their middle: only its sign counts there.
+class LatticeValues {
+ public:
+  static constexpr int block = 4, block_points = block * block * block;
+
   glm::dvec3 origin_mm{0.0};
   double step_mm = 1.0;
-  glm::ivec3 dims{0};
+  glm::ivec3 blocks{0};
+  std::vector<double> middles;
+  /// Of each block: the number of its points' first value, or far_block.
+  std::vector<std::uint32_t> first;
   std::vector<double> values;
+  static constexpr std::uint32_t far_block = 0xFFFFFFFFU;
 
   glm::dvec3 at_mm(const glm::dvec3& place) const { return origin_mm + step_mm * place; }
-  std::size_t index(const LatticePoint& p) const {
-    return static_cast<std::size_t>(p.x) +
-           static_cast<std::size_t>(dims.x) *
-               (static_cast<std::size_t>(p.y) +
-                static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(p.z));
+  static LatticePoint place_in_block(int k) { return {k % block, k / block % block, k / (block * block)}; }
+  std::size_t block_number(const glm::ivec3& b) const {
+    return static_cast<std::size_t>(b.x) +
+           static_cast<std::size_t>(blocks.x) *
+               (static_cast<std::size_t>(b.y) +
+                static_cast<std::size_t>(blocks.y) * static_cast<std::size_t>(b.z));
+  }
+  double at(const LatticePoint& p) const {
+    const std::size_t number = block_number(p / block);
+    if (first[number] == far_block) return middles[number];
+    const LatticePoint in = p % block;
+    return values[first[number] + static_cast<std::size_t>(in.x + block * (in.y + block * in.z))];
+  }
+  /// Whether the surface may pass cells of this block, or between it and the next ones.
+  bool may_have_surface(const glm::ivec3& b) const {
+    const std::size_t number = block_number(b);
+    for (int corner = 0; corner < 8; ++corner) {
+      const std::size_t next = block_number(glm::min(b + corner_place(corner), blocks - 1));
+      if (first[next] != far_block || (middles[next] < 0.0) != (middles[number] < 0.0)) return true;
+    }
+    return false;
   }
 };
 
 LatticeValues values_about(const Size& size, const MixedField& field, double steepness,
                            const ScanBlendOptions& options) {
-  constexpr int block = 4;
+  constexpr int block = LatticeValues::block;
   LatticeValues lattice;
   lattice.step_mm = options.cell_mm;
   // Irregular shares of a cell keep the lattice off planes at round coordinates.
   lattice.origin_mm = size.low_mm - options.cell_mm * glm::dvec3(1.2718281828, 1.3141592653, 1.1414213562);
-  const glm::ivec3 blocks = glm::ivec3(
+  lattice.blocks = glm::ivec3(
       glm::ceil((size.high_mm + 2.0 * options.cell_mm - lattice.origin_mm) / (block * options.cell_mm)));
+  // Up to 100 MB of middles, and 500 MB of points of blocks near the surface while their list grows.
   constexpr double most_blocks = double(1 << 21);
-  if (double(blocks.x) * blocks.y * blocks.z > most_blocks)
-    throw TooLarge("cells of " + short_text(options.cell_mm) +
-                   " mm are too small for the crowns of this scan: take larger cells, or fewer crowns");
-  lattice.dims = block * blocks;
+  constexpr std::size_t most_near_blocks = 1 << 17;
+  const auto too_many = [&] {
+    return TooLarge("cells of " + short_text(options.cell_mm) +
+                    " mm are too small for the crowns of this scan: take larger cells, or fewer crowns");
+  };
+  if (double(lattice.blocks.x) * lattice.blocks.y * lattice.blocks.z > most_blocks) throw too_many();
   std::vector<LatticePoint> lowest;
   std::vector<glm::dvec3> middles_mm;
-  for (int z = 0; z < blocks.z; ++z)
-    for (int y = 0; y < blocks.y; ++y)
-      for (int x = 0; x < blocks.x; ++x) {
+  for (int z = 0; z < lattice.blocks.z; ++z)
+    for (int y = 0; y < lattice.blocks.y; ++y)
+      for (int x = 0; x < lattice.blocks.x; ++x) {
         lowest.emplace_back(block * LatticePoint(x, y, z));
         middles_mm.push_back(lattice.at_mm(glm::dvec3(lowest.back()) + 0.5 * (block - 1)));
       }
-  const std::vector<double> at_middles = field.at(middles_mm);
-  options.progress.at(0.2);
-  lattice.values.resize(static_cast<std::size_t>(lattice.dims.x) * static_cast<std::size_t>(lattice.dims.y) *
-                        static_cast<std::size_t>(lattice.dims.z));
+  lattice.middles = field.at(middles_mm);
+  options.progress.at(0.1);
   // From a block's middle to a cell beyond its farthest point.
   const double reach_mm = steepness * options.cell_mm * (0.5 * std::sqrt(3.0) * (block - 1) + 1.0);
-  std::vector<std::size_t> numbers;
   std::vector<glm::dvec3> points_mm;
-  for (std::size_t i = 0; i < lowest.size(); ++i)
-    for (int k = 0; k < block * block * block; ++k) {
-      const LatticePoint p = lowest[i] + LatticePoint(k % block, k / block % block, k / (block * block));
-      lattice.values[lattice.index(p)] = at_middles[i];
-      if (std::abs(at_middles[i]) > reach_mm) continue;
-      numbers.push_back(lattice.index(p));
-      points_mm.push_back(lattice.at_mm(glm::dvec3(p)));
-    }
-  const std::vector<double> values = field.at(points_mm);
-  for (std::size_t k = 0; k < numbers.size(); ++k) lattice.values[numbers[k]] = values[k];
-  options.progress.at(0.6);
+  lattice.first.assign(lowest.size(), LatticeValues::far_block);
+  for (std::size_t i = 0; i < lowest.size(); ++i) {
+    if (std::abs(lattice.middles[i]) > reach_mm) continue;
+    if (points_mm.size() >= LatticeValues::block_points * most_near_blocks) throw too_many();
+    lattice.first[i] = static_cast<std::uint32_t>(points_mm.size());
+    for (int k = 0; k < LatticeValues::block_points; ++k)
+      points_mm.push_back(lattice.at_mm(glm::dvec3(lowest[i] + LatticeValues::place_in_block(k))));
+  }
+  lattice.values = field.at(points_mm);
+  options.progress.at(0.4);
   return lattice;
 }
 
-/// The surface between lattice points inside and outside. It is closed for all values.
-Solid surface_of(const LatticeValues& lattice) {
+/// The triangles between lattice points inside and outside. They close for all values.
+std::vector<EdgeTriangle> triangles_between(const LatticeValues& lattice, const ScanBlendOptions& options) {
   std::vector<EdgeTriangle> triangles;
-  for (int z = 0; z + 1 < lattice.dims.z; ++z)
-    for (int y = 0; y + 1 < lattice.dims.y; ++y)
-      for (int x = 0; x + 1 < lattice.dims.x; ++x) {
-        std::array<double, 8> corners{};
-        int inside = 0;
-        for (int corner = 0; corner < 8; ++corner) {
-          const double value = lattice.values[lattice.index(LatticePoint(x, y, z) + corner_place(corner))];
-          corners[static_cast<std::size_t>(corner)] = value;
-          inside += value < 0.0 ? 1 : 0;
+  const LatticePoint last = LatticeValues::block * lattice.blocks - 1;
+  for (int z = 0; z < lattice.blocks.z; ++z) {
+    options.progress.at(0.4);
+    for (int y = 0; y < lattice.blocks.y; ++y)
+      for (int x = 0; x < lattice.blocks.x; ++x) {
+        if (!lattice.may_have_surface({x, y, z})) continue;
+        for (int k = 0; k < LatticeValues::block_points; ++k) {
+          const LatticePoint cell =
+              LatticeValues::block * LatticePoint(x, y, z) + LatticeValues::place_in_block(k);
+          if (glm::any(glm::greaterThanEqual(cell, last))) continue;
+          std::array<double, 8> corners{};
+          int inside = 0;
+          for (int corner = 0; corner < 8; ++corner) {
+            const double value = lattice.at(cell + corner_place(corner));
+            corners[static_cast<std::size_t>(corner)] = value;
+            inside += value < 0.0 ? 1 : 0;
+          }
+          if (inside != 0 && inside != 8) add_triangles(cell, corners, triangles);
         }
-        if (inside != 0 && inside != 8) add_triangles({x, y, z}, corners, triangles);
       }
+  }
+  return triangles;
+}
+
+/// A part of a lattice's edge that the surface crosses: shares of the edge and the values there.
+struct CrossedEdge {
+  double from = 0.0, to = 1.0, at_from = 0.0, at_to = 0.0;
+
+  /// Where the surface is if values are linear in between.
+  double share() const {
+    return std::clamp(from + (to - from) * at_from / (at_from - at_to), nearest_end, 1.0 - nearest_end);
+  }
+  void narrow(double share, double value) {
+    const bool is_like_from = (value < 0.0) == (at_from < 0.0);
+    (is_like_from ? from : to) = share;
+    (is_like_from ? at_from : at_to) = value;
+  }
+};
+
+/// The surface between lattice points inside and outside. Its corners lie where the field itself is 0: distances bend at
+/// cusps and between teeth, so that values at the ends of an edge alone do not place them.
+Solid surface_of(const LatticeValues& lattice, const MixedField& field, const ScanBlendOptions& options) {
+  constexpr int rounds = 2;
+  const std::vector<EdgeTriangle> triangles = triangles_between(lattice, options);
   const std::vector<LatticeEdge> edges = edges_of(triangles);
+  std::vector<CrossedEdge> crossed;
+  for (const LatticeEdge& edge : edges) {
+    const LatticePoint from = place_of(edge.from());
+    crossed.push_back({.at_from = lattice.at(from), .at_to = lattice.at(from + corner_place(edge.along()))});
+  }
   Triangles surface;
   surface.faces = numbered(triangles, edges);
-  for (const LatticeEdge& edge : edges) {
-    const LatticePoint from = place_of(edge.from()), to = from + corner_place(edge.along());
-    const double a = lattice.values[lattice.index(from)], b = lattice.values[lattice.index(to)];
-    const double share = std::clamp(a / (a - b), nearest_end, 1.0 - nearest_end);
-    surface.points_mm.push_back(lattice.at_mm(glm::mix(glm::dvec3(from), glm::dvec3(to), share)));
+  surface.points_mm.resize(edges.size());
+  const auto place = [&] {
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      const glm::dvec3 from(place_of(edges[i].from()));
+      surface.points_mm[i] =
+          lattice.at_mm(from + crossed[i].share() * glm::dvec3(corner_place(edges[i].along())));
+    }
+  };
+  place();
+  for (int round = 0; round < rounds; ++round) {
+    const std::vector<double> values = field.at(surface.points_mm);
+    for (std::size_t i = 0; i < edges.size(); ++i) crossed[i].narrow(crossed[i].share(), values[i]);
+    place();
+    options.progress.at(0.4 + 0.15 * (round + 1));
   }
   return trusted_solid(std::move(surface), Proof::Construction);
 }
 
-/// Mixed distances jump where the nearest point of the scan does, and leave specks. Removes these.
+/// Mixed distances jump at the scan's border, where its nearest point does, and leave specks. Removes these.
 Solid without_specks(const Solid& solid, ScanBlend& made) {
   constexpr double least_mm3 = 2.0;
   const std::vector<Component>& parts = solid.components();
@@ -394,7 +496,10 @@ double steepness_of(const ScanBlendOptions& options) {
 }  // namespace
 
 double scan_blend_allowance_mm(const ScanBlendOptions& options) {
-  return 0.5 * options.cell_mm;
+  // In a cell's tetrahedron, values that are interpolated between corners differ from those of a field of slope 1 by
+  // at most the mean distance from the corners, each with its weight. That is largest in the middle of the cell's
+  // diagonal, half of which it is there.
+  return 0.5 * std::sqrt(3.0) * options.cell_mm;
 }
 
 ScanBlend blended_with_scan(const Solid& solid, const Mesh& scan, const ScanBlendOptions& options) {
@@ -412,9 +517,9 @@ ScanBlend blended_with_scan(const Solid& solid, const Mesh& scan, const ScanBlen
   const double strip_mm = 2.0 * options.cell_mm, inset_mm = options.cell_mm / 8.0;
   const TurnedBox box(options.to_roots, crowns_mm, weight.far_mm() + 2.0 * strip_mm);
   ScanBlend made;
-  const MixedField field(solid, weight, box, strip_mm, inset_mm);
-  const Solid anew =
-      without_specks(surface_of(values_about(box.size(), field, steepness_of(options), options)), made);
+  const MixedField field(solid, weight, box, strip_mm, inset_mm, options.progress.stop);
+  const LatticeValues values = values_about(box.size(), field, steepness_of(options), options);
+  const Solid anew = without_specks(surface_of(values, field, options), made);
   const BooleanResult rest =
       boolean(solid, Operation::Difference, box.solid(strip_mm), options.progress.stop);
   if (rest.solid.empty()) {

@@ -24,7 +24,8 @@ struct ScanBlendOptions {
   std::vector<glm::dvec3> about_mm =
       {};                  ///< only within `radius_mm` of these; empty: all that the scan shows
   double radius_mm = 6.0;  ///< above 0
-  double cell_mm = 0.5;    ///< of the new triangles; sharp edges are cut off within half of it
+  /// Of the new triangles, above 0. Sharp edges are cut off within it. Time and memory grow with its inverse square.
+  double cell_mm = 0.25;
   Progress progress = {};
 };
 
@@ -41,17 +42,18 @@ struct ScanBlend {
   std::vector<std::string> findings;
 };
 
-/// The largest distance of the new triangles from the surface that they approximate, at sharp edges, which are cut
-/// off, and on flat parts.
+/// The largest distance of the new triangles from the surface that they approximate, where one source alone counts:
+/// in gaps between teeth and at sharp edges, both of which cells cut off. Along the border the slope of the weight adds
+/// to it.
 double scan_blend_allowance_mm(const ScanBlendOptions& options);
 
 /// The solid with the surface of an open scan that lies on it. Between both, distances are mixed with a weight that
 /// changes smoothly along `blend_mm`, so that the border is smooth. Near the crowns the surface is made anew from
 /// distances; elsewhere the triangles stay. Where the solid passes the box about the crowns, there
-/// is a step of up to a quarter of a cell. Throws std::invalid_argument if an option is out of its range; Error
-/// (Geometry) if the scan shows none of the crowns; std::length_error if the cells are too many; as boolean();
-/// Stopped. The same bits on any number of threads. Cost: two distances for each cell near the surface in the box
-/// of the crowns, and two Booleans.
+/// is a step of up to a quarter of a cell. Takes up to 600 MB for cells. Throws std::invalid_argument if an
+/// option is out of its range; Error (Geometry) if the scan shows none of the crowns; std::length_error if
+/// the cells are too many; as boolean(); Stopped. The same bits on any number of threads. Cost: two distances
+/// for each cell near the surface in the box of the crowns, and two Booleans.
 ScanBlend blended_with_scan(const Solid& solid, const Mesh& scan, const ScanBlendOptions& options);
 
 }  // namespace octotomy::brep

@@ -2,9 +2,10 @@
 //
 // A point is the scan's if its nearest point on the scan, the point itself and its distance are within every limit by
 // more than the border's width; it is the object's if it is beyond one of them. Each limit has a slack: the largest
-// deviation of a right answer. The scan's side of a point follows from the normals of the triangle's corners,
-// interpolated at the nearest point. Where that normal is nearly square to the line to the point, both sides are
-// allowed.
+// deviation of a right answer. The scan's side of a point follows from the solid angle under which the point sees the
+// scan. Of the full angle that is at least half inside a scan of crowns, and at most none outside, seen from above the
+// scan's border. In between, as inside a flat scan, the normals of the triangle's corners decide, interpolated at the
+// nearest point. Where that normal is nearly square to the line to the point, both sides are allowed.
 #include "verify/witness/scan_blend_witness.h"
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -23,10 +25,75 @@
 namespace octotomy::verify {
 namespace {
 
+/// The share of the full solid angle under which points see a surface, positive from behind. Triangles in cubes far from
+/// the point count by the sum of their areas, as vectors.
+class SeenShare {
+ public:
+  explicit SeenShare(const brep::Triangles& surface) {
+    constexpr double cube_mm = 4.0;
+    std::map<std::array<long, 3>, std::vector<std::array<glm::dvec3, 3>>> cubes;
+    for (const auto& face : surface.faces) {
+      const std::array<glm::dvec3, 3> corners{surface.points_mm[face[0]], surface.points_mm[face[1]],
+                                              surface.points_mm[face[2]]};
+      const glm::dvec3 cube = glm::floor((corners[0] + corners[1] + corners[2]) / (3.0 * cube_mm));
+      cubes[{std::lround(cube.x), std::lround(cube.y), std::lround(cube.z)}].push_back(corners);
+    }
+    for (auto& [place, triangles] : cubes) clusters_.push_back(cluster_of(std::move(triangles)));
+  }
+
+  double at(const glm::dvec3& p_mm) const {
+    constexpr double far_radii = 3.0;
+    double angle = 0.0;
+    for (const Cluster& cluster : clusters_) {
+      const glm::dvec3 to = cluster.middle_mm - p_mm;
+      const double distance = glm::length(to);
+      if (distance > far_radii * cluster.radius_mm) {
+        angle += glm::dot(cluster.area_mm2, to) / (distance * distance * distance);
+        continue;
+      }
+      for (const auto& [a, b, c] : cluster.triangles) angle += solid_angle(a - p_mm, b - p_mm, c - p_mm);
+    }
+    return angle / (4.0 * std::numbers::pi);
+  }
+
+ private:
+  struct Cluster {
+    std::vector<std::array<glm::dvec3, 3>> triangles;
+    glm::dvec3 middle_mm{0.0}, area_mm2{0.0};
+    double radius_mm = 0.0;
+  };
+
+  static Cluster cluster_of(std::vector<std::array<glm::dvec3, 3>> triangles) {
+    Cluster cluster;
+    double whole_mm2 = 0.0;
+    for (const auto& [a, b, c] : triangles) {
+      const glm::dvec3 area = 0.5 * glm::cross(b - a, c - a);
+      cluster.area_mm2 += area;
+      whole_mm2 += glm::length(area);
+      cluster.middle_mm += glm::length(area) * (a + b + c) / 3.0;
+    }
+    if (whole_mm2 > 0.0) cluster.middle_mm /= whole_mm2;
+    for (const auto& corners : triangles)
+      for (const glm::dvec3& corner : corners)
+        cluster.radius_mm = std::max(cluster.radius_mm, glm::distance(corner, cluster.middle_mm));
+    cluster.triangles = std::move(triangles);
+    return cluster;
+  }
+
+  /// Of a triangle about the origin, by the tangent of half of it (Euler, 1781).
+  static double solid_angle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+    return 2.0 * std::atan2(glm::dot(a, glm::cross(b, c)),
+                            la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
+  }
+
+  std::vector<Cluster> clusters_;
+};
+
 class ScanBlendReader {
  public:
   ScanBlendReader(Witness object, WitnessedScan asked)
-      : object_(std::move(object)), asked_(std::move(asked)), grid_(asked_.scan) {
+      : object_(std::move(object)), asked_(std::move(asked)), grid_(asked_.scan), seen_(asked_.scan) {
     find_normals();
     find_border();
   }
@@ -138,28 +205,22 @@ class ScanBlendReader {
 
   AllowedSides scan_sides(const glm::dvec3& p_mm, const TriangleGrid::Foot& foot, const glm::dvec3& foot_mm,
                           double slack) const {
+    constexpr double surely_inside = 2.0 / 3.0, surely_outside = 0.0;
     if (foot.distance_mm <= slack) return on_surface;
+    const double seen = seen_.at(p_mm);
+    if (seen > surely_inside) return certainly_in;
+    if (seen < surely_outside) return certainly_out;
     const glm::dvec3 normal = at(foot, normals_);
     const double along = glm::dot(p_mm - foot_mm, normal), whole = foot.distance_mm * glm::length(normal);
     constexpr double nearly_square = 0.1;
     if (std::abs(along) <= nearly_square * whole) return either_side;
-    // No surface is as near as the slack, so that the side changes there only where the scan crosses itself, as noise
-    // makes it between neighbouring teeth.
-    for (int axis = 0; axis < 3; ++axis)
-      for (const double sign : {-1.0, 1.0}) {
-        glm::dvec3 beside_mm = p_mm;
-        beside_mm[axis] += sign * slack;
-        const auto other = grid_.nearest(beside_mm, foot.distance_mm + 2.0 * slack);
-        if (!other) continue;
-        const glm::dvec3 apart = beside_mm - at(*other, asked_.scan.points_mm);
-        if (glm::dot(apart, at(*other, normals_)) * along < 0.0) return either_side;
-      }
     return along < 0.0 ? certainly_in : certainly_out;
   }
 
   Witness object_;
   WitnessedScan asked_;
   TriangleGrid grid_;
+  SeenShare seen_;
   std::vector<glm::dvec3> normals_;  ///< at points
   std::vector<bool> is_border_;
   std::vector<std::pair<glm::dvec3, glm::dvec3>> edges_;

@@ -194,6 +194,12 @@ std::string definition(const Guide& guide, const Objects&) {
          " slots, " + std::to_string(guide.sleeves.size()) + " sleeves";
 }
 
+/// Where the bone's shadow ends. Moved back by the depth of a slot it bounds the slot's walls, and still ends behind the
+/// region, so that the walls meet the base everywhere.
+double shadow_end_mm(const Guide& guide) {
+  return guide.site.end_mm + (guide.slots.empty() ? 0.0 : guide.slot_depth_mm);
+}
+
 /// The motion from behind the bone to behind a slot's outer rim, along the saw's direction.
 glm::dmat4 to_rim(const Guide& guide, const SawSlot& slot) {
   return glm::translate(glm::dmat4(1.0), -guide.slot_depth_mm * slot.goes_in);
@@ -224,7 +230,7 @@ void voxels(const Guide& guide, const VoxelBench& bench, VoxelSide& made) {
   const voxel::Expression solid = bench.within_universe(*object.symbol & near);
   const voxel::Expression grown(voxel::offset(bone, solid, guide.clearance_mm, bench.progress));
   const voxel::Expression taken(
-      voxel::shadow(bench.combined(grown), grown, {guide.site.along, guide.site.end_mm, bench.progress})
+      voxel::shadow(bench.combined(grown), grown, {guide.site.along, shadow_end_mm(guide), bench.progress})
           .window);
   const voxel::Expression base = guide.site.base.expression();
   const voxel::Octree patch = bench.combined(voxel::Expression(bone) & base);
@@ -260,7 +266,7 @@ void triangles(const Guide& guide, const MeshBench& bench, MeshSide& made) {
   const brep::Level taken{
       timed("guide_shadow",
             [&] {
-              return brep::shadow(bone, {guide.site.along, guide.site.end_mm, progress}).solid;
+              return brep::shadow(bone, {guide.site.along, shadow_end_mm(guide), progress}).solid;
             }),
       guide.clearance_mm};
   const brep::Solid base = guide.site.base.solid();

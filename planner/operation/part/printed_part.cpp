@@ -18,6 +18,25 @@ namespace {
 /// distances on flat and gently curved parts.
 constexpr double standing_off = 0.1;
 
+/// The largest piece of the balls' middles with its cavities. Balls about another piece meet those about it in a neck
+/// that is thinner than a ball, because no ball fits between the two.
+brep::Solid without_necks(const brep::Solid& core) {
+  const std::vector<brep::Component>& pieces = core.components();
+  if (pieces.size() < 2) return core;
+  std::vector<std::uint32_t> kept = pieces.front().faces;
+  const brep::Solid outer =
+      brep::trusted_solid(brep::part_of(core.mesh(), kept), brep::proof_of_part(core.proof()));
+  const brep::Triangles& triangles = core.triangles();
+  for (std::size_t i = 1; i < pieces.size(); ++i) {
+    const std::vector<std::uint32_t>& faces = pieces[i].faces;
+    if (pieces[i].volume_mm3 < 0.0 &&
+        outer.tree().is_inside(triangles.points_mm[triangles.faces[faces.front()][0]]))
+      kept.insert(kept.end(), faces.begin(), faces.end());
+  }
+  std::sort(kept.begin(), kept.end());
+  return brep::trusted_solid(brep::part_of(core.mesh(), kept), brep::proof_of_part(core.proof()));
+}
+
 }  // namespace
 
 voxel::Expression rounded(const voxel::Expression& solid, double radius_mm, const VoxelBench& bench) {
@@ -31,8 +50,12 @@ voxel::Expression rounded(const voxel::Expression& solid, double radius_mm, cons
       voxel::offset(octree, bench.within_universe(solid), -radius_mm, bench.progress));
   const voxel::Octree cores = bench.combined(core);
   if (cores.is_empty()) return voxel::Expression(cores);
-  return solid &
-         voxel::Expression(voxel::offset(cores, core, radius_mm + standing_off * radius_mm, bench.progress));
+  // As without_necks().
+  const voxel::Octree largest = voxel::components(cores).largest;
+  const voxel::Expression kept =
+      core - voxel::Expression(bench.combined(voxel::Expression(cores) - voxel::Expression(largest)));
+  return solid & voxel::Expression(
+                     voxel::offset(largest, kept, radius_mm + standing_off * radius_mm, bench.progress));
 }
 
 void keep_largest(const voxel::Expression& solid, const VoxelBench& bench, VoxelSide& made) {
@@ -83,7 +106,7 @@ brep::Solid thick_part(const brep::LevelBody& body, const ThickPart& asked, cons
   brep::Solid whole;
   {
     const Stopwatch watch(bench.timings, part + "_core");
-    whole = brep::core_of(body, {-radius_mm, asked.cell_mm, progress});
+    whole = without_necks(brep::core_of(body, {-radius_mm, asked.cell_mm, progress}));
   }
   if (whole.empty()) return whole;
   {

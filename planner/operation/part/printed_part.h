@@ -12,8 +12,8 @@
 // points as files store them.
 namespace octotomy::planner {
 
-/// The union of all balls of the radius that fit within a solid: edges are rounded, and walls thinner than
-/// twice the radius are cut off. Cuts keep a tenth of the radius away from those balls, so that other
+/// The union of all balls of the radius that fit within a solid and whose middles hang together: edges are rounded,
+/// and walls and necks thinner than twice the radius are cut off. Cuts keep a tenth of the radius away from those balls, so that other
 /// surfaces do not move. If the balls are narrower than voxels, they are not resolved, and the solid is
 /// returned unchanged.
 voxel::Expression rounded(const voxel::Expression& solid, double radius_mm, const VoxelBench& bench);
@@ -30,8 +30,8 @@ struct ThickPart {
   double least_wall_mm = 0.8;
   double cell_mm = 0.8;  ///< of the mesh's level sets; flat parts lie within an eighth of it
 };
-/// The mesh of a body without walls thinner than the least wall: the union of balls of that width within the
-/// body, so edges are rounded. Keeps the largest piece, as printed(). `made` lists the volume that is cut off
+/// The mesh of a body without walls and necks thinner than the least wall: the union of balls of that width within the
+/// body whose middles hang together, so edges are rounded. Keeps the largest piece, as printed(). `made` lists the volume that is cut off
 /// with thin walls. Throws as brep::core_of().
 brep::Solid thick_part(const brep::LevelBody& body, const ThickPart& asked, const std::string& part,
                        const MeshBench& bench, MeshSide& made);

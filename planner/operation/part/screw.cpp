@@ -2,7 +2,8 @@
 // A screw's axis, and how far the screw stays from what it must not touch: roots, a nerve's canal, saw cuts.
 // Each kernel measures on its own answer to those objects; the mesh's distance is the one that counts.
 //
-// A flap's screw meets the axis of its segment, where the segment is placed, at a right angle and from a side of the
+// A screw at a place that is seen from a side of the head goes in along that view, where the view's line through the
+// place meets the bone first. A flap's screw meets the axis of its segment, where the segment is placed, at a right angle and from a side of the
 // head. On the uncut bone it lies where the segment's motion brings it to that place.
 #include "planner/operation/part/screw.h"
 
@@ -34,17 +35,22 @@ namespace {
 
 /// The largest distance of a screw's point from the bone's surface, because landmarks are placed by hand.
 constexpr double on_surface_mm = 3.0;
+/// The side of a flap's screw if none is given: jaw and fibula are reached from below.
+constexpr const char* usual_side = "inferior";
 
 void check(const Screw& screw, const FieldLocation& place) {
   if (screw.flap && (screw.at || screw.direction))
     place.at("flap").refuse("states the axis a second time: leave out 'flap', or 'at' and 'direction'");
+  if (screw.side && screw.direction)
+    place.at("side").refuse("states the axis a second time: leave out 'side' or 'direction'");
   if (!screw.flap && !screw.at) place.at("at").refuse("is missing: add it, or 'flap'");
-  if (!screw.flap && !screw.direction) place.at("direction").refuse("is missing: add it, or 'flap'");
-  try {
-    voxel::parse_view(screw.side);
-  } catch (const voxel::InvalidInput& error) {
-    place.at("side").refuse(error.what());
-  }
+  if (!screw.flap && !screw.direction && !screw.side)
+    place.at("direction").refuse("is missing: add it, or 'side'");
+  if (screw.side) try {
+      voxel::parse_view(*screw.side);
+    } catch (const voxel::InvalidInput& error) {
+      place.at("side").refuse(error.what());
+    }
   if (place.scope == nullptr) return;
   for (std::size_t i = 0; i < screw.cuts.size(); ++i) {
     const std::string& maker = place.scope->maker_of(screw.cuts[i].name).name;
@@ -147,9 +153,9 @@ void report(const Screw& screw, const std::vector<ScrewClear>& clearances, const
 }
 
 /// The point at which a line enters bone from outside, between two places on it. Throws std::runtime_error if no
-/// bone of the object lies there.
+/// bone of the object lies there, with the remedy.
 glm::dvec3 entry_mm(const std::string& name, const brep::Solid& bone, const glm::dvec3& from_mm,
-                    const glm::dvec3& to_mm) {
+                    const glm::dvec3& to_mm, const std::string& remedy) {
   constexpr double sample_mm = 0.1;  // walls thinner than this hold no screw
   const int count = std::max(1, static_cast<int>(std::ceil(glm::distance(from_mm, to_mm) / sample_mm)));
   std::vector<glm::dvec3> places_mm;
@@ -159,8 +165,7 @@ glm::dvec3 entry_mm(const std::string& name, const brep::Solid& bone, const glm:
   const auto first = std::find(inside.begin(), inside.end(), std::uint8_t{1});
   if (first == inside.end())
     throw std::runtime_error("no bone of '" + name + "' lies between " + voxel::rounded(from_mm) + " and " +
-                             voxel::rounded(to_mm) +
-                             " mm, where the screw would enter it: change 'share', or choose another 'side'");
+                             voxel::rounded(to_mm) + " mm, where the screw would enter it: " + remedy);
   if (first == inside.begin())
     throw std::runtime_error(
         "bone of '" + name + "' reaches farther than " + three_figures(glm::distance(from_mm, to_mm)) +
@@ -181,15 +186,30 @@ struct Placed {
   glm::dvec3 along{0.0, 1.0, 0.0};  ///< unit
 };
 
+/// The screw that goes in along a view, where the view's line through the place meets the bone first.
+Placed seen_from(const glm::dvec3& look, const Screw& asked, const SettleBench& bench) {
+  const brep::Solid& bone = bench.object(asked.object.name);
+  const glm::dvec3 at_mm = mark_mm(*asked.at, bench.objects);
+  const brep::Size& size = bone.size();
+  // The bone's box lies within this distance of the place.
+  const double far_mm = glm::length(glm::max(glm::abs(size.low_mm - at_mm), glm::abs(size.high_mm - at_mm)));
+  return {entry_mm(asked.object.name, bone, at_mm - far_mm * look, at_mm + far_mm * look,
+                   "move 'at', or choose another 'side'"),
+          look};
+}
+
 Placed placed(const Screw& asked, const SettleBench& bench) {
-  if (!asked.flap) return {mark_mm(*asked.at, bench.objects), glm::normalize(*asked.direction)};
+  if (!asked.flap && asked.direction)
+    return {mark_mm(*asked.at, bench.objects), glm::normalize(*asked.direction)};
+  const std::string side = asked.side.value_or(usual_side);
+  const glm::dvec3 look = bench.objects.lps_from_head * voxel::parse_view(side).look;
+  if (!asked.flap) return seen_from(look, asked, bench);
   const Action* maker = bench.maker_of ? bench.maker_of(asked.flap->name) : nullptr;
   const FlapPlace place = flap_place(maker, asked.flap->name, asked.share);
-  const glm::dvec3 look = bench.objects.lps_from_head * voxel::parse_view(asked.side).look;
   const glm::dvec3 square = look - place.along * glm::dot(look, place.along);
   constexpr double least_across = 0.5;
   if (glm::length(square) < least_across)
-    throw std::runtime_error("the view from '" + asked.side +
+    throw std::runtime_error("the view from '" + side +
                              "' looks along the flap's axis, to less than 30 degrees: choose another 'side'");
   const glm::dvec3 along = glm::normalize(square);
   const glm::dmat4 motion = place.uncut_from_placed.value_or(glm::dmat4(1.0));
@@ -197,7 +217,7 @@ Placed placed(const Screw& asked, const SettleBench& bench) {
     return glm::dvec3(motion * glm::dvec4(place.on_axis_mm + depth_mm * along, 1.0));
   };
   return {entry_mm(asked.object.name, bench.object(asked.object.name), here_mm(-place.reach_mm),
-                   here_mm(place.reach_mm)),
+                   here_mm(place.reach_mm), "change 'share', or choose another 'side'"),
           glm::dmat3(motion) * along};
 }
 
@@ -351,7 +371,9 @@ Operation screw_operation() {
   return Describe<Screw>("screw", "Places a screw: its axis goes with the bone, to guides and plates.",
                          Makes::Object)
       .takes(field("object", &Screw::object, "The bone or piece in which the screw sits.").required())
-      .takes(field("at", &Screw::at, "Where its axis meets the bone's surface: [x, y, z] or a landmark."))
+      .takes(field("at", &Screw::at,
+                   "Where its axis meets the bone's surface, or with 'side' a place before or behind that: "
+                   "[x, y, z] or a landmark."))
       .takes(field("direction", &Screw::direction, "The direction from the screw's head to its tip, LPS.")
                  .direction())
       .takes(field(
@@ -366,12 +388,13 @@ Operation screw_operation() {
               .from(-1.0)
               .to(2.0)
               .read_if<Screw>(of_flap, needs_flap))
-      .takes(
-          field(
-              "side", &Screw::side,
-              "The side from which it is screwed in, where the segment is placed: anterior, posterior, left, "
-              "right, superior, inferior, or AZ,EL in degrees; of the head as it is held.")
-              .read_if<Screw>(of_flap, needs_flap))
+      .takes(field(
+          "side", &Screw::side,
+          "The side from which it is screwed in: anterior, posterior, left, right, superior, inferior, or "
+          "AZ,EL in degrees; of the head as it is held. With 'at', in place of 'direction': the screw goes "
+          "in "
+          "where 'at' is seen on the bone from there. With 'flap': where the segment is placed; default: "
+          "inferior."))
       .takes(field("diameter_mm", &Screw::diameter_mm,
                    "The outer diameter; 2 is usual for plates of the midface.")
                  .from(0.8)

@@ -20,8 +20,8 @@ struct Screw {
   std::optional<glm::dvec3> direction;
   std::optional<ObjectName> flap;  ///< in place of both: a space of a flap, whose axis the screw's axis meets
   double share = 0.5;              ///< where on the flap's axis
-  std::string side =
-      "inferior";  ///< a view of the head: from there it is screwed in where the bone is placed
+  /// A view of the head: from there it is screwed in where the bone is placed. With `at`, in place of `direction`.
+  std::optional<std::string> side;
   double diameter_mm = 2.0, length_mm = 6.0;
   std::vector<ObjectName> away_from, cuts;
   double least_mm = 1.0;

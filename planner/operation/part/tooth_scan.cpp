@@ -35,6 +35,7 @@ struct ToothScan {
   double radius_mm = brep::ScanBlendOptions{}.radius_mm;
   double depth_mm = brep::ToothScanOptions{}.depth_mm;
   double blend_mm = brep::ScanBlendOptions{}.blend_mm, reach_mm = brep::ScanBlendOptions{}.reach_mm;
+  double cell_mm = brep::ScanBlendOptions{}.cell_mm;
   std::optional<std::string> frame, unit;
   // Settled.
   brep::LaidToothScan laid;
@@ -72,6 +73,7 @@ brep::ScanBlendOptions blend_of(const ToothScan& asked, const brep::Progress& pr
   options.reach_mm = asked.reach_mm;
   options.about_mm = asked.about_mm;
   options.radius_mm = asked.radius_mm;
+  options.cell_mm = asked.cell_mm;
   options.progress = progress;
   return options;
 }
@@ -247,6 +249,11 @@ Operation tooth_scan_operation() {
                    "stick out farther.")
                  .from(0.5)
                  .to(8.0))
+      .takes(field("cell_mm", &ToothScan::cell_mm,
+                   "The size of the new triangles' cells. The surface lies within 0.87 of it from the scan: "
+                   "smaller cells show narrower gaps between teeth and take longer.")
+                 .from(0.1)
+                 .to(1.0))
       .takes(
           field("frame", &ToothScan::frame,
                 "Directions of x, y and z in the scan's file, in place of what the file states: LPS, RAS, or "

@@ -29,8 +29,9 @@ double rounded(double value) {
   return std::round(value * 1e4) / 1e4 + 0.0;
 }
 
-/// The value with all formulas evaluated: "=" yields a number, "=?" whether it differs from 0.
-Json answered(const Json& value, const Values& names) {
+/// The value with all formulas evaluated: "=" yields a number, "=?" whether it differs from 0, {"head_mm": [x, y, z]}
+/// the place with these coordinates along the head's directions, in LPS.
+Json answered(const Json& value, const Values& names, const glm::dmat3& lps_from_head) {
   if (value.is_string() && value.get_ref<const std::string&>().starts_with('=')) {
     const std::string_view formula = std::string_view(value.get_ref<const std::string&>()).substr(1);
     if (formula.starts_with('?')) return value_of(formula.substr(1), names) != 0.0;
@@ -38,8 +39,15 @@ Json answered(const Json& value, const Values& names) {
   }
   if (!value.is_structured()) return value;
   Json made = value;
-  for (Json& part : made) part = answered(part, names);
-  return made;
+  for (Json& part : made) part = answered(part, names, lps_from_head);
+  if (!made.is_object() || made.size() != 1 || !made.contains("head_mm")) return made;
+  const Json& place = made["head_mm"];
+  if (!place.is_array() || place.size() != 3 ||
+      !std::all_of(place.begin(), place.end(), [](const Json& each) { return each.is_number(); }))
+    throw std::runtime_error("'head_mm' must be three numbers");
+  const glm::dvec3 p_mm =
+      lps_from_head * glm::dvec3(place[0].get<double>(), place[1].get<double>(), place[2].get<double>());
+  return Json{rounded(p_mm.x), rounded(p_mm.y), rounded(p_mm.z)};
 }
 
 const brep::Landmark* find(const std::vector<brep::Landmark>& landmarks, const std::string& name) {
@@ -297,7 +305,7 @@ Json steps_of(const Procedure& procedure, const std::vector<brep::Landmark>& lan
   }
   Json steps = Json::array();
   for (const Json& step : procedure.steps) try {
-      steps.push_back(answered(step, names));
+      steps.push_back(answered(step, names, lps_from_head));
     } catch (const std::exception& error) {
       rethrow_at("procedure " + procedure.name + ", step '" + step.value("id", "") + "': ", error);
     }

@@ -107,6 +107,38 @@ test('a bilateral sagittal split takes at most 100 actions', { skip }, async (co
   assert.deepEqual(one.problems, []);
 });
 
+const front_marks = {
+  piriform_left: [-2, -80, 96], piriform_right: [-33, -83, 96], buttress_left: [9, -70, 90], buttress_right: [-46, -71, 88],
+  pterygoid_left: [5, -46, 88], pterygoid_right: [-43, -46, 88], incisor: [-18, -101, 70], molar_left: [6, -62, 70], molar_right: [-44, -62, 70],
+};
+
+/// Plans a procedure by its landmarks with the options ticked, and counts their actions.
+async function with_ticks(context, { button, procedure, marks, ticks, field, last }) {
+  const { folder, one, plan } = await opened(context);
+  await one.click(one.page.locator('.bar').getByRole('button', { name: 'Procedure' }));
+  await one.click(button, { exact: true });
+  await one.click(`Place ${Object.keys(marks).length} landmarks`);
+  await place(one, plan, marks, head_spacing_mm);
+  const width = one.page.locator(`dialog input[name="${field}"]`), before = one.actions;
+  assert.equal(await width.isVisible(), false);
+  for (const tick of ticks) await one.click(one.page.locator(`dialog input[name="${tick}"]`));
+  await width.waitFor();
+  await picture(one, `${procedure}_form`, false);
+  assert.equal(one.actions, before + ticks.length);
+  await one.click('Plan it');
+  await one.until(() => plan().steps.some((step) => step.id === last), last);
+  same_as_command(folder, procedure, plan(), ticks.flatMap((tick) => ['--with', tick]));
+  console.log(`${procedure} with ${ticks.join(' and ')}: ${one.actions} actions`);
+  assert.ok(one.actions <= 100, `${one.actions} actions`);
+  assert.deepEqual(one.problems, []);
+}
+
+test('splint, guides and plates of a Le Fort I are two ticks', { skip }, (context) => with_ticks(context, {
+  button: 'Le Fort I', procedure: 'le_fort_i', marks: front_marks, ticks: ['splint', 'guides'], field: 'splint_width_mm', last: 'plate_right_prints' }));
+
+test('the final splint of a sagittal split is a tick', { skip }, (context) => with_ticks(context, {
+  button: 'Bilateral sagittal split', procedure: 'bilateral_sagittal_split', marks: split_marks, ticks: ['splint'], field: 'splint_width_mm', last: 'final_splint_prints' }));
+
 const flap_values = { start_mm: 20, aside_mm: 20, least_mm3: 200 };
 
 /// The form of a fibula flap, with its donor's scan, landmarks and values.

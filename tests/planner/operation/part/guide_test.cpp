@@ -107,6 +107,25 @@ const Json& line_of(const Json& printable, const std::string& check) {
   throw std::runtime_error("no line about " + check);
 }
 
+TEST(GuideStep, WallsOfASlotThatIsDeeperThanTheReachMeetTheBase) {
+  const ScratchFolder folder;
+  EvaluateOptions options;
+  options.certify = false;
+  const Evaluation made = evaluate(
+      ball_plan(folder, sawn + guide_step(at_front + R"(, "radius_mm": 12, "reach_mm": 8, "cuts": ["sawn"],
+                                                      "slot_depth_mm": 20)")),
+      options);
+  const Object& jig = made.objects.at("jig");
+  ASSERT_TRUE(jig.mesh.within) << testing::PrintToString(jig.findings);
+  EXPECT_NEAR(jig.mesh.within->size().low_mm.y, -20.25 - 20.0, 0.2);
+  for (const double y_mm : {-22.0, -25.0, -30.0, -38.0})
+    for (const double x_mm : {0.0, 8.0}) {
+      EXPECT_TRUE(jig.mesh.within->tree().is_inside({x_mm, y_mm, 1.5})) << x_mm << " " << y_mm;
+      EXPECT_TRUE(jig.mesh.within->tree().is_inside({x_mm, y_mm, -1.5})) << x_mm << " " << y_mm;
+    }
+  EXPECT_EQ(jig.mesh.within->components().size(), 1u);
+}
+
 TEST(GuideStep, ASlotThatRunsOutAtTheGuidesEdgeLeavesNoSliver) {
   const ScratchFolder folder;
   EvaluateOptions options;

@@ -45,6 +45,36 @@ TEST(ScrewStep, StatesHowFarItStaysFromACutAndFromAnotherObjectByBothKernels) {
   EXPECT_EQ(findings.find("'sawn'"), std::string::npos) << findings;
 }
 
+TEST(ScrewStep, FromASideItGoesInWhereThePlaceIsSeenOnTheBone) {
+  const ScratchFolder folder;
+  EvaluateOptions options;
+  options.certify = false;
+  const auto head = [&](const std::string& fields) {
+    return evaluate(ball_plan(folder, R"({"id": "screw", "do": "screw", "object": "ball", )" + fields + "}"),
+                    options)
+        .objects.at("screw")
+        .mesh.details.at("head_mm");
+  };
+  // In the ball's middle, before it and behind it: the front of a ball of 20 mm, 12 mm above its middle.
+  for (const char* at : {"[0, 0, 12]", "[0, -70, 12]", "[0, 70, 12]"}) {
+    const Json p = head(R"("side": "anterior", "at": )" + std::string(at));
+    EXPECT_NEAR(p[0].get<double>(), 0.0, 1e-9);
+    EXPECT_NEAR(p[1].get<double>(), -16.0, 0.1);
+    EXPECT_NEAR(p[2].get<double>(), 12.0, 1e-9);
+  }
+  EXPECT_NEAR(head(R"("side": "left", "at": [0, 0, 12])")[0].get<double>(), 16.0, 0.1);
+  EXPECT_NE(made_refusal(folder, R"({"id": "screw", "do": "screw", "object": "ball", "side": "anterior",
+      "at": [0, 0, 25]})")
+                .find("move 'at'"),
+            std::string::npos);
+  EXPECT_NE(ball_refusal(folder, screw_step(R"("at": [0, 0, 12], "side": "anterior")"))
+                .find("'side' or 'direction'"),
+            std::string::npos);
+  EXPECT_NE(ball_refusal(folder, R"({"id": "screw", "do": "screw", "object": "ball", "at": [0, 0, 12]})")
+                .find("is missing: add it, or 'side'"),
+            std::string::npos);
+}
+
 TEST(ScrewStep, AScrewThatGoesIntoARootIsNamed) {
   const ScratchFolder folder;
   EvaluateOptions options;

@@ -7,8 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "brep/io/write_mesh.h"
+#include "brep/shape/scan_blend.h"
 #include "planner/operation/table/json.h"
 #include "tests/brep/shapes.h"
+#include "tests/planner/operation/altered.h"
 #include "tests/planner/operation/ball_operation.h"
 
 namespace octotomy::planner {
@@ -64,6 +66,55 @@ TEST(ToothScanStep, TheScansBumpStandsOnTheObjectAndTheResultSaysWhichPartIsTheS
   ASSERT_TRUE(sharp.certificate);
   EXPECT_NE(verify::to_string(sharp.certificate->verdict), "FAIL")
       << testing::PrintToString(sharp.certificate->reasons);
+}
+
+/// The answer with what lies within `radius_mm` of the top of the axis moved outward.
+Answer with_moved_cusp(const Evaluation& made, const std::string& id, double radius_mm, double by_mm) {
+  brep::Triangles mesh = made.object(id).mesh.within.value().triangles();
+  std::size_t moved = 0;
+  for (glm::dvec3& p : mesh.points_mm) {
+    if (p.z < 0.0 || std::hypot(p.x, p.y) > radius_mm) continue;
+    p += by_mm * glm::normalize(p);
+    ++moved;
+  }
+  EXPECT_GT(moved, 100u);
+  brep::Solid solid = brep::trusted_solid(std::move(mesh), brep::Proof::Connection);
+  voxel::Octree voxels = convert::voxelise(made.universe, solid.linked());
+  return {std::move(voxels), std::move(solid)};
+}
+
+TEST(ToothScanStep, AMovedCuspFailsInEitherKernelAndOneWithinTheAllowanceDoesNot) {
+  const ScratchFolder folder;
+  write_cap(folder / "cap.stl");
+  const Evaluation made = evaluate(ball_plan(folder, scan_step("cap.stl", cap_points)), {});
+  constexpr double cusp_mm = 5.0;
+  for (const double by_mm : {-0.9, 0.9})
+    expect_fails_as(made, "sharp", with_moved_cusp(made, "sharp", cusp_mm, by_mm), "moved cusp");
+  const double allowance_mm = brep::scan_blend_allowance_mm({});
+  for (const double by_mm : {-2.0 * allowance_mm, 2.0 * allowance_mm}) {
+    const verify::Certificate moved =
+        altered_certificate(made, "sharp", with_moved_cusp(made, "sharp", cusp_mm, by_mm), Altered::Mesh);
+    EXPECT_EQ(verify::to_string(moved.verdict), "FAIL") << by_mm << testing::PrintToString(moved.reasons);
+  }
+  const verify::Certificate right = altered_certificate(
+      made, "sharp", with_moved_cusp(made, "sharp", cusp_mm, 0.25 * allowance_mm), Altered::Mesh);
+  EXPECT_NE(verify::to_string(right.verdict), "FAIL") << testing::PrintToString(right.reasons);
+}
+
+TEST(ToothScanStep, CellsThatAreTypedAreUsed) {
+  const ScratchFolder folder;
+  write_cap(folder / "cap.stl");
+  EvaluateOptions options;
+  options.certify = false;
+  const auto faces = [&](const std::string& more) {
+    return evaluate(ball_plan(folder, scan_step("cap.stl", cap_points, more)), options)
+        .objects.at("sharp")
+        .mesh.whole->triangles()
+        .faces.size();
+  };
+  EXPECT_GT(faces(R"(, "cell_mm": 0.4)"), 2 * faces(R"(, "cell_mm": 0.8)"));
+  EXPECT_NE(ball_refusal(folder, scan_step("cap.stl", cap_points, R"(, "cell_mm": 0.01)")).find("cell_mm"),
+            std::string::npos);
 }
 
 TEST(ToothScanStep, RefusesAScanThatDoesNotFitInASentenceThatSaysWhy) {

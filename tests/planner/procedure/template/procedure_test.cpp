@@ -86,6 +86,40 @@ TEST(Procedure, AnOptionAddsItsValuesAndStepsAndIsKnownByItsName) {
   EXPECT_NE(parsed("b_mm", "one").find("step 'one' stands twice"), std::string::npos);
 }
 
+TEST(Procedure, APlaceAlongTheHeadsDirectionsBecomesAPointOfTheScan) {
+  const auto steps = [](const std::string& place) {
+    const Procedure mine = parse_procedure(R"({"procedure": "mine", "says": "Mine.",
+        "landmarks": [{"name": "a", "says": "A."}], "values": [], "steps": [{"id": "one", "at": {"head_mm": )" +
+                                           place + "}}]}");
+    // The head's left is the scan's back, the head's back the scan's right.
+    const glm::dmat3 lps_from_head(glm::dvec3(0, 1, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 0, 1));
+    return steps_of(mine, {{"a", {10, 20, 30}}}, {}, lps_from_head);
+  };
+  // The landmark's coordinates along the head are 20, -10, 30.
+  EXPECT_EQ(steps(R"(["=a.x + 1", "=a.y + 2", "=a.z + 3"])")[0].at("at"), (Json{8.0, 21.0, 33.0}));
+  EXPECT_THROW(steps(R"(["=a.x", "=a.y"])"), std::runtime_error);
+  EXPECT_THROW(steps(R"(["=a.x", "=a.y", "z"])"), std::runtime_error);
+}
+
+TEST(Procedure, PartsOfALeFortISitWhereItsLandmarksAre) {
+  ProcedureInput input = head_input();
+  const Json plan = plan_of(with_all_options(read_procedure("le_fort_i")), input);
+  const auto step = [&](const std::string& id) {
+    for (const Json& each : plan["steps"])
+      if (each["id"] == id) return each;
+    return Json();
+  };
+  // Of the way from the piriform rim to the buttress a fraction, and 6 mm below the cut.
+  EXPECT_EQ(step("screw_left_low_1").at("at"), (Json{14.7, -81.6, -31.45}));
+  EXPECT_EQ(step("plate_left").at("screws"), (Json{"screw_left_low_2_moved", "screw_left_low_1_moved",
+                                                   "screw_left_high_1", "screw_left_high_2"}));
+  EXPECT_EQ(step("intermediate_splint").at("upper_direction"), (Json{0.0, 0.0, 33.0}));
+  for (const char* part : {"intermediate_splint", "guide_left", "guide_right", "plate_left", "plate_right"}) {
+    EXPECT_EQ(step(part + std::string("_prints")).at("object"), part);
+    EXPECT_EQ(step(part + std::string("_file")).at("path"), part + std::string(".stl"));
+  }
+}
+
 TEST(Procedure, TypedValuesAndLandmarksBecomeThePlansNumbers) {
   ProcedureInput input = head_input();
   input.values = {{"forward_mm", 6}, {"up_mm", 2.5}, {"kerf_mm", 0.8}};
