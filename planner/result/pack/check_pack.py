@@ -26,6 +26,8 @@ FORMAT = 1
 # Sums of up to 10^7 numbers in double precision, in another order.
 SUM = 1e-9
 MOST_BYTES = 1 << 33
+# What every certificate of the bounded tier compares.
+COMPARED = ("volume", "symmetric difference", "centroid", "parts")
 
 
 class NoPack(Exception):
@@ -465,6 +467,118 @@ def motion_of(step):
     return matrix
 
 
+class VoxelFile:
+    """Labels over z, y, x of a volume file, and its place: from numbers of voxels, x first, to LPS mm."""
+
+    def __init__(self, labels, lps_from_voxel):
+        self.labels, self.lps_from_voxel = labels, lps_from_voxel
+
+
+def inflated(data):
+    """Unpacks gzip; refuses what grows beyond all sense."""
+    unpacker = zlib.decompressobj(zlib.MAX_WBITS | 16)
+    made = unpacker.decompress(data, MOST_BYTES)
+    if unpacker.unconsumed_tail or not unpacker.eof:
+        raise ValueError("its packed samples are cut short or too large")
+    return made
+
+
+def read_stl(data):
+    count = struct.unpack("<I", data[80:84])[0]
+    if len(data) != 84 + 50 * count:
+        raise ValueError("it is cut short")
+    corners = np.frombuffer(data, dtype=np.dtype([("n", "<f4", 3), ("p", "<f4", (3, 3)), ("a", "<u2")]), offset=84)["p"]
+    return corners.reshape(-1, 3).astype(float), np.arange(3 * count).reshape(-1, 3)
+
+
+def read_ply(data):
+    header, body = data.split(b"end_header\n", 1)
+    lines = [line.split() for line in header.decode().splitlines()]
+    if ["format", "binary_little_endian", "1.0"] not in lines:
+        raise ValueError("it is not binary PLY")
+    counts = {line[1]: int(line[2]) for line in lines if line[0] == "element"}
+    numbers = {"double": "<f8", "float": "<f4", "uchar": "u1", "int": "<i4"}
+    of_vertex = np.dtype([(line[2], numbers[line[1]]) for line in lines if line[0] == "property" and len(line) == 3])
+    of_face = np.dtype([("n", "u1"), ("p", "<i4", 3)])
+    vertices = np.frombuffer(body, of_vertex, counts["vertex"])
+    faces = np.frombuffer(body, of_face, counts["face"], of_vertex.itemsize * counts["vertex"])
+    return np.stack([vertices[axis] for axis in "xyz"], axis=1).astype(float), faces["p"]
+
+
+def read_obj(data):
+    lines = [line.split() for line in data.decode().splitlines()]
+    points = [[float(x) for x in line[1:4]] for line in lines if line[:1] == ["v"]]
+    return np.array(points), np.array([[int(x.split("/")[0]) - 1 for x in line[1:]] for line in lines if line[:1] == ["f"]])
+
+
+def read_off(data):
+    words = [line.split() for line in data.decode().splitlines()[1:] if line and not line.startswith("#")]
+    vertices, faces = int(words[0][0]), int(words[0][1])
+    points = np.array([row[:3] for row in words[1:1 + vertices]], dtype=float)
+    return points, np.array([row[1:4] for row in words[1 + vertices:1 + vertices + faces]], dtype=np.int64)
+
+
+def read_vtp(data):
+    head, body = data.split(b'<AppendedData encoding="raw">', 1)
+    body = body[body.index(b"_") + 1:]
+
+    def array(name, kind):
+        offset = int(re.search(rb'Name="' + name + rb'"[^>]*offset="(\d+)"', head).group(1))
+        size = struct.unpack("<Q", body[offset:offset + 8])[0]
+        return np.frombuffer(body[offset + 8:offset + 8 + size], kind)
+    return array(b"Points", "<f8").reshape(-1, 3), array(b"connectivity", "<i8").reshape(-1, 3)
+
+
+def read_glb(data):
+    size = struct.unpack("<I", data[12:16])[0]
+    scene, buffer = json.loads(data[20:20 + size]), data[28 + size:]
+
+    def array(number, kind):
+        accessor = scene["accessors"][number]
+        view = scene["bufferViews"][accessor["bufferView"]]
+        return np.frombuffer(buffer[view["byteOffset"]:view["byteOffset"] + view["byteLength"]], kind)
+    # Metres and y upward, of millimetres in LPS; column by column.
+    if scene["nodes"][0]["matrix"] != [0.001, 0, 0, 0, 0, 0, -0.001, 0, 0, 0.001, 0, 0, 0, 0, 0, 1]:
+        raise ValueError("its place in the scene is another one")
+    part = scene["meshes"][0]["primitives"][0]
+    return (array(part["attributes"]["POSITION"], "<f4").reshape(-1, 3).astype(float),
+            array(part["indices"], "<u4").reshape(-1, 3).astype(np.int64))
+
+
+NUMBERS = {"uint8": "u1", "uchar": "u1", "unsigned char": "u1", "int16": "<i2", "short": "<i2", "uint16": "<u2",
+           "ushort": "<u2", "unsigned short": "<u2"}
+
+
+def read_nrrd(data):
+    header, body = data.split(b"\n\n", 1)
+    fields = dict(line.split(": ", 1) for line in header.decode().splitlines() if ": " in line)
+    sizes = [int(x) for x in fields["sizes"].split()]
+    if fields["space"] != "left-posterior-superior" or len(sizes) != 3:
+        raise ValueError("it is no volume in LPS")
+    vectors = [[float(x) for x in v.split(",")] for v in re.findall(r"\(([^)]*)\)", fields["space directions"])]
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.array(vectors).T
+    matrix[:3, 3] = [float(x) for x in fields["space origin"].strip("()").split(",")]
+    samples = inflated(body) if fields["encoding"] in ("gzip", "gz") else body
+    return VoxelFile(np.frombuffer(samples, NUMBERS[fields["type"]]).reshape(sizes[::-1]), matrix)
+
+
+def read_nifti(data):
+    data = inflated(data) if data[:2] == b"\x1f\x8b" else data
+    dims = struct.unpack("<8h", data[40:56])
+    kind = {2: "u1", 4: "<i2", 512: "<u2"}[struct.unpack("<h", data[70:72])[0]]
+    first = int(struct.unpack("<f", data[108:112])[0])
+    # The rows of the matrix are in RAS.
+    matrix = np.eye(4)
+    matrix[:3] = np.array(struct.unpack("<12f", data[280:328])).reshape(3, 4) * np.array([[-1.0], [-1.0], [1.0]])
+    count = dims[1] * dims[2] * dims[3]
+    return VoxelFile(np.frombuffer(data, kind, count, first).reshape(dims[3], dims[2], dims[1]), matrix)
+
+
+READERS = {".stl": read_stl, ".ply": read_ply, ".obj": read_obj, ".off": read_off, ".vtp": read_vtp, ".glb": read_glb,
+           ".nrrd": read_nrrd, ".nii": read_nifti, ".nii.gz": read_nifti}
+
+
 class Checker:
     def __init__(self, archive):
         self.archive = archive
@@ -490,6 +604,7 @@ class Checker:
         self.check_measurements()
         self.check_movements()
         self.check_exports()
+        self.check_completeness()
         self.check_tables()
         self.check_report()
         return self.findings
@@ -672,6 +787,10 @@ class Checker:
                 lowest = max(lowest, self.check_comparison(path + ("comparisons", j), row, name, certificate))
             self.findings.claim(worst[verdict] >= lowest,
                                 f"certificate of {name}: its verdict {verdict} is no better than that of its comparisons")
+            left_out = set(COMPARED) - {row.get("quantity") for row in certificate.get("comparisons", [])}
+            self.findings.claim(verdict != "PASS" or certificate.get("tier") != "bounded" or not left_out,
+                                f"certificate of {name}: it passes by all of its comparisons"
+                                + (f", but for {sorted(left_out)[0]}" if left_out else ""))
             self.findings.claim((verdict == "PASS") == (not certificate.get("reasons")),
                                 f"certificate of {name}: it has reasons where it does not pass, and only there")
             if name in self.objects:
@@ -766,6 +885,19 @@ class Checker:
         if certificate.get("hausdorff_mm") == worst["size_mm"]:
             self.findings.number(path + ("hausdorff_mm",), max(to_mesh, to_voxels), 1e-3, "no less, at the worst place")
 
+    def check_completeness(self):
+        """Every step that measures or exports has a row, and every object that a step refers to is there."""
+        makers = [name for name, step in self.steps.items() if step.get("do") in ("window", "mask", "combine", "move", "saw")]
+        referred = [step[key] for step in self.steps.values() for key in ("object", "to") if isinstance(step.get(key), str)]
+        missing = [name for name in makers + referred if name in self.steps and name not in self.objects]
+        self.findings.claim(not missing, "result.json has every object that the plan's steps make and refer to"
+                            + (f", but for {missing[0]}" if missing else ""))
+        for part, kind in (("measurements", "measure"), ("exports", "export")):
+            rows = {row.get("id") for row in self.result.get(part, [])}
+            missing = [name for name, step in self.steps.items() if step.get("do") == kind and name not in rows]
+            self.findings.claim(not missing, f"result.json has a row for every step '{kind}'"
+                                + (f", but for {missing[0]}" if missing else ""))
+
     def check_measurements(self):
         for i, row in enumerate(self.result.get("measurements", [])):
             path = ("measurements", i)
@@ -843,26 +975,66 @@ class Checker:
             path = ("exports", i)
             if row.get("bytes") is not None:
                 self.findings.number(path + ("bytes",), len(data), 0, "the entry")
-            if name.endswith(".stl"):
-                self.check_stl(path, row, data)
-            elif name.endswith(".inp"):
+            # A step with further fields may have changed the surface on purpose.
+            is_plain = set(self.steps.get(row.get("id"), {})) <= {"id", "do", "object", "path", "note"}
+            if name.endswith(".inp"):
                 self.check_inp(path, row, data)
+            elif is_plain:
+                self.check_exported(path, row, data)
 
-    def check_stl(self, path, row, data):
-        if len(data) < 84 or data[:5] == b"solid" and b"facet" in data[:400]:
+    def check_exported(self, path, row, data):
+        """A file of a surface or of voxels holds the object that the plan names, at its place."""
+        name, kind = row.get("object"), next((e for e in READERS if row["path"].endswith(e)), None)
+        if kind is None:
             return
-        count = struct.unpack("<I", data[80:84])[0]
-        if len(data) != 84 + 50 * count:
-            self.findings.claim(False, f"{row['path']}: is cut short")
+        try:
+            read = READERS[kind](data)
+        except (ValueError, KeyError, IndexError, TypeError, OverflowError, struct.error, EOFError, OSError, zlib.error) as error:
+            self.findings.claim(False, f"{row['path']}: cannot be read: {error}")
             return
-        corners = np.frombuffer(data, dtype=np.dtype([("n", "<f4", 3), ("p", "<f4", (3, 3)), ("a", "<u2")]), offset=84)["p"]
-        surface = Surface(corners.reshape(-1, 3).astype(float), np.arange(3 * count).reshape(-1, 3))
-        self.findings.number(path + ("faces",), count, 0, "the file's triangles")
-        if row.get("volume_mm3") is not None and count:
-            measured = surface.measures
-            # Coordinates are rounded to 24 bits.
-            slack = measured["area_mm2"] * float(np.abs(corners).max()) * 2.0 ** -23
-            self.findings.number(path + ("volume_mm3",), measured["volume_mm3"], slack, "the file's triangles")
+        if isinstance(read, VoxelFile):
+            self.check_voxel_file(path, row, read)
+            return
+        points, triangles = read
+        surface = Surface(points, triangles)
+        if not surface.sound:
+            self.findings.claim(False, f"{row['path']}: its triangles refer to no points")
+            return
+        self.findings.number(path + ("faces",), len(triangles), 0, "the file's triangles")
+        # Coordinates are rounded to 24 bits.
+        rounding = float(np.abs(points).max()) * 2.0 ** -23 if len(points) else 0.0
+        if row.get("volume_mm3") is not None and len(triangles):
+            self.findings.number(path + ("volume_mm3",), surface.measures["volume_mm3"],
+                                 surface.measures["area_mm2"] * rounding, "the file's triangles")
+        whole = self.surfaces.get(name)
+        if whole is not None:
+            same = len(triangles) == len(whole.triangles)
+            apart = float(np.abs(points[triangles] - whole.points[whole.triangles]).max()) if same and len(triangles) else 0.0
+            self.findings.claim(same and apart <= rounding,
+                                f"{row['path']}: its {len(triangles)} triangles are the {len(whole.triangles)} of {name}"
+                                + (f", but up to {apart:.3g} mm beside them" if apart > rounding else ""))
+
+    def check_voxel_file(self, path, row, read):
+        voxels = self.voxels.get(row.get("object"))
+        if voxels is None or not voxels.sound:
+            return
+        universe = self.universe
+        # From the file's voxels to the universe's: the same ones, counted from another one.
+        step = np.linalg.inv(universe.matrix) @ read.lps_from_voxel
+        first = np.rint(step[:3, 3])
+        if np.abs(step[:3, :3] - np.eye(3)).max() > 1e-4 or np.abs(step[:3, 3] - first).max() > 1e-3:
+            self.findings.claim(False, f"{row['path']}: its voxels are not those of the universe")
+            return
+        z, y, x = (axis + int(offset) for axis, offset in zip(np.nonzero(read.labels), first[::-1]))
+        inside = (np.minimum(np.minimum(x, y), z) >= 0) & (np.maximum(np.maximum(x, y), z) < universe.side)
+        runs = int((voxels.runs[:, 3] - voxels.runs[:, 2]).sum())
+        wrong = int((~inside).sum()) + int((~voxels.has(np.stack([x, y, z], axis=1)[inside])).sum())
+        self.findings.claim(wrong == 0 and len(x) == runs,
+                            f"{row['path']}: its {len(x)} voxels are the {runs} of {row['object']}, but for {wrong}")
+        if row.get("voxels") is not None:
+            self.findings.number(path + ("voxels",), len(x), 0, "the file's voxels")
+        if row.get("volume_mm3") is not None:
+            self.findings.number(path + ("volume_mm3",), len(x) * universe.voxel_mm3, 0, "the file's voxels")
 
     def check_inp(self, path, row, data):
         nodes, tets, mode = {}, [], ""

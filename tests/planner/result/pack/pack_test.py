@@ -2,11 +2,13 @@
 """Packs: equal plans make equal archives, a replay finds no difference, and the independent checker finds every
 forgery, although each forger corrects the sums in manifest.json."""
 import copy
+import gzip
 import hashlib
 import io
 import json
 import os
 import random
+import re
 import struct
 import subprocess
 import sys
@@ -20,7 +22,7 @@ import numpy as np
 ROOT = Path(__file__).parents[4]
 CHECKER = ROOT / "planner/result/pack/check_pack.py"
 PROGRAM = os.environ["OCTOTOMY_PROGRAM"]
-FORGERIES = int(os.environ.get("OCTOTOMY_FORGERIES", "42"))
+FORGERIES = int(os.environ.get("OCTOTOMY_FORGERIES", "40"))
 
 PLAN = {
     "octotomy_plan": 1, "name": "An advancement", "scans": {"ct": {"path": "head.nrrd"}},
@@ -39,7 +41,11 @@ PLAN = {
         {"id": "size", "do": "measure", "object": "maxilla"},
         {"id": "interference", "do": "measure", "object": "rest", "to": "advanced"},
         {"id": "width", "do": "measure", "points_mm": [[-40, -60, -25], [40, -60, -25]]},
-        {"id": "piece", "do": "export", "object": "advanced", "path": "maxilla.stl"}]}
+        {"id": "piece", "do": "export", "object": "advanced", "path": "maxilla.stl"}]
+    + [{"id": f"file_{i}", "do": "export", "object": "advanced", "path": f"surface{ending}"}
+       for i, ending in enumerate([".ply", ".obj", ".off", ".vtp", ".glb"])]
+    + [{"id": f"voxels_{i}", "do": "export", "object": "result", "path": f"voxels_{i}{ending}"}
+       for i, ending in enumerate([".nii.gz", ".nrrd"])]}
 
 
 def run(*words):
@@ -169,6 +175,83 @@ def change_the_exported_file(forger):
     forger.entries[name] = bytes(data)
 
 
+def shift_the_exported_file(forger):
+    """As a whole, so that it stays closed and keeps its volume."""
+    name = forger.ending(".stl")
+    head, triangles = forger.entries[name][:84], forger.entries[name][84:]
+    rows = np.frombuffer(triangles, np.dtype([("n", "<f4", 3), ("p", "<f4", (3, 3)), ("a", "<u2")])).copy()
+    rows["p"][..., forger.chance.randrange(3)] += forger.chance.choice([-0.5, 0.05, 1])
+    forger.entries[name] = head + rows.tobytes()
+
+
+def change_an_exported_surface(forger):
+    """One coordinate of its first vertex, in the place where each format has it."""
+    name = forger.ending(forger.chance.choice(["surface.ply", "surface.vtp", "surface.glb", "surface.obj", "surface.off"]))
+    data = forger.entries[name]
+    kind = name[-4:]
+    if kind in (".obj", ".off"):
+        lines = data.split(b"\n")
+        at = next(i for i, line in enumerate(lines) if line.startswith(b"v ")) if kind == ".obj" else 4
+        words = lines[at].split()
+        words[-1] = b"%.17g" % (float(words[-1]) + 0.25)
+        lines[at] = b" ".join(words)
+        forger.entries[name] = b"\n".join(lines)
+        return
+    at, word = {".ply": (data.find(b"end_header\n") + 11, "<d"), ".glb": (28 + struct.unpack("<I", data[12:16])[0], "<f"),
+                ".vtp": (data.find(b"_", data.find(b"<AppendedData")) + 9 + int(re.search(
+                    rb'Name="Points"[^>]*offset="(\d+)"', data).group(1)) if kind == ".vtp" else 0, "<d")}[kind]
+    size = struct.calcsize(word)
+    changed = struct.pack(word, struct.unpack(word, data[at:at + size])[0] + 0.25)
+    forger.entries[name] = data[:at] + changed + data[at + size:]
+
+
+def change_an_exported_label_map(forger):
+    name = forger.ending(forger.chance.choice([".nii.gz", ".nrrd"]))
+    data = forger.entries[name]
+    at = data.index(b"\n\n") + 2 if name.endswith(".nrrd") else 0
+    samples = bytearray(gzip.decompress(data[at:]))
+    samples[(len(samples) - 352) // 2 // 2 * 2 + 352] ^= 1
+    forger.entries[name] = data[:at] + gzip.compress(bytes(samples))
+    row = next(row for row in forger.result["exports"] if name.endswith(row["path"]))
+    row["bytes"] = len(forger.entries[name])
+    show_on_page(forger)
+
+
+def show_on_page(forger):
+    """The report draws the result as it is now."""
+    page = forger.entries["result/report.html"].decode()
+    found = re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)
+    data = dict(json.loads(found.group(1)), result=forger.result)
+    text = json.dumps(data).replace("</", "<\\/")
+    forger.entries["result/report.html"] = (page[:found.start(1)] + text + page[found.end(1):]).encode()
+
+
+def leave_out_a_row(forger):
+    forger.result["exports"].pop(forger.chance.randrange(len(forger.result["exports"])))
+    show_on_page(forger)
+
+
+def leave_out_comparisons(forger):
+    forger.chance.choice(forger.result["certificates"])["comparisons"] = []
+    show_on_page(forger)
+
+
+def leave_out_an_object(forger):
+    """Everywhere: in the lists of objects, of certificates and of its witnesses."""
+    lost = "advanced"
+    for part, key in (("objects", "id"), ("certificates", "object")):
+        forger.result[part] = [row for row in forger.result[part] if row[key] != lost]
+    manifest = json.loads(forger.entries["manifest.json"])
+    manifest["objects"] = [row for row in manifest["objects"] if row["id"] != lost]
+    forger.entries["manifest.json"] = json.dumps(manifest).encode()
+    for verdict in ("PASS", "WARN", "FAIL"):
+        forger.result["counts"][verdict] = sum(c["verdict"] == verdict for c in forger.result["certificates"])
+    name = "result/tables/certificates.csv"
+    forger.entries[name] = b"".join(line for line in forger.entries[name].splitlines(True)
+                                    if not line.startswith(lost.encode()))
+    show_on_page(forger)
+
+
 def change_a_table(forger):
     name = "result/tables/certificates.csv"
     forger.entries[name] = forger.entries[name].replace(b"PASS", b"FAIL", 1)
@@ -181,7 +264,8 @@ def change_the_report(forger):
 
 WAYS = [move_a_vertex, turn_a_triangle, lengthen_a_run, exchange_objects, change_the_threshold, change_a_polygon,
         change_the_motion, change_an_expression, change_a_verdict, change_a_volume, change_a_measurement,
-        change_the_exported_file, change_a_table, change_the_report]
+        change_the_exported_file, shift_the_exported_file, change_an_exported_surface, change_an_exported_label_map,
+        leave_out_a_row, leave_out_comparisons, leave_out_an_object, change_a_table, change_the_report]
 
 
 class Pack(unittest.TestCase):

@@ -158,6 +158,8 @@ class Scene(unittest.TestCase):
         origin = np.array([float(x) for x in fields["space origin"].strip("()").split(",")])
         for number in range(5):
             name = fields[f"Segment{number}_Name"]
+            self.assertIn("~SCT^85756007^Tissue~SCT^85756007^Tissue~", fields[f"Segment{number}_Tags"])
+            self.assertEqual(fields[f"Segment{number}_Tags"].count("~"), 6, "as many parts as Slicer reads")
             voxels = np.argwhere(labels[..., int(fields[f"Segment{number}_Layer"])]
                                  == int(fields[f"Segment{number}_LabelValue"]))[:, ::-1]
             row = self.object(name)["voxel"]
