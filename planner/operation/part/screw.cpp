@@ -3,8 +3,8 @@
 // Each kernel measures on its own answer to those objects; the mesh's distance is the one that counts.
 //
 // A screw at a place that is seen from a side of the head goes in along that view, where the view's line through the
-// place meets the bone first. A flap's screw meets the axis of its segment, where the segment is placed, at a right angle and from a side of the
-// head. On the uncut bone it lies where the segment's motion brings it to that place.
+// place meets the bone first. A flap's screw meets the axis of its segment, where the segment is placed, at a right
+// angle and from a side of the head. On the uncut bone it lies where the segment's motion brings it to that place.
 #include "planner/operation/part/screw.h"
 
 #include <algorithm>
