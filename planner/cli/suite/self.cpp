@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <fstream>
 #include <iterator>
+#include <optional>
 
 #include "convert/tet/mesher_process.h"
 #include "planner/cli/suite/known_faults.h"
@@ -131,12 +132,12 @@ Json versions_of_all() {
   return versions;
 }
 
-/// Whether the decoding process is confined; false, too, if it does not start.
-bool decoder_is_confined() {
+/// Whether the decoding process is confined; none if it does not start.
+std::optional<bool> decoder_is_confined() {
   try {
     return voxel::codec_facts().is_confined;
   } catch (const voxel::Error&) {
-    return false;
+    return std::nullopt;
   }
 }
 
@@ -183,15 +184,16 @@ SuiteAnswer run_self(Program& program, const VerifyText&) {
   for (const auto& [name, version] : libraries.items())
     listed += (listed.empty() ? "" : ", ") + name + " " + version.get<std::string>();
   rows.emplace_back("libraries", listed);
-  const bool is_confined = decoder_is_confined();
-  rows.emplace_back("decoder",
-                    std::string("a process of its own of at most 4 GB, ") +
-                        (is_confined ? "which may use no network, start no program and change no "
-                                       "file outside of its own folder"
-                                     : "WARN, not confined: this system lacks Landlock or seccomp"));
+  const std::optional<bool> is_confined = decoder_is_confined();
+  const std::string limits = !is_confined ? "does not start; its libraries and their faults are not listed"
+                             : *is_confined
+                                 ? "which may use no network, start no program and change no file outside of "
+                                   "its own folder"
+                                 : "WARN, not confined: this system lacks Landlock or seccomp";
+  rows.emplace_back("decoder", is_confined ? "a process of its own of at most 4 GB, " + limits : limits);
   Json faults = Json::array();
   for (const KnownFault& fault : faults_of(libraries)) {
-    const std::string meaning = meaning_of(fault, libraries, is_confined);
+    const std::string meaning = meaning_of(fault, libraries, is_confined.value_or(false));
     rows.emplace_back(fault.name, meaning);
     faults.push_back({{"library", fault.library},
                       {"fault", fault.name},
@@ -202,7 +204,7 @@ SuiteAnswer run_self(Program& program, const VerifyText&) {
   answer.more = {{"build", build},
                  {"parts", told},
                  {"libraries", libraries},
-                 {"decoder_is_confined", is_confined},
+                 {"decoder_is_confined", is_confined ? Json(*is_confined) : Json(nullptr)},
                  {"known_faults", faults}};
   answer.text = lines(rows);
   return answer;

@@ -96,6 +96,7 @@ TEST_F(Verify, OfItselfFindsAPartOfAnotherBuildAndOneThatIsDamaged) {
       "OCTOTOMY_HELPERS=" + at("helpers") + " " + OCTOTOMY_BINARY_DIR + "/octotomy verify --self --json",
       folder_ / "");
   EXPECT_EQ(spoiled.status, 1) << spoiled.out;
+  EXPECT_TRUE(tests::SortedJson::parse(spoiled.out)["decoder_is_confined"].is_null());
   std::map<std::string, std::string> troubles;
   const tests::SortedJson told = tests::SortedJson::parse(spoiled.out)["parts"];
   for (const tests::SortedJson& part : told)
