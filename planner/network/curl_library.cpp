@@ -29,6 +29,7 @@ CurlLibrary loaded() {
   if (library == nullptr) refuse_library(std::string("which cannot be loaded (") + dlerror() + ")");
   CurlLibrary curl{};
   find(library, "curl_global_init", curl.global_init);
+  find(library, "curl_version_info", curl.version_info);
   find(library, "curl_easy_init", curl.easy_init);
   find(library, "curl_easy_setopt", curl.easy_setopt);
   find(library, "curl_easy_perform", curl.easy_perform);

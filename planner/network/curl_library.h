@@ -10,6 +10,7 @@ namespace octotomy::planner {
 /// The functions of libcurl that DICOMweb needs.
 struct CurlLibrary {
   decltype(&curl_global_init) global_init;
+  decltype(&curl_version_info) version_info;
   decltype(&curl_easy_init) easy_init;
   decltype(&curl_easy_setopt) easy_setopt;
   decltype(&curl_easy_perform) easy_perform;

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <memory>
+#include <sstream>
 #include <sys/wait.h>
 #include <system_error>
 #include <unistd.h>
@@ -71,6 +72,18 @@ class CodecProcess {
     return sent;
   }
 
+  /// The process's facts as text; empty if it does not answer.
+  std::string facts() const {
+    constexpr std::uint64_t most_bytes = 4096;
+    const FrameHead head{};
+    std::uint64_t length = 0;
+    if (!send_all(socket_, &head, sizeof head) || !receive_all(socket_, &length, sizeof length) ||
+        length > most_bytes)
+      return {};
+    std::string text(static_cast<std::size_t>(length), '\0');
+    return receive_all(socket_, text.data(), text.size()) ? text : std::string();
+  }
+
   /// False if the process crashed or hung on the frame.
   bool receive_answer(const CompressedFrame& frame, std::string& pixels) const {
     std::uint64_t length = 0;
@@ -86,10 +99,17 @@ class CodecProcess {
   pid_t process_ = -1;
 };
 
+/// The calling thread's process; none before its first use and after a crash.
+std::unique_ptr<CodecProcess>& process_of_thread() {
+  thread_local std::unique_ptr<CodecProcess> process;
+  return process;
+}
+
 }  // namespace
 
 std::optional<std::string> decompress(const CompressedFrame& frame) {
-  thread_local std::unique_ptr<CodecProcess> process;
+  if (frame.columns == 0 || frame.rows == 0) return std::nullopt;
+  std::unique_ptr<CodecProcess>& process = process_of_thread();
   if (!process) process = std::make_unique<CodecProcess>();
   std::string pixels;
   if (!process->send_request(frame) || !process->receive_answer(frame, pixels)) {
@@ -98,6 +118,25 @@ std::optional<std::string> decompress(const CompressedFrame& frame) {
   }
   if (pixels.empty()) return std::nullopt;
   return pixels;
+}
+
+CodecFacts codec_facts() {
+  std::unique_ptr<CodecProcess>& process = process_of_thread();
+  if (!process) process = std::make_unique<CodecProcess>();
+  std::istringstream text(process->facts());
+  std::string line;
+  if (!std::getline(text, line)) {
+    process.reset();
+    throw Error(ErrorCode::Resource, helper_file("octotomy_dicom_codec").string() +
+                                         ": does not answer: install the program and its helpers again");
+  }
+  CodecFacts facts{line == "confined"};
+  while (std::getline(text, line)) {
+    const std::size_t space = line.find(' ');
+    if (space != std::string::npos)
+      facts.libraries.emplace_back(line.substr(0, space), line.substr(space + 1));
+  }
+  return facts;
 }
 
 }  // namespace octotomy::voxel

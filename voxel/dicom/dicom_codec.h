@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace octotomy::voxel {
@@ -25,5 +26,14 @@ struct CompressedFrame {
 /// octotomy_dicom_codec: GDCM and its codecs crash on some damaged pixels, and loading GDCM would add 30 ms
 /// to every start of the program. Throws Error, Resource, if that process cannot be started.
 std::optional<std::string> decompress(const CompressedFrame& frame);
+
+/// What the decompressing process states of itself.
+struct CodecFacts {
+  bool is_confined = false;  ///< whether all of confine() is in force there
+  std::vector<std::pair<std::string, std::string>> libraries = {};  ///< names and loaded versions
+};
+
+/// Asks the calling thread's process. Throws Error, Resource, if it cannot be started or does not answer.
+CodecFacts codec_facts();
 
 }  // namespace octotomy::voxel

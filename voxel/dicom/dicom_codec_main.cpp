@@ -5,11 +5,13 @@
 // a codec run code that is hidden in the frame: this process has no access to the network, to other programs
 // or to files outside of its own folder.
 #include <cstdlib>
+#include <dlfcn.h>
 #include <exception>
 #include <filesystem>
 #include <gdcmImage.h>
 #include <gdcmSequenceOfFragments.h>
 #include <gdcmTrace.h>
+#include <gdcmVersion.h>
 #include <string>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -72,7 +74,24 @@ std::string decompress(const FrameHead& head, const std::string& syntax,
   }
 }
 
-bool answer_next() {
+/// A version from a codec that GDCM links. Debian's GDCM links both; others carry their own copies inside.
+std::string version_by(const char* function) {
+  using Version = const char* (*)();
+  const auto version = reinterpret_cast<Version>(dlsym(RTLD_DEFAULT, function));
+  return version == nullptr ? std::string() : version();
+}
+
+std::string facts(bool is_confined) {
+  std::string text =
+      std::string(is_confined ? "confined" : "not confined") + "\nGDCM " + gdcm::Version::GetVersion() + "\n";
+  for (const auto& [name, function] :
+       {std::pair{"OpenJPEG", "opj_version"}, std::pair{"CharLS", "charls_get_version_string"}})
+    if (const std::string version = version_by(function); !version.empty())
+      text += std::string(name) + " " + version + "\n";
+  return text;
+}
+
+bool answer_next(bool is_confined) {
   using octotomy::voxel::receive_all;
   using octotomy::voxel::send_all;
   FrameHead head;
@@ -86,10 +105,10 @@ bool answer_next() {
     part.resize(static_cast<std::size_t>(length));
     if (!receive_all(STDIN_FILENO, part.data(), part.size())) return false;
   }
-  const std::string pixels = decompress(head, syntax, parts);
-  const std::uint64_t length = pixels.size();
+  const std::string answer = head.columns == 0 ? facts(is_confined) : decompress(head, syntax, parts);
+  const std::uint64_t length = answer.size();
   return send_all(STDIN_FILENO, &length, sizeof length) &&
-         send_all(STDIN_FILENO, pixels.data(), pixels.size());
+         send_all(STDIN_FILENO, answer.data(), answer.size());
 }
 
 }  // namespace
@@ -101,12 +120,13 @@ int main(int count, char** arguments) {
   gdcm::Trace::ErrorOff();
   // One of GDCM's codecs uses temporary files and does not remove them when it fails.
   if (count != 2 || setenv("TMPDIR", arguments[1], 1) != 0) return 1;
+  bool is_confined = false;
 #ifndef OCTOTOMY_SANITIZED  // a sanitizer traces the process
   // If the system lacks these features, only the limits above and the separate address space protect the
   // user.
-  static_cast<void>(octotomy::voxel::confine(arguments[1]));
+  is_confined = octotomy::voxel::confine(arguments[1]);
 #endif
-  while (answer_next()) {
+  while (answer_next(is_confined)) {
   }
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(arguments[1], ignored))

@@ -66,6 +66,14 @@ std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ive
   return encoded;
 }
 
+std::string image_library_version() {
+  using Version = decltype(&octotomy_image_library_version);
+  const int version = reinterpret_cast<Version>(symbol_of_library("octotomy_image_library_version"))();
+  // Ten thousands, hundreds and ones are the three parts of the version.
+  return std::to_string(version / 10000) + "." + std::to_string(version / 100 % 100) + "." +
+         std::to_string(version % 100);
+}
+
 std::vector<StoredImage> read_images(const fs::path& path) {
   static const Read read = reinterpret_cast<Read>(symbol_of_library("octotomy_read_images"));
   // Blank pixels compress to almost nothing, so a file of any size may hold 4096 x 4096 pixels of four bytes.

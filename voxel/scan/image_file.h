@@ -32,6 +32,10 @@ std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ive
 void write_image(const std::filesystem::path& path, const glm::ivec2& size_px,
                  const std::vector<std::uint8_t>& rgb, const std::optional<ImageText>& text = std::nullopt);
 
+/// The version of OpenImageIO that is loaded, for example 2.4.7. Throws Error, Resource, if it cannot be
+/// loaded.
+std::string image_library_version();
+
 /// Reads the pages of a file, as grey images. The format is recognised by the first bytes: PNG, TIFF, JPEG,
 /// WebP, BMP, PNM, EXR or JPEG 2000. Throws Error with path and reason: Input, or Resource if the library
 /// cannot be loaded. Memory: pages of at most 64 MiB, or of 1100 times the file if that is more, plus the

@@ -14,6 +14,10 @@
 #include <type_traits>
 #include <utility>
 
+extern "C" int octotomy_image_library_version() {
+  return OIIO::openimageio_version();
+}
+
 extern "C" bool octotomy_encode_image(const char* format, int width, int height, const std::uint8_t* rgb,
                                       std::vector<std::uint8_t>* encoded, std::string* error) {
   try {

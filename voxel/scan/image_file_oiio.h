@@ -11,6 +11,9 @@
 extern "C" bool octotomy_encode_image(const char* format, int width, int height, const std::uint8_t* rgb,
                                       std::vector<std::uint8_t>* encoded, std::string* error);
 
+/// Exported by octotomy_image_io.so: the version of OpenImageIO that is loaded.
+extern "C" int octotomy_image_library_version();
+
 namespace octotomy::voxel {
 /// A grey image as stored in a file: samples row by row from the top left.
 struct StoredImage {

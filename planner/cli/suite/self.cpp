@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // Checks each part that the program starts or loads: whether it exists, has the program's build mark, and
-// solves a small task with a known result.
+// solves a small task with a known result. Lists the libraries and their known faults.
 #include <CLI/CLI.hpp>
 #include <fstream>
 #include <iterator>
+#include <optional>
 
 #include "convert/tet/mesher_process.h"
+#include "planner/cli/suite/known_faults.h"
 #include "planner/cli/suite/suites.h"
+#include "planner/network/curl_library.h"
 #include "planner/operation/table/fault.h"
 #include "planner/result/pack/library_versions.h"
 #include "voxel/dicom/dicom_codec.h"
@@ -120,6 +123,42 @@ std::string trouble_of(const Part& part, std::filesystem::path& path) {
   }
 }
 
+Json versions_of_all() {
+  Json versions = library_versions();
+  try {
+    versions["libcurl"] = curl_library().version_info(CURLVERSION_NOW)->version;
+  } catch (const voxel::Error&) {  // only DICOMweb needs it
+  }
+  return versions;
+}
+
+/// Whether the decoding process is confined; none if it does not start.
+std::optional<bool> decoder_is_confined() {
+  try {
+    return voxel::codec_facts().is_confined;
+  } catch (const voxel::Error&) {
+    return std::nullopt;
+  }
+}
+
+/// What a fault means here, as a line.
+std::string meaning_of(const KnownFault& fault, const Json& versions, bool is_confined) {
+  std::string text = fault.library;
+  if (versions.contains(fault.library)) text += " " + versions[fault.library].get<std::string>();
+  text += ", " + fault.effect;
+  if (!fault.repaired_in.empty()) text += ", until " + fault.repaired_in;
+  switch (fault.place) {
+    case KnownFault::Place::NotLinked:
+      return text + ": not linked, " + fault.reason;
+    case KnownFault::Place::NotCalled:
+      return text + ": not called, " + fault.reason;
+    case KnownFault::Place::InDecoder:
+      break;
+  }
+  return text + (is_confined ? ": ends at worst the confined process that decodes"
+                             : ": WARN, the process that decodes is not confined on this system");
+}
+
 SuiteAnswer run_self(Program& program, const VerifyText&) {
   SuiteAnswer answer;
   const Stopwatch watch(answer.timings, "self");
@@ -140,19 +179,41 @@ SuiteAnswer run_self(Program& program, const VerifyText&) {
     rows.emplace_back(
         part.file, trouble.empty() ? std::string("same build, works: ") + part.does : "NOT FIT: " + trouble);
   }
-  const Json libraries = library_versions();
+  const Json libraries = versions_of_all();
   std::string listed;
   for (const auto& [name, version] : libraries.items())
     listed += (listed.empty() ? "" : ", ") + name + " " + version.get<std::string>();
   rows.emplace_back("libraries", listed);
-  answer.more = {{"build", build}, {"parts", told}, {"libraries", libraries}};
+  const std::optional<bool> is_confined = decoder_is_confined();
+  const std::string limits = !is_confined ? "does not start; its libraries and their faults are not listed"
+                             : *is_confined
+                                 ? "which may use no network, start no program and change no file outside of "
+                                   "its own folder"
+                                 : "WARN, not confined: this system lacks Landlock or seccomp";
+  rows.emplace_back("decoder", is_confined ? "a process of its own of at most 4 GB, " + limits : limits);
+  Json faults = Json::array();
+  for (const KnownFault& fault : faults_of(libraries)) {
+    const std::string meaning = meaning_of(fault, libraries, is_confined.value_or(false));
+    rows.emplace_back(fault.name, meaning);
+    faults.push_back({{"library", fault.library},
+                      {"fault", fault.name},
+                      {"repaired_in", fault.repaired_in.empty() ? Json(nullptr) : Json(fault.repaired_in)},
+                      {"reached", fault.place == KnownFault::Place::InDecoder},
+                      {"meaning", meaning}});
+  }
+  answer.more = {{"build", build},
+                 {"parts", told},
+                 {"libraries", libraries},
+                 {"decoder_is_confined", is_confined ? Json(*is_confined) : Json(nullptr)},
+                 {"known_faults", faults}};
   answer.text = lines(rows);
   return answer;
 }
 
 CLI::Option* add_self(CLI::App& verb, VerifyText& text) {
   return verb.add_flag("--self", text.self,
-                       "A suite: checks that the installed parts are of one build, start and work");
+                       "A suite: checks that the installed parts are of one build, start and work; lists the "
+                       "libraries, and the known faults of those that read data of unknown origin");
 }
 
 }  // namespace

@@ -3,13 +3,25 @@
 
 #include <CGAL/version.h>
 #include <OpenMesh/Core/System/config.h>
+#include <boost/version.hpp>
 #include <expat.h>
 #include <glm/glm.hpp>
+#include <gmp.h>
+#include <isa-l.h>
+#include <itkVersion.h>
+#include <lz4.h>
+#include <mpfr.h>
 #include <openssl/crypto.h>
 #include <sqlite3.h>
 #include <string>
 #include <tbb/version.h>
+#include <utility>
 #include <zlib.h>
+#include <zstd.h>
+
+#include "voxel/dicom/dicom_codec.h"
+#include "voxel/scan/image_file.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner {
 namespace {
@@ -18,20 +30,43 @@ std::string dotted(int major, int minor, int patch) {
   return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
 }
 
+/// Adds the libraries of the parts that are started or loaded. `verify --self` reports a part that is missing.
+void add_parts(nlohmann::ordered_json& versions) {
+  try {
+    for (const auto& [name, version] : voxel::codec_facts().libraries) versions[name] = version;
+  } catch (const voxel::Error&) {
+  }
+  try {
+    versions["OpenImageIO"] = voxel::image_library_version();
+  } catch (const voxel::Error&) {
+  }
+}
+
 }  // namespace
 
 nlohmann::ordered_json library_versions() {
   const XML_Expat_Version expat = XML_ExpatVersionInfo();
-  return {{"CGAL", CGAL_VERSION_STR},
-          {"Expat", dotted(expat.major, expat.minor, expat.micro)},
-          {"GLM", dotted(GLM_VERSION_MAJOR, GLM_VERSION_MINOR, GLM_VERSION_PATCH)},
-          {"nlohmann_json",
-           dotted(NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)},
-          {"OpenMesh", dotted(OM_GET_VER, OM_GET_MAJ, OM_GET_MIN)},
-          {"OpenSSL", OpenSSL_version(OPENSSL_VERSION_STRING)},
-          {"SQLite", sqlite3_libversion()},
-          {"TBB", TBB_runtime_version()},
-          {"zlib", zlibVersion()}};
+  nlohmann::ordered_json versions = {
+      {"Boost", dotted(BOOST_VERSION / 100000, BOOST_VERSION / 100 % 1000, BOOST_VERSION % 100)},
+      {"CGAL", CGAL_VERSION_STR},
+      {"Expat", dotted(expat.major, expat.minor, expat.micro)},
+      {"GLM", dotted(GLM_VERSION_MAJOR, GLM_VERSION_MINOR, GLM_VERSION_PATCH)},
+      {"GMP", gmp_version},
+      {"ISA-L", dotted(ISAL_MAJOR_VERSION, ISAL_MINOR_VERSION, ISAL_PATCH_VERSION)},
+      {"ITK", itk::Version::GetITKVersion()},
+      {"LZ4", LZ4_versionString()},
+      {"MPFR", mpfr_get_version()},
+      {"nlohmann_json",
+       dotted(NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)},
+      {"OpenMesh", dotted(OM_GET_VER, OM_GET_MAJ, OM_GET_MIN)},
+      {"OpenSSL", OpenSSL_version(OPENSSL_VERSION_STRING)},
+      {"SQLite", sqlite3_libversion()},
+      {"TBB", TBB_runtime_version()},
+      {"TetGen", OCTOTOMY_TETGEN_VERSION},
+      {"zlib", zlibVersion()},
+      {"zstd", ZSTD_versionString()}};
+  add_parts(versions);
+  return versions;
 }
 
 }  // namespace octotomy::planner

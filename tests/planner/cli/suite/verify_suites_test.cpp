@@ -7,6 +7,7 @@
 #include <map>
 
 #include "brep/io/write_mesh.h"
+#include "planner/cli/suite/known_faults.h"
 #include "tests/file_bytes.h"
 #include "tests/planner/cli/program/command_line.h"
 #include "verify/certificate/general_position.h"
@@ -60,6 +61,20 @@ TEST_F(Verify, OfItselfFindsAPartOfAnotherBuildAndOneThatIsDamaged) {
   EXPECT_EQ(sound.status, 0) << sound.out;
   const tests::SortedJson parts = tests::SortedJson::parse(sound.out)["parts"];
   EXPECT_EQ(parts.size(), 5U);
+  // Every library that decodes data of unknown origin states its version, and its faults what they mean here.
+  const tests::SortedJson whole = tests::SortedJson::parse(sound.out);
+  for (const char* library :
+       {"GDCM", "OpenJPEG", "OpenImageIO", "ITK", "TetGen", "libcurl", "OpenSSL", "zlib", "zstd"}) {
+    ASSERT_TRUE(whole["libraries"].contains(library)) << library;
+    const auto version = whole["libraries"][library].get<std::string>();
+    EXPECT_NE(version.find_first_of("0123456789"), std::string::npos) << library << " " << version;
+  }
+  std::map<std::string, tests::SortedJson> faults;
+  for (const tests::SortedJson& fault : whole["known_faults"]) faults[fault["fault"]] = fault;
+  ASSERT_EQ(faults.count("CVE-2026-3650"), 1U) << sound.out;
+  EXPECT_EQ(faults["CVE-2026-3650"]["reached"], false);
+  ASSERT_EQ(faults.count("CVE-2026-50003"), 1U) << sound.out;
+  EXPECT_NE(faults["CVE-2026-50003"]["meaning"].get<std::string>().find("not linked"), std::string::npos);
   const std::filesystem::path helpers = folder_ / "helpers";
   std::filesystem::create_directory(helpers);
   for (const tests::SortedJson& part : parts)
@@ -81,6 +96,7 @@ TEST_F(Verify, OfItselfFindsAPartOfAnotherBuildAndOneThatIsDamaged) {
       "OCTOTOMY_HELPERS=" + at("helpers") + " " + OCTOTOMY_BINARY_DIR + "/octotomy verify --self --json",
       folder_ / "");
   EXPECT_EQ(spoiled.status, 1) << spoiled.out;
+  EXPECT_TRUE(tests::SortedJson::parse(spoiled.out)["decoder_is_confined"].is_null());
   std::map<std::string, std::string> troubles;
   const tests::SortedJson told = tests::SortedJson::parse(spoiled.out)["parts"];
   for (const tests::SortedJson& part : told)
@@ -89,6 +105,21 @@ TEST_F(Verify, OfItselfFindsAPartOfAnotherBuildAndOneThatIsDamaged) {
   EXPECT_NE(troubles["octotomy-mesh3"].find("no mark"), std::string::npos);
   EXPECT_NE(troubles["octotomy_dicom_codec"].find("missing"), std::string::npos);
   EXPECT_EQ(troubles["octotomy_image_io.so"], "");
+}
+
+TEST(KnownFaults, AreThoseOfVersionsBeforeTheRepair) {
+  using cli::is_before;
+  EXPECT_TRUE(is_before("3.0.9", "3.0.24"));
+  EXPECT_TRUE(is_before("3.0", "3.0.1"));
+  EXPECT_FALSE(is_before("3.0.24", "3.0.24"));
+  EXPECT_FALSE(is_before("10.0", "9.9.9"));
+  const auto has = [](const char* version, const std::string& name) {
+    const auto faults = cli::faults_of({{"GDCM", version}});
+    return std::any_of(faults.begin(), faults.end(), [&](const auto& fault) { return fault.name == name; });
+  };
+  EXPECT_TRUE(has("3.0.21", "CVE-2024-22373"));
+  EXPECT_FALSE(has("3.0.24", "CVE-2024-22373"));
+  EXPECT_TRUE(has("3.2.11", "CVE-2026-3650"));  // no release is without it
 }
 
 TEST_F(Verify, OneTierOfRandomQuestionsCanBeAskedAlone) {
