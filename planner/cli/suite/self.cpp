@@ -8,10 +8,10 @@
 #include <optional>
 
 #include "convert/tet/mesher_process.h"
-#include "planner/cli/suite/known_faults.h"
 #include "planner/cli/suite/suites.h"
 #include "planner/network/curl_library.h"
 #include "planner/operation/table/fault.h"
+#include "planner/result/pack/known_faults.h"
 #include "planner/result/pack/library_versions.h"
 #include "voxel/dicom/dicom_codec.h"
 #include "voxel/scan/image_file.h"

@@ -7,7 +7,6 @@
 #include <map>
 
 #include "brep/io/write_mesh.h"
-#include "planner/cli/suite/known_faults.h"
 #include "tests/file_bytes.h"
 #include "tests/planner/cli/program/command_line.h"
 #include "verify/certificate/general_position.h"
@@ -105,21 +104,6 @@ TEST_F(Verify, OfItselfFindsAPartOfAnotherBuildAndOneThatIsDamaged) {
   EXPECT_NE(troubles["octotomy-mesh3"].find("no mark"), std::string::npos);
   EXPECT_NE(troubles["octotomy_dicom_codec"].find("missing"), std::string::npos);
   EXPECT_EQ(troubles["octotomy_image_io.so"], "");
-}
-
-TEST(KnownFaults, AreThoseOfVersionsBeforeTheRepair) {
-  using cli::is_before;
-  EXPECT_TRUE(is_before("3.0.9", "3.0.24"));
-  EXPECT_TRUE(is_before("3.0", "3.0.1"));
-  EXPECT_FALSE(is_before("3.0.24", "3.0.24"));
-  EXPECT_FALSE(is_before("10.0", "9.9.9"));
-  const auto has = [](const char* version, const std::string& name) {
-    const auto faults = cli::faults_of({{"GDCM", version}});
-    return std::any_of(faults.begin(), faults.end(), [&](const auto& fault) { return fault.name == name; });
-  };
-  EXPECT_TRUE(has("3.0.21", "CVE-2024-22373"));
-  EXPECT_FALSE(has("3.0.24", "CVE-2024-22373"));
-  EXPECT_TRUE(has("3.2.11", "CVE-2026-3650"));  // no release is without it
 }
 
 TEST_F(Verify, OneTierOfRandomQuestionsCanBeAskedAlone) {

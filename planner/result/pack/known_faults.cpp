@@ -2,13 +2,13 @@
 //
 // Sources: the CVE records of these numbers; GDCM's pull requests 213, 233 and 235; CISA's advisories ICSMA-26-083-01
 // (GDCM) and of June 2026 (DCMTK).
-#include "planner/cli/suite/known_faults.h"
+#include "planner/result/pack/known_faults.h"
 
 #include <algorithm>
 #include <iterator>
 #include <sstream>
 
-namespace octotomy::planner::cli {
+namespace octotomy::planner {
 namespace {
 
 using Place = KnownFault::Place;
@@ -60,4 +60,4 @@ std::vector<KnownFault> faults_of(const nlohmann::ordered_json& versions) {
   return found;
 }
 
-}  // namespace octotomy::planner::cli
+}  // namespace octotomy::planner

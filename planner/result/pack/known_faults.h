@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace octotomy::planner::cli {
+namespace octotomy::planner {
 
 /// A published fault of a library whose decoders or network code read data of unknown origin, and what it means for
 /// this program.
@@ -26,4 +26,4 @@ std::vector<KnownFault> faults_of(const nlohmann::ordered_json& versions);
 /// Whether a version, numbers with dots, is before another one. Missing numbers count as zero.
 bool is_before(const std::string& version, const std::string& other);
 
-}  // namespace octotomy::planner::cli
+}  // namespace octotomy::planner
