@@ -248,7 +248,7 @@ void voxels(const Guide& guide, const VoxelBench& bench, VoxelSide& made) {
   for (const Sleeve& sleeve : guide.sleeves)
     whole = whole - rod_of(sleeve.through_mm(-beyond_mm(guide)), sleeve.through_mm(beyond_mm(guide)),
                            guide.hole_radius_mm());
-  keep_largest(rounded(whole, 0.5 * guide.least_wall_mm, bench), bench, made);
+  keep_largest(thick_part(whole, guide.least_wall_mm, bench), bench, made);
   if (made.octree.is_empty()) has_none();
 }
 

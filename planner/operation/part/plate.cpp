@@ -297,7 +297,7 @@ void voxels(const Plate& plate, const VoxelBench& bench, VoxelSide& made) {
     whole = whole - voxel::Expression(voxel::Cylinder{axis.head_mm - by_mm, axis.head_mm + by_mm,
                                                       plate.hole_radius_mm(axis)});
   }
-  keep_largest(rounded(whole, 0.5 * plate.least_wall_mm, bench), bench, made);
+  keep_largest(thick_part(whole, plate.least_wall_mm, bench), bench, made);
   if (made.octree.is_empty()) has_none();
 }
 

@@ -37,25 +37,36 @@ brep::Solid without_necks(const brep::Solid& core) {
   return brep::trusted_solid(brep::part_of(core.mesh(), kept), brep::proof_of_part(core.proof()));
 }
 
-}  // namespace
-
-voxel::Expression rounded(const voxel::Expression& solid, double radius_mm, const VoxelBench& bench) {
+/// The union of the balls of the radius that fit within a solid: of all, or of those whose middles hang together with
+/// most others, see without_necks().
+voxel::Expression balls_within(const voxel::Expression& solid, double radius_mm, bool without_necks,
+                               const VoxelBench& bench) {
   const voxel::Octree octree = bench.combined(solid);
   if (octree.is_empty()) return voxel::Expression(octree);
   // Distances to edges are overstated by up to 2/3 of a voxel's diagonal. Balls narrower than a voxel would
   // therefore cut off most of a part that is few voxels thick.
   const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
   if (std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z}) > 2.0 * radius_mm) return solid;
-  const voxel::Expression core(
+  const voxel::Expression middles(
       voxel::offset(octree, bench.within_universe(solid), -radius_mm, bench.progress));
-  const voxel::Octree cores = bench.combined(core);
-  if (cores.is_empty()) return voxel::Expression(cores);
-  // As without_necks().
-  const voxel::Octree largest = voxel::components(cores).largest;
+  const voxel::Octree all = bench.combined(middles);
+  if (all.is_empty()) return voxel::Expression(all);
+  const double reach_mm = radius_mm + standing_off * radius_mm;
+  if (!without_necks) return solid & voxel::Expression(voxel::offset(all, middles, reach_mm, bench.progress));
+  const voxel::Octree largest = voxel::components(all, voxel::Neighbours::Corners).largest;
   const voxel::Expression kept =
-      core - voxel::Expression(bench.combined(voxel::Expression(cores) - voxel::Expression(largest)));
-  return solid & voxel::Expression(
-                     voxel::offset(largest, kept, radius_mm + standing_off * radius_mm, bench.progress));
+      middles - voxel::Expression(bench.combined(voxel::Expression(all) - voxel::Expression(largest)));
+  return solid & voxel::Expression(voxel::offset(largest, kept, reach_mm, bench.progress));
+}
+
+}  // namespace
+
+voxel::Expression rounded(const voxel::Expression& solid, double radius_mm, const VoxelBench& bench) {
+  return balls_within(solid, radius_mm, false, bench);
+}
+
+voxel::Expression thick_part(const voxel::Expression& solid, double least_wall_mm, const VoxelBench& bench) {
+  return balls_within(solid, 0.5 * least_wall_mm, true, bench);
 }
 
 void keep_largest(const voxel::Expression& solid, const VoxelBench& bench, VoxelSide& made) {

@@ -12,11 +12,13 @@
 // points as files store them.
 namespace octotomy::planner {
 
-/// The union of all balls of the radius that fit within a solid and whose middles hang together: edges are rounded,
-/// and walls and necks thinner than twice the radius are cut off. Cuts keep a tenth of the radius away from those balls, so that other
-/// surfaces do not move. If the balls are narrower than voxels, they are not resolved, and the solid is
-/// returned unchanged.
+/// The union of all balls of the radius that fit within a solid: edges are rounded, and walls thinner than twice the
+/// radius are cut off. Cuts keep a tenth of the radius away from those balls, so that other surfaces do not move. If
+/// the balls are narrower than voxels, they are not resolved, and the solid is returned unchanged.
 voxel::Expression rounded(const voxel::Expression& solid, double radius_mm, const VoxelBench& bench);
+/// rounded() with balls as wide as the least wall, of those whose middles hang together with most others: pieces that
+/// hang on by a neck thinner than the least wall are cut off, too.
+voxel::Expression thick_part(const voxel::Expression& solid, double least_wall_mm, const VoxelBench& bench);
 
 /// Keeps the largest piece. Other pieces are removed together with the voxels around them.
 void keep_largest(const voxel::Expression& solid, const VoxelBench& bench, VoxelSide& made);

@@ -250,7 +250,7 @@ void voxels(const Splint& splint, const VoxelBench& bench, VoxelSide& made) {
     return;
   }
   const Stopwatch watch(bench.timings, "splint_voxel");
-  keep_largest(rounded(whole, 0.5 * splint.thickness_mm, bench), bench, made);
+  keep_largest(thick_part(whole, splint.thickness_mm, bench), bench, made);
 }
 
 /// The levels that must stay free of splint because of a jaw, for the mesh kernel.
