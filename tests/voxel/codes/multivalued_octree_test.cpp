@@ -44,7 +44,7 @@ TEST(MultivaluedOctree, ThatIsWrongIsRefused) {
     object_of(parse_multivalued_octree(universe_of(2), nodes), 1);
   };
   EXPECT_NE(refusal([&] { decoded("P(0 0 0)"); }).find("character 8"), std::string::npos);
-  EXPECT_NE(refusal([&] { decoded("P(1 1 1 1 1 1 1 1)"); }).find("node 9: ends eight children"),
+  EXPECT_NE(refusal([&] { decoded("P(1 1 1 1 1 1 1 1)"); }).find("node 9: is the last of eight children"),
             std::string::npos);
   EXPECT_NE(refusal([&] { decoded("255"); }).find("at most 254"), std::string::npos);
   EXPECT_NE(refusal([&] {
