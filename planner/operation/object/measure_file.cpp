@@ -88,7 +88,9 @@ FileAnswer said(Json json) {
   const std::vector<std::pair<std::string, std::string>> asked = surface_rows(json);
   rows.insert(rows.end(), asked.begin(), asked.end());
   for (const std::string& text : size.findings)
-    if (text.starts_with("volume_mm3: ") || text.starts_with("WARN ")) rows.emplace_back("finding", text);
+    if (text.starts_with("volume_mm3: ") || text.starts_with("volume_lines_mm3: ") ||
+        text.starts_with("WARN "))
+      rows.emplace_back("finding", text);
   return {std::move(json), std::move(rows)};
 }
 
