@@ -22,7 +22,7 @@
 
 #include "brep/boolean/common_frame.h"
 #include "brep/boolean/corefine.h"
-#include "brep/boolean/corefine_apart.h"
+#include "brep/boolean/corefine_batches.h"
 #include "brep/boolean/imprint.h"
 #include "brep/boolean/line_agreement.h"
 #include "brep/boolean/near_boolean.h"
@@ -205,8 +205,8 @@ void add_union_of_pieces(const Question& question, const Solid& b, Corefined& co
 /// Corefines all triangles.
 Attempt whole_attempt(const Question& question, const Solid& b) {
   Attempt attempt;
-  Corefined corefined =
-      corefine_apart(question.a, b, with_witnesses(question.wanted, question.a, question.b), question.stop);
+  Corefined corefined = corefine_in_batches(
+      question.a, b, with_witnesses(question.wanted, question.a, question.b), question.stop);
   add_union_of_pieces(question, b, corefined);
   attempt.failure = corefined.failure;
   for (std::size_t r = 0; r < corefined.results.size(); ++r)

@@ -19,7 +19,7 @@
 #include <tuple>
 #include <utility>
 
-#include "brep/boolean/corefine_apart.h"
+#include "brep/boolean/corefine_batches.h"
 #include "brep/boolean/patch.h"
 #include "brep/mesh/disjoint_sets.h"
 #include "brep/mesh/flat_triangles.h"
@@ -385,7 +385,7 @@ Corefined corefine_near(const std::array<Operand, 2>& operands, std::array<Side,
     const Patch a = patch_of(operands[0].triangles(), sides[0].near_faces),
                 b = patch_of(operands[1].triangles(), sides[1].near_faces);
     corefined =
-        corefine_apart(a.mesh, b.mesh, {true, true, wanted[of_a_minus_b], wanted[of_b_minus_a]}, stop);
+        corefine_in_batches(a.mesh, b.mesh, {true, true, wanted[of_a_minus_b], wanted[of_b_minus_a]}, stop);
     if (!corefined.failure.empty()) throw Obstacle(corefined.failure);
     if (corefined.has_open_film || corefined.films != decltype(corefined.films){})
       throw Obstacle("faces coincide except for rounding, near the cut and perhaps beyond");

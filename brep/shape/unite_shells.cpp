@@ -14,6 +14,7 @@
 #include "brep/mesh/distance.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/health.h"
+#include "brep/mesh/shells.h"
 #include "brep/mesh/solid.h"
 
 namespace octotomy::brep {
@@ -21,22 +22,16 @@ namespace {
 
 /// One shell's triangles with points of their own.
 std::vector<Triangles> shells_apart(const Linked& whole) {
-  const auto& faces = whole.triangles.faces;
-  DisjointSets sets(faces.size());
-  for (std::uint32_t side = 0; side < whole.opposite.size(); ++side)
-    if (whole.is_inner_edge(side)) sets.join(side / 3, whole.opposite[side] / 3);
-  std::map<std::uint32_t, std::vector<std::uint32_t>> members;
-  for (std::uint32_t f = 0; f < faces.size(); ++f) members[sets.set_of(f)].push_back(f);
-  std::vector<Triangles> shells;
+  std::vector<Triangles> apart;
   std::vector<std::uint32_t> number(whole.triangles.points_mm.size());
   std::vector<std::size_t> seen_in(number.size(), 0);
-  for (const auto& [first, own] : members) {
-    Triangles& shell = shells.emplace_back();
+  for (const std::vector<std::uint32_t>& own : shells(whole)) {
+    Triangles& shell = apart.emplace_back();
     for (const std::uint32_t f : own) {
-      auto& face = shell.faces.emplace_back(faces[f]);
+      auto& face = shell.faces.emplace_back(whole.triangles.faces[f]);
       for (std::uint32_t& v : face) {
-        if (seen_in[v] != shells.size()) {
-          seen_in[v] = shells.size();
+        if (seen_in[v] != apart.size()) {
+          seen_in[v] = apart.size();
           number[v] = static_cast<std::uint32_t>(shell.points_mm.size());
           shell.points_mm.push_back(whole.triangles.points_mm[v]);
         }
@@ -44,7 +39,7 @@ std::vector<Triangles> shells_apart(const Linked& whole) {
       }
     }
   }
-  return shells;
+  return apart;
 }
 
 /// A shell as the solid that it bounds, for either orientation.
@@ -94,14 +89,6 @@ std::optional<std::size_t> body_around(const Solid& cavity, const std::vector<So
   return around;
 }
 
-/// Appends a solid to a surface, without a Boolean.
-void append(Triangles& all, const Triangles& more) {
-  const auto first = static_cast<std::uint32_t>(all.points_mm.size());
-  all.points_mm.insert(all.points_mm.end(), more.points_mm.begin(), more.points_mm.end());
-  for (const auto& face : more.faces)
-    all.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
-}
-
 class Uniter {
  public:
   explicit Uniter(const std::stop_token& stop) : stop_(stop) {}
@@ -121,7 +108,7 @@ class Uniter {
     std::map<std::uint32_t, std::vector<Solid>> members;
     for (std::uint32_t i = 0; i < bodies.size(); ++i) members[groups.set_of(i)].push_back(bodies[i]);
     Triangles all;
-    for (const auto& [first, group] : members) append(all, combined(group, Operation::Union).triangles());
+    for (const auto& [first, group] : members) append(combined(group, Operation::Union).triangles(), all);
     return all;
   }
 

@@ -15,7 +15,7 @@ namespace octotomy::brep {
 /// second batch, the answer is that of corefine(), bit for bit. Batches do not depend on the number of threads. Cost:
 /// n log n, with the memory of one batch for each thread, and all pairs of parts whose boxes overlap, up to 64 for
 /// each part.
-Corefined corefine_apart(const Mesh& a, const Mesh& b, const Wanted& wanted, const std::stop_token& stop = {},
-                         std::size_t batch_size = 20'000);
+Corefined corefine_in_batches(const Mesh& a, const Mesh& b, const Wanted& wanted,
+                              const std::stop_token& stop = {}, std::size_t batch_size = 20'000);
 
 }  // namespace octotomy::brep

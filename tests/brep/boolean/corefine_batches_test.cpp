@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "brep/boolean/corefine_apart.h"
+#include "brep/boolean/corefine_batches.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -49,10 +49,10 @@ void expect_same(const Corefined& apart, const Corefined& whole) {
   }
 }
 
-TEST(CorefineApart, HasTheResultsOfTheWhole) {
+TEST(CorefineInBatches, HasTheResultsOfTheWhole) {
   const Rows both = rows(31);
   const Mesh a = mesh_of(both.a), b = mesh_of(both.b);
-  const Corefined apart = corefine_apart(a, b, all_results, {}, small_batches);
+  const Corefined apart = corefine_in_batches(a, b, all_results, {}, small_batches);
   const Corefined whole = corefine(a, b, all_results);
   expect_same(apart, whole);
   auto uncut = whole.uncut;
@@ -65,12 +65,12 @@ TEST(CorefineApart, HasTheResultsOfTheWhole) {
   }
 }
 
-TEST(CorefineApart, BitsDoNotDependOnThreads) {
+TEST(CorefineInBatches, BitsDoNotDependOnThreads) {
   const Rows both = rows(20);
   const Mesh a = mesh_of(both.a), b = mesh_of(both.b);
   const auto answer = [&](std::size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    return corefine_apart(a, b, all_results, {}, small_batches);
+    return corefine_in_batches(a, b, all_results, {}, small_batches);
   };
   const Corefined one = answer(1), four = answer(4);
   for (std::size_t r = 0; r < one.results.size(); ++r) {
@@ -79,19 +79,19 @@ TEST(CorefineApart, BitsDoNotDependOnThreads) {
   }
 }
 
-TEST(CorefineApart, AShellWithinAnotherStaysWithIt) {
+TEST(CorefineInBatches, AShellWithinAnotherStaysWithIt) {
   // The small balls of b lie within the large one of a, and a ball of a lies far away with one of b's on it.
   const Triangles a = shapes::together(shapes::sphere({0, 0, 0}, 20, 3), shapes::sphere({60, 0, 0}, 5, 3));
   Triangles b = shapes::sphere({63, 0.1, 0.2}, 4, 3);
   for (int i = -1; i < 2; ++i) b = shapes::together(b, shapes::sphere({8.0 * i, 1, 2}, 2, 2));
-  const Corefined apart = corefine_apart(mesh_of(a), mesh_of(b), all_results, {}, small_batches);
+  const Corefined apart = corefine_in_batches(mesh_of(a), mesh_of(b), all_results, {}, small_batches);
   expect_same(apart, corefine(mesh_of(a), mesh_of(b), all_results));
   EXPECT_EQ(health(*apart.results[of_a_minus_b]).shells, 5u);
 }
 
-TEST(CorefineApart, OneBatchIsTheWholeBitForBit) {
+TEST(CorefineInBatches, OneBatchIsTheWholeBitForBit) {
   const Rows both = rows(3);
-  const Corefined apart = corefine_apart(mesh_of(both.a), mesh_of(both.b), all_results, {}, 100'000);
+  const Corefined apart = corefine_in_batches(mesh_of(both.a), mesh_of(both.b), all_results, {}, 100'000);
   const Corefined whole = corefine(mesh_of(both.a), mesh_of(both.b), all_results);
   for (std::size_t r = 0; r < whole.results.size(); ++r) {
     EXPECT_EQ(apart.results[r]->points_mm, whole.results[r]->points_mm);
@@ -99,17 +99,18 @@ TEST(CorefineApart, OneBatchIsTheWholeBitForBit) {
   }
 }
 
-TEST(CorefineApart, AnOperandThatIntersectsItselfIsNamedFromItsBatch) {
+TEST(CorefineInBatches, AnOperandThatIntersectsItselfIsNamedFromItsBatch) {
   Rows both = rows(12);
   // Two balls of a cross each other where a ball of b cuts them.
   both.a = shapes::together(
       both.a, shapes::together(shapes::sphere({-30, 0, 0}, 3, 2), shapes::sphere({-27, 0, 0.1}, 3, 2)));
   both.b = shapes::together(both.b, shapes::sphere({-28.4, 2.5, 0.2}, 2, 2));
-  const Corefined apart = corefine_apart(mesh_of(both.a), mesh_of(both.b), all_results, {}, small_batches);
+  const Corefined apart =
+      corefine_in_batches(mesh_of(both.a), mesh_of(both.b), all_results, {}, small_batches);
   EXPECT_TRUE(apart.meets_itself || !apart.failure.empty());
 }
 
-TEST(CorefineApart, OpenPatchesEndAtTheirBorders) {
+TEST(CorefineInBatches, OpenPatchesEndAtTheirBorders) {
   // The upper parts of balls, cut by small balls far above their borders.
   Rows both = rows(24);
   std::erase_if(both.a.faces, [&](const auto& face) {
@@ -118,7 +119,8 @@ TEST(CorefineApart, OpenPatchesEndAtTheirBorders) {
   });
   const Mesh a = mesh_of(both.a), b = mesh_of(both.b);
   const Wanted wanted = {true, true, false, false};
-  const Corefined apart = corefine_apart(a, b, wanted, {}, small_batches), whole = corefine(a, b, wanted);
+  const Corefined apart = corefine_in_batches(a, b, wanted, {}, small_batches),
+                  whole = corefine(a, b, wanted);
   ASSERT_EQ(apart.failure, whole.failure);
   for (const std::size_t r : {of_union, of_intersection}) {
     ASSERT_TRUE(apart.results[r] && whole.results[r]);
@@ -128,16 +130,16 @@ TEST(CorefineApart, OpenPatchesEndAtTheirBorders) {
   EXPECT_EQ(apart.uncut[1].size(), whole.uncut[1].size());
 }
 
-TEST(CorefineApart, StopsWhenAsked) {
+TEST(CorefineInBatches, StopsWhenAsked) {
   const Rows both = rows(31);
   std::stop_source source;
   source.request_stop();
   EXPECT_THROW(
-      corefine_apart(mesh_of(both.a), mesh_of(both.b), all_results, source.get_token(), small_batches),
+      corefine_in_batches(mesh_of(both.a), mesh_of(both.b), all_results, source.get_token(), small_batches),
       BooleanStopped);
 }
 
-TEST(CorefineApart, ABooleanOfManyCubesHasTheVolumeOfItsPairs) {
+TEST(CorefineInBatches, ABooleanOfManyCubesHasTheVolumeOfItsPairs) {
   // 1,000 pairs: two batches of the default size.
   Triangles a, b;
   for (int i = 0; i < 1000; ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 find the connected parts of both surfaces; 2 join parts whose boxes overlap to groups; 3 put groups into batches;
 // 4 corefine each batch; 5 put the results together.
-#include "brep/boolean/corefine_apart.h"
+#include "brep/boolean/corefine_batches.h"
 
 #include <algorithm>
 #include <array>
@@ -18,6 +18,7 @@
 #include "brep/mesh/coordinate_order.h"
 #include "brep/mesh/disjoint_sets.h"
 #include "brep/mesh/morton_tree.h"
+#include "brep/mesh/shells.h"
 
 namespace octotomy::brep {
 namespace {
@@ -27,25 +28,6 @@ using Faces = std::array<std::vector<std::uint32_t>, 2>;
 
 std::size_t count_of(const Faces& faces) {
   return faces[0].size() + faces[1].size();
-}
-
-/// The parts of an operand, which are triangles connected across edges, by their lowest triangles.
-std::vector<std::vector<std::uint32_t>> parts_of(const Linked& operand) {
-  const std::size_t count = operand.triangles.faces.size();
-  DisjointSets sets(count);
-  for (std::uint32_t side = 0; side < operand.opposite.size(); ++side)
-    if (operand.is_inner_edge(side)) sets.join(side / 3, operand.opposite[side] / 3);
-  std::vector<std::vector<std::uint32_t>> parts;
-  std::vector<std::size_t> number(count, 0);
-  for (std::uint32_t f = 0; f < count; ++f) {
-    const std::uint32_t lowest = sets.set_of(f);
-    if (lowest == f) {
-      number[f] = parts.size();
-      parts.emplace_back();
-    }
-    parts[number[lowest]].push_back(f);
-  }
-  return parts;
 }
 
 /// A triangle that has the box of a part.
@@ -67,7 +49,7 @@ std::vector<Faces> groups_of(const std::array<Linked, 2>& operands) {
   std::vector<std::pair<std::size_t, std::vector<std::uint32_t>>> parts;  // by operand
   Triangles boxes;
   for (const std::size_t side : {0u, 1u})
-    for (std::vector<std::uint32_t>& part : parts_of(operands[side])) {
+    for (std::vector<std::uint32_t>& part : shells(operands[side])) {
       add_box(operands[side].triangles, part, boxes);
       parts.emplace_back(side, std::move(part));
     }
@@ -126,15 +108,6 @@ std::vector<Faces> batches_of(const std::vector<Faces>& groups, std::size_t batc
   return batches;
 }
 
-void append(const Triangles& part, Triangles& whole) {
-  const auto first = static_cast<std::uint32_t>(whole.points_mm.size());
-  whole.points_mm.insert(whole.points_mm.end(), part.points_mm.begin(), part.points_mm.end());
-  for (std::array<std::uint32_t, 3> face : part.faces) {
-    for (std::uint32_t& v : face) v += first;
-    whole.faces.push_back(face);
-  }
-}
-
 /// Puts the batches' results together. A result is there if it is in all of them.
 Corefined together(std::vector<Corefined> parts) {
   Corefined whole;
@@ -163,8 +136,8 @@ Corefined together(std::vector<Corefined> parts) {
 
 }  // namespace
 
-Corefined corefine_apart(const Mesh& a, const Mesh& b, const Wanted& wanted, const std::stop_token& stop,
-                         std::size_t batch_size) {
+Corefined corefine_in_batches(const Mesh& a, const Mesh& b, const Wanted& wanted, const std::stop_token& stop,
+                              std::size_t batch_size) {
   assert(batch_size > 0);
   const std::size_t all = a.n_faces() + b.n_faces();
   if (all <= batch_size) return corefine(a, b, wanted, stop);
