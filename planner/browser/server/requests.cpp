@@ -290,37 +290,37 @@ std::optional<std::string> acted_on(const Procedure& procedure, const Json& whol
   return has_all(procedure.steps, whole) ? std::nullopt : outcome_of(before);
 }
 
-/// Whether a step of a plan is one of an option's: by its operation and its name, also where the procedure acts on
-/// another one's outcome and its steps are called after it.
-bool is_step_of(const Procedure& procedure, const ProcedureOption& option, const Json& step) {
+/// Whether a step of a plan is one of an option's, by its name and operation. `chained`: of the steps that act on
+/// another procedure's outcome, which are called after the procedure; otherwise of those with their own names.
+bool is_step_of(const Procedure& procedure, const ProcedureOption& option, bool chained, const Json& step) {
   const auto id = step.at("id").get<std::string>();
-  const bool chained = is_chained_step_of(procedure, id);
+  const std::optional<std::string> name = chained ? name_before_chaining(procedure, id) : id;
   return std::any_of(option.steps.begin(), option.steps.end(), [&](const Json& own) {
-    const auto name = own.at("id").get<std::string>();
-    return own.at("do") == step.at("do") && (id == name || (chained && id.ends_with("_" + name)));
+    return name && own.at("id") == *name && own.at("do") == step.at("do");
   });
 }
 
 /// Whether a plan has an option: most of its steps. Single ones may have been deleted, and a step of the user's may
 /// have the name of one.
-bool has_option(const Procedure& procedure, const ProcedureOption& option, const Json& plan) {
+bool has_option(const Procedure& procedure, const ProcedureOption& option, bool chained, const Json& plan) {
   const Json& steps = plan.at("steps");
-  const auto present = std::count_if(steps.begin(), steps.end(),
-                                     [&](const Json& step) { return is_step_of(procedure, option, step); });
+  const auto present = std::count_if(steps.begin(), steps.end(), [&](const Json& step) {
+    return is_step_of(procedure, option, chained, step);
+  });
   return 2 * static_cast<std::size_t>(present) > option.steps.size();
 }
 
-/// Removes the steps of options that the plan has and the user does not choose any more.
+/// Removes the steps, with names of their own, of options that the plan has and the user does not choose any more.
 Json without_other_options(const Procedure& procedure, const std::vector<std::string>& chosen,
                            const Json& plan) {
   Json kept = plan;
   for (const ProcedureOption& option : procedure.options) {
     if (std::find(chosen.begin(), chosen.end(), option.name) != chosen.end() ||
-        !has_option(procedure, option, kept))
+        !has_option(procedure, option, false, kept))
       continue;
     Json others = Json::array();
     for (const Json& step : kept["steps"])
-      if (!is_step_of(procedure, option, step)) others.push_back(step);
+      if (!is_step_of(procedure, option, false, step)) others.push_back(step);
     kept["steps"] = std::move(others);
   }
   return kept;
@@ -345,7 +345,7 @@ Json acts_on(Session& session, const Json& said, const Watched&) {
       acted_on(procedure, whole, parse_plan(without_steps_of(procedure, whole).dump(), folder));
   Json with = Json::array();
   for (const ProcedureOption& option : procedure.options)
-    if (has_option(procedure, option, whole)) with.push_back(option.name);
+    if (has_option(procedure, option, outcome.has_value(), whole)) with.push_back(option.name);
   return {{"outcome", outcome ? Json(*outcome) : Json(nullptr)}, {"with", with}};
 }
 

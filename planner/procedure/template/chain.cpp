@@ -259,16 +259,21 @@ std::optional<std::string> outcome_of(const Plan& plan) {
   return std::nullopt;
 }
 
-bool is_chained_step_of(const Procedure& procedure, const std::string& id) {
+std::optional<std::string> name_before_chaining(const Procedure& procedure, const std::string& id) {
   const std::string prefix = procedure.name + "_";
-  if (!id.starts_with(prefix)) return false;
+  if (!id.starts_with(prefix)) return std::nullopt;
   std::string own = id.substr(prefix.size());
   if (const std::size_t digits = own.find_first_not_of("0123456789");
       digits != 0 && digits != std::string::npos && own[digits] == '_')
     own = own.substr(digits + 1);
   const Procedure whole = with_all_options(procedure);
-  return std::any_of(whole.steps.begin(), whole.steps.end(),
-                     [&](const Json& step) { return step.at("id") == own; });
+  const bool is_known = std::any_of(whole.steps.begin(), whole.steps.end(),
+                                    [&](const Json& step) { return step.at("id") == own; });
+  return is_known ? std::optional(own) : std::nullopt;
+}
+
+bool is_chained_step_of(const Procedure& procedure, const std::string& id) {
+  return name_before_chaining(procedure, id).has_value();
 }
 
 Chained chained(const Plan& plan, const Evaluation& evaluated, const Procedure& procedure,

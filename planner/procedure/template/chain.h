@@ -18,6 +18,9 @@ namespace octotomy::planner {
 /// has. None: the plan has no such step.
 std::optional<std::string> outcome_of(const Plan& plan);
 
+/// The name in the procedure's file of a step that chained() named for the procedure, with or without its options.
+/// None: chained() names no step of the procedure so.
+std::optional<std::string> name_before_chaining(const Procedure& procedure, const std::string& id);
 /// Whether chained() named this step for the procedure, with or without its options.
 bool is_chained_step_of(const Procedure& procedure, const std::string& id);
 

@@ -451,6 +451,10 @@ class Session(Served):
             self.assertEqual(steps["genioplasty_chin_moved"]["by"]["forward_mm"], forward_mm)
             self.assertIn("maxilla_moved", steps)
         self.assertTrue(all(entry["evaluated"] for entry in self.window.ask("evaluate")["objects"]))
+        self.assertEqual(self.window.ask("acts_on", name="genioplasty")["with"], [])
+        state = self.window.ask("procedure", name="genioplasty", landmarks=chin, values={"bone_low": 300}, **{"with": ["guides"]})
+        self.assertIn("genioplasty_chin_guide", [step["id"] for step in state["plan"]["steps"]])
+        self.assertEqual(self.window.ask("acts_on", name="genioplasty")["with"], ["guides"])
         file = self.folder / "mine.procedure.json"
         file.write_text('{"secret": 1}')
         with self.assertRaisesRegex(RuntimeError, "there is no procedure"):

@@ -177,6 +177,8 @@ TEST(ChainedSteps, AreKnownByTheProceduresNameAndTheirOwn) {
   EXPECT_FALSE(is_chained_step_of(procedure, "maxilla"));
   EXPECT_FALSE(is_chained_step_of(procedure, "le_fort_i_two_piece_maxilla"));
   EXPECT_FALSE(is_chained_step_of(procedure, "le_fort_i_mine"));
+  EXPECT_EQ(name_before_chaining(procedure, "le_fort_i_2_maxilla"), "maxilla");
+  EXPECT_EQ(name_before_chaining(procedure, "maxilla"), std::nullopt);
 }
 
 TEST_F(Chain, WhatCannotBeChainedIsRefusedWithAReason) {
