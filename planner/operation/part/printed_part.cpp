@@ -18,27 +18,24 @@ namespace {
 /// distances on flat and gently curved parts.
 constexpr double standing_off = 0.1;
 
-/// The largest piece of the balls' middles with its cavities. Balls about another piece meet those about it in a neck
-/// that is thinner than a ball, because no ball fits between the two.
-brep::Solid without_necks(const brep::Solid& core) {
-  const std::vector<brep::Component>& pieces = core.components();
-  if (pieces.size() < 2) return core;
-  std::vector<std::uint32_t> kept = pieces.front().faces;
-  const brep::Solid outer =
-      brep::trusted_solid(brep::part_of(core.mesh(), kept), brep::proof_of_part(core.proof()));
-  const brep::Triangles& triangles = core.triangles();
-  for (std::size_t i = 1; i < pieces.size(); ++i) {
-    const std::vector<std::uint32_t>& faces = pieces[i].faces;
-    if (pieces[i].volume_mm3 < 0.0 &&
-        outer.tree().is_inside(triangles.points_mm[triangles.faces[faces.front()][0]]))
-      kept.insert(kept.end(), faces.begin(), faces.end());
-  }
-  std::sort(kept.begin(), kept.end());
-  return brep::trusted_solid(brep::part_of(core.mesh(), kept), brep::proof_of_part(core.proof()));
+/// The largest of the pieces, with its cavities.
+brep::Solid first_piece(const brep::Solid& solid) {
+  const std::vector<brep::Component>& pieces = solid.components();
+  if (pieces.size() < 2) return solid;
+  return brep::trusted_solid(brep::part_of(solid.mesh(), pieces.front().faces),
+                             brep::proof_of_part(solid.proof()));
 }
 
-/// The union of the balls of the radius that fit within a solid: of all, or of those whose middles hang together with
-/// most others, see without_necks().
+/// An expression without the voxels of pieces beside the largest one. `whole` is its octree.
+voxel::Expression of_largest(const voxel::Expression& expression, const voxel::Octree& whole,
+                             const voxel::Octree& largest, const VoxelBench& bench) {
+  return expression -
+         voxel::Expression(bench.combined(voxel::Expression(whole) - voxel::Expression(largest)));
+}
+
+/// The union of the balls of the radius that fit within a solid: of all, or of those about the largest piece of their
+/// middles. Balls about another piece meet those about it in a neck that is thinner than a ball, because no ball fits
+/// between the two.
 voxel::Expression balls_within(const voxel::Expression& solid, double radius_mm, bool without_necks,
                                const VoxelBench& bench) {
   const voxel::Octree octree = bench.combined(solid);
@@ -54,9 +51,8 @@ voxel::Expression balls_within(const voxel::Expression& solid, double radius_mm,
   const double reach_mm = radius_mm + standing_off * radius_mm;
   if (!without_necks) return solid & voxel::Expression(voxel::offset(all, middles, reach_mm, bench.progress));
   const voxel::Octree largest = voxel::components(all, voxel::Neighbours::Corners).largest;
-  const voxel::Expression kept =
-      middles - voxel::Expression(bench.combined(voxel::Expression(all) - voxel::Expression(largest)));
-  return solid & voxel::Expression(voxel::offset(largest, kept, reach_mm, bench.progress));
+  return solid & voxel::Expression(voxel::offset(largest, of_largest(middles, all, largest, bench), reach_mm,
+                                                 bench.progress));
 }
 
 }  // namespace
@@ -73,11 +69,8 @@ void keep_largest(const voxel::Expression& solid, const VoxelBench& bench, Voxel
   const voxel::Octree whole = bench.combined(solid);
   const voxel::Components pieces = voxel::components(whole);
   made.octree = pieces.largest;
-  made.symbol =
-      bench.within_universe(pieces.voxel_counts.size() < 2
-                                ? solid
-                                : solid - voxel::Expression(bench.combined(
-                                              voxel::Expression(whole) - voxel::Expression(pieces.largest))));
+  made.symbol = bench.within_universe(
+      pieces.voxel_counts.size() < 2 ? solid : of_largest(solid, whole, pieces.largest, bench));
 }
 
 brep::Solid largest_piece(const brep::Solid& solid, const std::string& part, MeshSide& made) {
@@ -87,8 +80,7 @@ brep::Solid largest_piece(const brep::Solid& solid, const std::string& part, Mes
   for (std::size_t i = 1; i < pieces.size(); ++i) dropped_mm3 += pieces[i].volume_mm3;
   made.findings.push_back(std::to_string(pieces.size() - 1) + " pieces of " + three_figures(dropped_mm3) +
                           " mm\u00b3 beside the " + part + " are left out");
-  return brep::trusted_solid(brep::part_of(solid.mesh(), pieces.front().faces),
-                             brep::proof_of_part(solid.proof()));
+  return first_piece(solid);
 }
 
 brep::Solid printed(const brep::Solid& solid, const std::string& part, MeshSide& made) {
@@ -117,7 +109,8 @@ brep::Solid thick_part(const brep::LevelBody& body, const ThickPart& asked, cons
   brep::Solid whole;
   {
     const Stopwatch watch(bench.timings, part + "_core");
-    whole = without_necks(brep::core_of(body, {-radius_mm, asked.cell_mm, progress}));
+    // Balls about other pieces would hang on by necks, as in balls_within().
+    whole = first_piece(brep::core_of(body, {-radius_mm, asked.cell_mm, progress}));
   }
   if (whole.empty()) return whole;
   {

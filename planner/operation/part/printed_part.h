@@ -16,8 +16,8 @@ namespace octotomy::planner {
 /// radius are cut off. Cuts keep a tenth of the radius away from those balls, so that other surfaces do not move. If
 /// the balls are narrower than voxels, they are not resolved, and the solid is returned unchanged.
 voxel::Expression rounded(const voxel::Expression& solid, double radius_mm, const VoxelBench& bench);
-/// rounded() with balls as wide as the least wall, of those whose middles hang together with most others: pieces that
-/// hang on by a neck thinner than the least wall are cut off, too.
+/// rounded() with balls as wide as the least wall, about the largest connected piece of their middles: pieces that hang
+/// on by a neck thinner than the least wall are cut off, too.
 voxel::Expression thick_part(const voxel::Expression& solid, double least_wall_mm, const VoxelBench& bench);
 
 /// Keeps the largest piece. Other pieces are removed together with the voxels around them.
