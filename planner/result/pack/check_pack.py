@@ -475,7 +475,7 @@ class VoxelFile:
 
 
 def inflated(data):
-    """Unpacks gzip; refuses what grows beyond all sense."""
+    """Unpacks gzip; refuses more than MOST_BYTES."""
     unpacker = zlib.decompressobj(zlib.MAX_WBITS | 16)
     made = unpacker.decompress(data, MOST_BYTES)
     if unpacker.unconsumed_tail or not unpacker.eof:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // Sources: the CVE records of these numbers; GDCM's pull requests 213, 233 and 235; CISA's advisories ICSMA-26-083-01
-// (GDCM) and of June 2026 (DCMTK).
+// (GDCM) and of June 2026 (DCMTK). The release that repaired the faults of 2024 is not confirmed by a record.
 #include "planner/result/pack/known_faults.h"
 
 #include <algorithm>
