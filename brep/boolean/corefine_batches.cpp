@@ -9,8 +9,6 @@
 #include <cassert>
 #include <cstdint>
 #include <mutex>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 #include <utility>
 #include <vector>
 
@@ -18,6 +16,7 @@
 #include "brep/mesh/coordinate_order.h"
 #include "brep/mesh/disjoint_sets.h"
 #include "brep/mesh/morton_tree.h"
+#include "brep/mesh/parallel_tasks.h"
 #include "brep/mesh/shells.h"
 
 namespace octotomy::brep {
@@ -148,16 +147,13 @@ Corefined corefine_in_batches(const Mesh& a, const Mesh& b, const Wanted& wanted
   if (batches.empty()) return corefine(a, b, wanted, stop);
 
   std::vector<Corefined> parts(batches.size());
-  tbb::parallel_for(std::size_t{0}, batches.size(), [&](std::size_t i) {
-    // A waiting thread must not begin another batch: corefine() counts its steps by thread.
-    tbb::this_task_arena::isolate([&] {
-      const Patch patches[] = {patch_of(operands[0].triangles, batches[i][0]),
-                               patch_of(operands[1].triangles, batches[i][1])};
-      parts[i] = corefine(patches[0].mesh, patches[1].mesh, wanted, stop);
-      if (parts[i].flat > 0) return;  // its points have numbers of their own
-      for (const std::size_t side : {0u, 1u})
-        for (std::uint32_t& v : parts[i].uncut[side]) v = patches[side].points.at(v);
-    });
+  run_parallel_tasks(batches.size(), [&](std::size_t i) {  // corefine() counts its steps by thread
+    const Patch patches[] = {patch_of(operands[0].triangles, batches[i][0]),
+                             patch_of(operands[1].triangles, batches[i][1])};
+    parts[i] = corefine(patches[0].mesh, patches[1].mesh, wanted, stop);
+    if (parts[i].flat > 0) return;  // its points have numbers of their own
+    for (const std::size_t side : {0u, 1u})
+      for (std::uint32_t& v : parts[i].uncut[side]) v = patches[side].points.at(v);
   });
   return together(std::move(parts));
 }

@@ -13,11 +13,11 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
-#include <tbb/parallel_for.h>
 
 #include "brep/contour/slab.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/morton_tree.h"
+#include "brep/mesh/parallel_tasks.h"
 #include "brep/mesh/self_intersections.h"
 
 namespace octotomy::brep {
@@ -347,7 +347,7 @@ std::vector<Tiled> tile_slabs(const std::vector<std::vector<Contour>>& contours,
   std::vector<Tiled> slabs(contours.size() - 1);
   std::atomic<std::size_t> finished = 0;
   std::mutex telling;
-  tbb::parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t s) {
+  run_parallel_tasks(slabs.size(), [&](std::size_t s) {
     if (options.stop.stop_requested()) return;
     slabs[s] = tile_slab({contours[s], contours[s + 1], heights_mm[s], heights_mm[s + 1]}, options);
     const std::size_t count = ++finished;

@@ -2,14 +2,13 @@
 #include "planner/operation/file/mesh_file.h"
 
 #include <algorithm>
-#include <exception>
 #include <optional>
-#include <tbb/parallel_for.h>
 #include <utility>
 
 #include "brep/io/read_mesh.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/health.h"
+#include "brep/mesh/parallel_tasks.h"
 #include "brep/mesh/split_fans.h"
 #include "brep/shape/repair.h"
 #include "brep/shape/repair_effect.h"
@@ -123,18 +122,9 @@ std::array<brep::Linked, 2> read_surfaces(const std::array<std::filesystem::path
   const Stopwatch watch(timings, "read");
   std::array<brep::Linked, 2> surfaces;
   std::array<std::vector<std::string>, 2> told;
-  std::array<std::exception_ptr, 2> failed;
-  tbb::parallel_for(std::size_t{0}, paths.size(), [&](std::size_t i) {
-    try {
-      surfaces[i] = joined(paths[i], told[i]);
-    } catch (...) {
-      failed[i] = std::current_exception();
-    }
-  });
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (failed[i]) std::rethrow_exception(failed[i]);
-    findings.insert(findings.end(), told[i].begin(), told[i].end());
-  }
+  brep::run_parallel_tasks(paths.size(), [&](std::size_t i) { surfaces[i] = joined(paths[i], told[i]); });
+  for (const std::vector<std::string>& of_file : told)
+    findings.insert(findings.end(), of_file.begin(), of_file.end());
   return surfaces;
 }
 

@@ -6,8 +6,8 @@
 #include <atomic>
 #include <mutex>
 #include <optional>
-#include <tbb/parallel_for.h>
 
+#include "brep/mesh/parallel_tasks.h"
 #include "planner/operation/table/fault.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/plan/evaluate.h"
@@ -245,16 +245,11 @@ class Asking {
     constexpr std::size_t at_a_time = 4096;
     for (std::size_t first = 0; first < cases; first += at_a_time) {
       std::vector<RandomSuite> parts(std::min(at_a_time, cases - first));
-      tbb::parallel_for(
-          tbb::blocked_range<std::size_t>(0, parts.size(), 1),
-          [&](const tbb::blocked_range<std::size_t>& range) {
-            for (std::size_t i = range.begin(); i < range.end(); ++i) {
-              if (options_.stop.stop_requested()) throw Stopped("stopped between random questions");
-              ask(options_.seed + first + i, parts[i]);
-              report(++done_, cases);
-            }
-          },
-          tbb::simple_partitioner());
+      brep::run_parallel_tasks(parts.size(), [&](std::size_t i) {
+        if (options_.stop.stop_requested()) throw Stopped("stopped between random questions");
+        ask(options_.seed + first + i, parts[i]);
+        report(++done_, cases);
+      });
       for (RandomSuite& part : parts) {
         add(all.exact, part.exact);
         add(all.as_given, part.as_given);
