@@ -300,8 +300,8 @@ void add_kept_parts(std::vector<verify::OpenPart> kept, const std::vector<verify
                            (kept.size() == 1 ? "hangs on a neck" : "hang on necks") + " thinner than " +
                            verify::thin_neck + ", the largest near " +
                            voxel::rounded(kept.front().bridge.at_mm) +
-                           ": both kernels keep the parts that only one of them connects; 'cut_bridges_mm' "
-                           "of the step cuts a neck";
+                           ": both kernels keep the parts that only one of them connects; "
+                           "'keep_bridges_mm' and 'cut_bridges_mm' of the step decide it";
   made.findings.push_back(text);
   made.shared_values.push_back(
       made.kind + ": the choice of parts beyond thin necks, which stay if one kernel connects them");

@@ -395,7 +395,8 @@ class Evaluator {
   }
 
   /// The agreed answer of operations that choose connected parts. Whether a neck thinner than a few voxels
-  /// exists is accidental, so parts that only one kernel joins by such a neck stay in both answers.
+  /// exists is accidental, so parts that only one kernel joins by such a neck stay in both answers. Those that the
+  /// plan keeps are no doubt.
   Object agreed_answer(const Step& step, const void* value, const Object& begun) {
     constexpr int most_rounds = 4;
     Object made = answer(step, value, begun);
@@ -409,7 +410,10 @@ class Evaluator {
         also_mm.insert(also_mm.end(), part.part_mm.begin(), part.part_mm.end());
       const std::shared_ptr<void> more = step.action.operation().with_parts(value, also_mm);
       if (!more) break;
-      kept.insert(kept.end(), open.begin(), open.end());
+      const verify::PartChoice& own = made.witness.choices().back();
+      std::copy_if(open.begin(), open.end(), std::back_inserter(kept), [&](const verify::OpenPart& part) {
+        return !own.necks || !own.necks->keeps(part.part_mm, part.bridge.at_mm);
+      });
       made = answer(step, more.get(), begun);
     }
     add_kept_parts(std::move(kept), open, made);

@@ -51,13 +51,13 @@ voxel::Octree connected(const voxel::Octree& set, const voxel::Octree& common) {
 Necks::Necks(voxel::Octree octree, voxel::Octree digitised, Witness whole)
     : octree_(std::move(octree)), whole_(std::move(whole)), digitised_(std::move(digitised)) {}
 
-Necks::Necks(voxel::Octree octree, brep::Solid solid, Witness whole, std::vector<glm::dvec3> decided_mm,
-             const glm::dvec3& sample_mm)
-    : octree_(std::move(octree)),
-      solid_(std::move(solid)),
+Necks::Necks(ChosenParts chosen, Witness whole)
+    : octree_(std::move(chosen.voxels)),
+      solid_(std::move(chosen.mesh)),
       whole_(std::move(whole)),
-      decided_mm_(std::move(decided_mm)),
-      sample_mm_(sample_mm) {}
+      decided_mm_(std::move(chosen.decided_mm)),
+      kept_mm_(std::move(chosen.kept_mm)),
+      sample_mm_(chosen.sample_mm) {}
 
 void Necks::prepare() const {
   if (common_) return;
@@ -199,14 +199,14 @@ std::optional<glm::dvec3> Necks::neck_by_mesh(const std::vector<glm::ivec3>& par
   return std::nullopt;
 }
 
-bool Necks::is_decided(const glm::dvec3& neck_mm) const {
+bool Necks::is_near_any(const std::vector<glm::dvec3>& places_mm, const glm::dvec3& neck_mm) const {
   const glm::dvec3 voxel_mm = octree_.universe().lattice().spacing_mm();
   const double near_mm = 2.0 * bridge_voxels * std::max({voxel_mm.x, voxel_mm.y, voxel_mm.z});
-  return std::any_of(decided_mm_.begin(), decided_mm_.end(),
+  return std::any_of(places_mm.begin(), places_mm.end(),
                      [&](const glm::dvec3& at_mm) { return glm::distance(at_mm, neck_mm) <= near_mm; });
 }
 
-std::optional<glm::dvec3> Necks::neck_mm(const std::vector<glm::dvec3>& part_mm) const {
+std::optional<glm::dvec3> Necks::any_neck_mm(const std::vector<glm::dvec3>& part_mm) const {
   const std::lock_guard lock(mutex_);
   // A thread that waits for its own loops here must not begin a certificate that waits for this lock.
   return tbb::this_task_arena::isolate([&]() -> std::optional<glm::dvec3> {
@@ -229,8 +229,20 @@ std::optional<glm::dvec3> Necks::neck_mm(const std::vector<glm::dvec3>& part_mm)
       std::sort(part.begin(), part.end(), before);
       neck = neck_by_mesh(part);
     }
-    return neck && is_decided(*neck) ? std::nullopt : neck;
+    return neck;
   });
+}
+
+std::optional<glm::dvec3> Necks::neck_mm(const std::vector<glm::dvec3>& part_mm) const {
+  const std::optional<glm::dvec3> neck = any_neck_mm(part_mm);
+  return neck && is_near_any(decided_mm_, *neck) ? std::nullopt : neck;
+}
+
+bool Necks::keeps(const std::vector<glm::dvec3>& part_mm, const glm::dvec3& found_mm) const {
+  if (kept_mm_.empty()) return false;
+  if (is_near_any(kept_mm_, found_mm)) return true;
+  const std::optional<glm::dvec3> neck = any_neck_mm(part_mm);
+  return neck && is_near_any(kept_mm_, *neck);
 }
 
 namespace {
@@ -332,8 +344,7 @@ Witness witness_of_parts(Witness whole) {
 
 Witness witness_of_parts(Witness whole, ChosenParts chosen) {
   if (!whole) return {};
-  const auto necks = std::make_shared<const Necks>(std::move(chosen.voxels), std::move(chosen.mesh), whole,
-                                                   std::move(chosen.decided_mm), chosen.sample_mm);
+  const auto necks = std::make_shared<const Necks>(std::move(chosen), whole);
   Witness parts = witness_of_parts(std::move(whole));
   std::vector<PartChoice> choices = parts.choices();
   choices.back().necks = necks;

@@ -9,7 +9,7 @@
 
 #include "brep/mesh/solid.h"
 #include "verify/certificate/certificate.h"
-#include "verify/witness/reading.h"
+#include "verify/witness/witness.h"
 #include "voxel/tree/octree.h"
 
 namespace octotomy::verify {
@@ -30,11 +30,9 @@ class Necks {
   /// The two answers, the mesh's as the voxels whose centre lies inside it, and a witness of the whole object
   /// from which the parts were chosen.
   Necks(voxel::Octree octree, voxel::Octree digitised, Witness whole);
-  /// As above, but the mesh is digitised at the first use. `decided_mm` are the places of necks that the plan
-  /// keeps or cuts, LPS millimetres; a neck near one of them is not reported. `sample_mm` is the spacing of
-  /// the scan's samples.
-  Necks(voxel::Octree octree, brep::Solid solid, Witness whole, std::vector<glm::dvec3> decided_mm,
-        const glm::dvec3& sample_mm);
+  /// As above, but the mesh is digitised at the first use. A neck near one that the plan keeps or cuts is not
+  /// reported.
+  Necks(ChosenParts chosen, Witness whole);
 
   /// Returns the place of the thin neck that connects a part to the voxels of both answers. `part_mm` are the
   /// part's points, LPS millimetres, which one answer alone has. None in four cases: the answers agree at one
@@ -43,6 +41,9 @@ class Necks {
   /// nor a component of the solid connects the first point to the voxels of both answers; or the plan decides
   /// about the neck. Cost: at the first call a labelling and an erosion of the set.
   std::optional<glm::dvec3> neck_mm(const std::vector<glm::dvec3>& part_mm) const;
+  /// Whether the plan keeps a part: a neck that connects it, the one that was found or the one that neck_mm()
+  /// finds without decisions, is near one that the plan keeps. Cost: as neck_mm().
+  bool keeps(const std::vector<glm::dvec3>& part_mm, const glm::dvec3& found_mm) const;
 
  private:
   /// One answer's set. `whole` are the parts of the set, and `eroded` those of the set eroded by a voxel or
@@ -52,6 +53,8 @@ class Necks {
     std::optional<voxel::Octree> whole, eroded;
   };
   void prepare() const;
+  /// As neck_mm(), whatever the plan decides.
+  std::optional<glm::dvec3> any_neck_mm(const std::vector<glm::dvec3>& part_mm) const;
   /// The side of the answer that alone has the voxel or a neighbour of it; null where the answers agree.
   Side* side_near(const glm::ivec3& at) const;
   bool is_thick(Side& side, const std::vector<glm::ivec3>& part) const;
@@ -62,12 +65,12 @@ class Necks {
   std::optional<glm::dvec3> neck_by_reading(const glm::ivec3& from) const;
   /// None without a solid, and where the part and the voxels of both answers are separate components of it.
   std::optional<glm::dvec3> neck_by_mesh(const std::vector<glm::ivec3>& part) const;
-  bool is_decided(const glm::dvec3& neck_mm) const;
+  bool is_near_any(const std::vector<glm::dvec3>& places_mm, const glm::dvec3& neck_mm) const;
 
   voxel::Octree octree_;
   std::optional<brep::Solid> solid_;
   Witness whole_;
-  std::vector<glm::dvec3> decided_mm_;
+  std::vector<glm::dvec3> decided_mm_, kept_mm_;
   glm::dvec3 sample_mm_{0.0};
   mutable std::mutex mutex_;
   mutable std::optional<voxel::Octree> digitised_, common_;

@@ -61,12 +61,12 @@ Witness with_voxels_within(Witness tight, double by_mm);
 /// Some of the object's connected parts. For a point inside the object both answers are allowed, because its
 /// part may not be chosen.
 Witness witness_of_parts(Witness whole);
-/// The connected parts that each kernel chose, the places of necks that the plan keeps or cuts (LPS
-/// millimetres), and the spacing of the scan's samples.
+/// The connected parts that each kernel chose, the places of necks that the plan keeps or cuts and of those
+/// that it keeps (LPS millimetres), and the spacing of the scan's samples.
 struct ChosenParts {
   voxel::Octree voxels;
   brep::Solid mesh;
-  std::vector<glm::dvec3> decided_mm = {};
+  std::vector<glm::dvec3> decided_mm = {}, kept_mm = {};
   glm::dvec3 sample_mm{0.0};
 };
 /// As above, for a given choice. If the choices differ beyond a thin neck, all objects computed from them may

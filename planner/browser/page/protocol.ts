@@ -56,6 +56,12 @@ export interface MirrorPlane {
   kept_share: number|null;
   converged: boolean|null;
 }
+/// A thin neck by which one kernel alone connects a part. Both kernels keep the part, or the plan has to decide.
+export interface Neck {
+  at_mm: Vec3;
+  volume_mm3: number|null;  // of the part beyond it
+  kept: boolean;
+}
 export interface ObjectState {
   id: string;
   kind: string;
@@ -66,6 +72,7 @@ export interface ObjectState {
   findings?: string[];
   mirror?: MirrorPlane;
   certificate?: Certificate|null;
+  necks?: Neck[];  // once certified
   volume?: Measured|null;
   area?: Measured|null;
 }

@@ -77,6 +77,21 @@ Json certificate_json(const verify::Certificate& certificate) {
   return json;
 }
 
+/// The thin necks of an object whose parts were chosen: those that stay because one kernel connects them, and those
+/// that the certificate leaves open. Null if there are none.
+Json necks_json(const Object& object) {
+  Json necks;
+  const auto add = [&](const Json& at_mm, const Json& volume_mm3, bool is_kept) {
+    necks.push_back({{"at_mm", at_mm}, {"volume_mm3", volume_mm3}, {"kept", is_kept}});
+  };
+  if (const auto kept = object.mesh.details.find("kept_bridges"); kept != object.mesh.details.end())
+    for (const Json& neck : *kept) add(neck.at("at_mm"), neck.at("volume_mm3"), true);
+  if (object.certificate)
+    for (const verify::WorstPlace& neck : object.certificate->bridges)
+      add(planner::to_json(neck.at_mm), neck.volume_mm3, false);
+  return necks;
+}
+
 /// An object of the plan as a page shows it; without a value if it is not evaluated yet.
 struct ObjectState {
   std::string id;
@@ -331,6 +346,7 @@ void Session::keep_certified(const Plan& plan, const Evaluation& evaluation) {
   for (const Object& object : evaluation.objects) {
     found[object.id] = {keys.at(object.id), Json::object()};
     if (object.certificate) found[object.id].said["certificate"] = certificate_json(*object.certificate);
+    if (Json necks = necks_json(object); !necks.is_null()) found[object.id].said["necks"] = std::move(necks);
   }
   for (const Json& measured : measurements_json(measuring, evaluation))
     for (const char* size : {"volume", "area"}) found[measured.at("object")].said[size] = measured.at(size);

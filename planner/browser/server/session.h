@@ -123,7 +123,7 @@ class Session {
   /// The key of a step's answer, and its certified results.
   struct Certified {
     std::string key;
-    Json said;  ///< "certificate", "volume", "area"
+    Json said;  ///< "certificate", "volume", "area", "necks"
   };
   std::map<std::string, Certified> certified_;
 

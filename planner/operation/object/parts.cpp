@@ -289,10 +289,10 @@ void bound(const Parts& parts, const BoundBench& bench, Object& made) {
                    },
                    whole, static_cast<std::size_t>(parts.largest.value_or(1))},
                   bench.universe, parts.at_least_mm3, made);
-  made.witness = made.mesh.whole
-                     ? verify::witness_of_parts(whole, {made.voxel.octree, *made.mesh.whole,
-                                                        bridges.decided_mm(), made.bound.spacing_mm})
-                     : verify::witness_of_parts(whole);
+  made.witness = made.mesh.whole ? verify::witness_of_parts(
+                                       whole, {made.voxel.octree, *made.mesh.whole, bridges.decided_mm(),
+                                               bridges.keep_mm, made.bound.spacing_mm})
+                                 : verify::witness_of_parts(whole);
   made.shown = object.shown;
 }
 

@@ -433,8 +433,9 @@ void bound(const Segment& segment, const BoundBench& bench, Object& made) {
   if (chooses_parts(segment) && made.mesh.whole) settle_parts(segment, scan, bench.universe, made);
   if (chooses_parts(segment))
     made.witness = made.mesh.whole
-                       ? verify::witness_of_parts(made.witness, {made.voxel.octree, *made.mesh.whole,
-                                                                 bridges.decided_mm(), made.bound.spacing_mm})
+                       ? verify::witness_of_parts(made.witness,
+                                                  {made.voxel.octree, *made.mesh.whole, bridges.decided_mm(),
+                                                   bridges.keep_mm, made.bound.spacing_mm})
                        : verify::witness_of_parts(made.witness);
   if (segment.fill) made.witness = verify::witness_of_filled(made.witness);
 }

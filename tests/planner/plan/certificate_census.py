@@ -28,7 +28,7 @@ def scans_of(data, folder):
             if path.name.endswith(".tar.xz"):
                 unpacked = folder / path.name.removesuffix(".tar.xz")
                 with tarfile.open(path) as archive:
-                    archive.extractall(unpacked, filter="data")
+                    archive.extractall(unpacked, **({"filter": "data"} if hasattr(tarfile, "data_filter") else {}))
                 yield unpacked
             else:
                 volumes = [*path.glob("*.nii.gz"), *path.glob("*.mhd")] if path.is_dir() else []

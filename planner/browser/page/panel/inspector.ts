@@ -13,6 +13,7 @@ import {icon, is_icon} from "../base/icons";
 import {mirror_rows} from "./mirror_rows";
 import {movement_fields} from "./move_fields";
 import {fetch_movement, movement} from "./movement_panel";
+import {neck_rows} from "./neck_rows";
 import {numbers} from "./numbers_panel";
 import {Step} from "../protocol";
 import {result_rows} from "./result_rows";
@@ -111,7 +112,7 @@ function step_card(step: Step, has_motion: boolean): Child {
       found && found.value !== null ? el("p", {class: "reading"}, el("b", {}, measured_text(found)), ` ${found.says ?? ""}`) : null,
       found && found.value === null && found.sentence ? el("p", {class: "says"}, found.sentence) : null,
       object?.findings?.map((finding) => el("p", {class: "sentence warn"}, finding)),
-      mirror_rows(step), cleaning_rows(step), live_rows(step), result_rows(step),
+      mirror_rows(step), cleaning_rows(step), neck_rows(step), live_rows(step), result_rows(step),
       certificate ? el("p", {class: `sentence ${certificate.verdict.toLowerCase()}`}, certificate.sentence) :
                     null,
       step_form(

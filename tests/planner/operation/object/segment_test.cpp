@@ -100,6 +100,32 @@ TEST(SegmentStep, WhatOneKernelAloneJoinsByAThinNeckStaysInBoth) {
   EXPECT_GT(kept, 0);
 }
 
+/// The neck is listed near the large ball, and the small one lies beyond the cube about that place.
+TEST(SegmentStep, ANeckThatThePlanKeepsLeavesNoDoubt) {
+  const ScratchFolder folder;
+  voxel::write_scene(joined_balls({0.3, 0.5}, 0.8), folder / "joined.nrrd");
+  const auto part_of = [&](const std::string& decided) {
+    return evaluate(parse_plan(R"({"octotomy_plan": 1, "name": "joined",
+        "scans": {"ct": {"path": "joined.nrrd"}}, "universe": {"voxel_mm": 2.0}, "steps": [
+        {"id": "all", "do": "window", "scan": "ct", "low": 0},
+        {"id": "part", "do": "parts", "object": "all", "largest": 1)" +
+                                   decided + "}]}",
+                               folder.path()))
+        .object("part");
+  };
+  const Object open = part_of("");
+  ASSERT_TRUE(open.mesh.details.contains("kept_bridges"));
+  const std::string neck = open.mesh.details["kept_bridges"][0]["at_mm"].dump();
+  const Object kept = part_of(R"(, "keep_bridges_mm": [)" + neck + "]");
+  EXPECT_EQ(kept.certificate->verdict, verify::Verdict::Pass);
+  EXPECT_FALSE(kept.mesh.details.contains("kept_bridges"));
+  EXPECT_TRUE(kept.findings.empty());
+  EXPECT_EQ(kept.voxel.measures.volume_mm3, open.voxel.measures.volume_mm3);
+  // A decision about another place is none about this neck.
+  const Object elsewhere = part_of(R"(, "keep_bridges_mm": [[-28, 14, 0]])");
+  EXPECT_EQ(elsewhere.certificate->verdict, verify::Verdict::Warn);
+}
+
 /// The balls are joined by a rod of 2 mm: both kernels keep it or cut it as the step says.
 TEST(SegmentStep, BridgesAreKeptAndCutAsThePlanSaysInBothKernels) {
   const ScratchFolder folder;
