@@ -422,7 +422,7 @@ class LeastPath {
     }
   };
 
-  /// Of two paths with equal sums, the one whose last step is this wins.
+  /// The last step by which a path is chosen among paths with equal sums.
   Step preferred() const { return cost_ == TileCost::least_angle ? along_lower : along_upper; }
 
   /// A limit for sums at nodes of paths that end with at most this sum.

@@ -193,7 +193,7 @@ void Mender::split() {
   for (const auto& [v, count] : copies)
     change("fans",
            std::to_string(count + 1) + " fans of triangles met at point " + std::to_string(v) +
-               ": each further one got a copy of it",
+               ": each fan but the first got a copy of the point",
            repair_.surface.points_mm[v]);
   std::vector<std::uint32_t> origin;
   for (const std::uint32_t f : done.face_origin) origin.push_back(origin_[f]);

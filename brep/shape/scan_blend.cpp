@@ -139,7 +139,8 @@ class Weight {
   }
 
   std::vector<Mixed> at(const std::vector<glm::dvec3>& points_mm) const {
-    // A third on either side is far more than a winding number's error.
+    // Between these winding numbers the nearest triangle's normal decides. Sides differ by 1, so that a third is far
+    // more than a number's error.
     constexpr double surely_inside = 2.0 / 3.0, surely_outside = 0.0;
     const std::vector<Foot> feet = tree_.feet(points_mm);
     const std::vector<double> turns = turns_.at(points_mm);

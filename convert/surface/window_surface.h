@@ -8,7 +8,8 @@
 
 namespace octotomy::convert {
 
-/// A window's samples by both of its bounds. Samples that were not measured lie outside both levels.
+/// For each sample, on which sides of a window's two bounds it lies. Samples that were not measured count as below
+/// the window.
 struct WindowBits {
   InsideBits measured;    ///< samples that are numbers and no padding
   InsideBits from_low;    ///< not below the window

@@ -15,10 +15,10 @@ struct KeptSurface {
   const brep::SurfaceTree& tree;
 };
 
-/// Moves nodes of the elements' surface onto corners and sharp edges of the given one, where the elements'
-/// surface cuts them off: where a side of it goes from one face to another across a sharp edge, the end that
-/// is nearer moves onto that edge. Where neither end can, an element between the side and two nodes on the
-/// edge fills the notch, or else a node on the edge splits the side. Edges are sharp from 40 degrees on,
+/// Restores corners and sharp edges of the given surface that the elements' surface cuts off. If a side of an
+/// element goes from one face to another across a sharp edge, its nearer end moves onto that edge. If neither end
+/// can move, a new element between the side and two nodes on the edge fills the notch, or else a node on the edge
+/// splits the side. Edges are sharp from 40 degrees on,
 /// between two flat parts of the surface that are several elements large. No element's smallest dihedral
 /// angle falls below `least_deg`, or below its old value if that was smaller; sides that could not be put on
 /// edges within this bound stay. Precondition: all elements are one region. Returns the nodes that were moved

@@ -69,7 +69,7 @@ class Slab {
         carry = std::uint64_t{0} - (bits_[i] >> 63);
       }
     }
-    // A universe of fewer than 64 voxels a side has no voxels beyond its one word.
+    // A row of fewer than 64 voxels fills only a part of its word: clears the bits beyond it.
     if (side_ < 64)
       for (std::uint64_t& word : bits_) word &= (std::uint64_t{1} << side_) - 1;
   }

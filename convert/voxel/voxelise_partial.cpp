@@ -188,7 +188,7 @@ class ShareSlab {
   }
 
  private:
-  /// Whether any of a piece of a cell lies between the cell's two planes.
+  /// Whether a polygon reaches into the cell's layer along an axis: cell - 1/2 to cell + 1/2.
   static bool reaches_into(const Polygon& polygon, int axis, int cell) {
     return polygon.most(axis) > cell - 0.5 && polygon.least(axis) < cell + 0.5;
   }

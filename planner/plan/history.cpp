@@ -60,9 +60,9 @@ constexpr const char* tables = R"(
 /// Refuses because some states are not yet in the history's file but in files beside it.
 [[noreturn]] void refuse_read_only(const fs::path& path) {
   throw std::runtime_error(path.string() +
-                           ": its newest states can be read only where it can be written: copy the plan and "
-                           "all files whose names begin with " +
-                           path.filename().string() + " to a folder of yours");
+                           ": its newest states lie in files beside it, which need a folder that can be "
+                           "written: copy the plan and all files whose names begin with " +
+                           path.filename().string() + " to such a folder");
 }
 
 [[noreturn]] void fail(sqlite3* database, const fs::path& path) {

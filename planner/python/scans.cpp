@@ -165,8 +165,8 @@ void add_scans(py::module_& module) {
              py::arg("spacing_mm") = py::none(), py::arg("frame") = py::none(), py::arg("unit") = py::none(),
              py::arg("join") = false,
              "Reads a scan: DICOM folder or file, NIfTI, NRRD, MetaImage, images. `series` chooses a DICOM "
-             "series by number, UID or part of its description; `join` takes slices of one geometry together "
-             "whose identifiers differ, which the audit then fails. `frame` (\"RAS\") and `unit` (\"um\") "
+             "series by number, UID or part of its description; `join` combines slices of one geometry whose "
+             "identifiers differ; the audit then has a FAIL. `frame` (\"RAS\") and `unit` (\"um\") "
              "state what the file omits or states wrongly.");
 }
 

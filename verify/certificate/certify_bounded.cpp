@@ -383,7 +383,7 @@ void compare_repeated(Certificate& certificate, const brep::Triangles& mesh) {
                                .unit = "mm2",
                                .difference = area_mm2,
                                .tolerance = 0.0,
-                               .formula = "0: no triangle is there twice",
+                               .formula = "0: no triangle may occur twice",
                                .statement = "Triangles of % occur several times in the mesh"});
 }
 

@@ -52,8 +52,8 @@ std::vector<IntervalCoverage> drawn_suite(const IntervalSuiteOptions& options = 
 
 /// Requirements: the least share of cases held overall and in each class, and the least p99_share.
 inline constexpr double least_held = 0.985, least_held_of_a_class = 0.95, least_p99_share = 1.0 / 3.0;
-/// Whether a row is plausible for intervals that hold with probability `least`: such intervals would have at
-/// least this number of misses in more than one of 100 runs.
+/// Whether a row's misses may be due to chance if each interval holds the truth with the probability `least`:
+/// more than one of 100 runs of such intervals would miss as often.
 bool is_likely(const IntervalCoverage& row, double least);
 
 }  // namespace octotomy::verify

@@ -358,7 +358,7 @@ void table_7_5(const Octree& skull, RepresentationStudy& study) {
     study.beside.push_back({"table 7.5",
                             std::string(name) +
                                 ": create, display, link, display linked, display the expression; " +
-                                "printed s; ours visits, linked nodes",
+                                "printed: seconds; ours: visits, for link nodes",
                             printed, joined(ours)});
   };
   const auto count = [](std::uint64_t n) { return std::to_string(n); };
@@ -382,10 +382,11 @@ void figure_5_8(RepresentationStudy& study) {
     const char* name;
     double width, highest, step;  // of the filter in pixels, of the depths and their step in voxels
   };
-  static constexpr std::array<Curve, 4> curves{{{"a: 3 by 3, depths to 10", 3, 10, 1},
-                                                {"b: 3 by 3, depths to 255", 3, 255, 1},
-                                                {"c: 255 by 255, depths to 10", 255, 10, 1},
-                                                {"d: 3 by 3, depths to 5 in 64ths", 3, 5, 1.0 / 64.0}}};
+  static constexpr std::array<Curve, 4> curves{
+      {{"a: filter of 3 x 3 pixels, depths to 10 voxels", 3, 10, 1},
+       {"b: filter of 3 x 3 pixels, depths to 255 voxels", 3, 255, 1},
+       {"c: filter of 255 x 255 pixels, depths to 10 voxels", 255, 10, 1},
+       {"d: filter of 3 x 3 pixels, depths to 5 voxels in 64ths", 3, 5, 1.0 / 64.0}}};
   std::vector<std::pair<double, std::string>> widest;
   for (const Curve& curve : curves) {
     double before_deg = 0.0, gap_deg = 0.0;

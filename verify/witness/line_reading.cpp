@@ -315,7 +315,7 @@ class WindowAlong {
     }
   }
 
-  /// Adds the part of a line's way through a cell that lies within `part` and in the window.
+  /// Adds to `inside` where a line, within a cell and `part`, reads values in the window.
   void add_cell(const Course& course, const glm::ivec3& cell, const Span& ends_mm, const Span& part,
                 Spans& inside) const {
     const glm::ivec3 first = glm::clamp(cell, glm::ivec3(0), glm::max(dims_ - 2, 0)),

@@ -210,7 +210,8 @@ SurfacePlaces places_of(const OffsetOperand& operand) {
   return all;
 }
 
-/// The points of a triangle that propose places: the centroids of equal parts with edges of at most `edge_mm`.
+/// Calls `take` with the centroids of equal parts of a triangle, whose edges are at most `edge_mm`. A search of the
+/// surface starts at each.
 template <typename Take>
 void for_parts(const std::array<glm::dvec3, 3>& corners_mm, double edge_mm, const Take& take) {
   const auto& [p, q, r] = corners_mm;

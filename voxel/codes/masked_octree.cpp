@@ -225,7 +225,7 @@ MaskedOctree parse_masked_octree(const Universe& universe, std::string_view text
   const MaskedOctree right = masked_octree(octree_of(masked));
   for (std::size_t i = 0; i < masked.nodes.size(); ++i) {
     if (i >= right.nodes.size() || masked.nodes[i].status != right.nodes[i].status)
-      reader.refuse_at(positions[i], "eight equal children are one node");
+      reader.refuse_at(positions[i], "eight equal children must be stored as one node");
     if (masked.nodes[i].covered != right.nodes[i].covered)
       reader.refuse_at(positions[i], std::string("the faces of this node are ") +
                                          hex_digits[right.nodes[i].covered >> 4] +

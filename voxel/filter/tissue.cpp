@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::array<Tissue, 8> known{{
     {"bone", 300.0, std::nullopt,
-     "the least of craniofacial planning, so that thin cortical bone stays and spongy bone's rim goes; "
-     "Materialise Mimics' predefined set has 226"},
+     "the lowest threshold of craniofacial planning: it keeps thin cortical bone and drops the rim of spongy "
+     "bone; Materialise Mimics' predefined set begins at 226"},
     {"cortical_bone", 662.0, std::nullopt,
      "Materialise Mimics, predefined threshold sets: compact bone, adult (CT), from 662; without its upper "
      "bound of 1988, which the petrous bone exceeds"},

@@ -164,10 +164,10 @@ std::optional<Finding> lost_sign_finding(const Scene& scene, bool is_ct) {
   const double low = static_cast<double>(least), high = static_cast<double>(most);
   return Finding{
       "sign", is_ct ? Verdict::Fail : Verdict::Warn,
-      print("%zu samples from %.9g to %.9g lie far above all others (up to %.9g), as negative 16-bit numbers "
-            "do if they are read as unsigned: they would be %.9g to %.9g, which is air or padding; if so, "
-            "every window without an upper bound takes them for bone: correct the type in the header to 16 "
-            "bits with a sign",
+      print("%zu samples from %.9g to %.9g lie far above all others (up to %.9g). As 16-bit numbers with a "
+            "sign "
+            "they would be %.9g to %.9g, which is air or padding. If so, every window without an upper bound "
+            "takes them for bone: correct the type in the header to 16 bits with a sign",
             count, low, high, static_cast<double>(others), low - 65536.0, high - 65536.0)};
 }
 

@@ -40,7 +40,8 @@ std::uint32_t little_endian_at(std::string_view bytes, std::size_t at) {
   return number;
 }
 
-/// A codestream's header of image and tile size, from its start. Returns the largest sample.
+/// Reads the sizes of image and tiles from the start of a JPEG 2000 codestream. Returns the largest sample that its
+/// bit depth allows; 0 above 16 bits.
 std::uint32_t read_codestream(std::string_view bytes, std::size_t most_bytes) {
   constexpr std::size_t header_bytes = 43, depth_at = 42;  // with the first channel's depth
   if (!bytes.starts_with(codestream_begin))

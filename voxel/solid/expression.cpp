@@ -188,7 +188,7 @@ Expression moved(const Expression& a, const glm::dmat4& moved_from_still) {
 
 Expression reflected(const Expression& a, const glm::dmat4& mirrored_from_still) {
   if (!is_affine_isometry(mirrored_from_still) || glm::determinant(glm::dmat3(mirrored_from_still)) > 0.0)
-    throw InvalidInput("a reflection must keep lengths and turn left to right");
+    throw InvalidInput("a reflection must keep lengths and exchange left and right");
   return carried(a, mirrored_from_still);
 }
 

@@ -140,8 +140,8 @@ struct Range {
   double high_mm = std::numeric_limits<double>::infinity();
 };
 
-// A cube in a frame: its range along the third axis, and the outline, projected along that axis, of its part
-// within the solid's range. The outline is empty if that part has no volume.
+// A cube in the solid's frame: its range along the third axis, and its outline along that axis. The outline is
+// that of the part within the solid's range, and empty if that part has no volume.
 struct SweptCube {
   double low = 0.0;
   double high = 0.0;

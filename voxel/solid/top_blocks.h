@@ -27,7 +27,9 @@ class TopBlocks {
   TopBlocks& operator=(const TopBlocks&) = delete;
 
   const ExpressionBlocks& blocks() const { return blocks_; }
-  const TopBlock& root() const { return root_; }  ///< may be lower than the least height
+  const TopBlock& root() const {
+    return root_;
+  }  ///< lower than the least height if the universe is that small
 
  private:
   void enter_children(TopBlock& block, int least_height) const;

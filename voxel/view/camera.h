@@ -45,7 +45,7 @@ struct ImagePlane {
   double depth_range_mm = 0.0;  ///< depth of the universe's farthest corner
   std::optional<Eye> eye{};     ///< none: orthographic
 
-  /// A pixel position in the view's millimetres; with an eye, on the plane in true scale.
+  /// A pixel position in the view's millimetres; in perspective, on the plane in true scale (Eye::plane_mm).
   glm::dvec2 view_mm(const glm::dvec2& p_px) const {
     const glm::dvec2 from_centre = p_px - glm::dvec2(size_px) * 0.5;
     return centre_mm + glm::dvec2(from_centre.x, -from_centre.y) * pixel_mm;

@@ -259,7 +259,7 @@ class TileTrace {
     }
   }
 
-  /// Fills parts_[height - 1] with the parts' children of one number.
+  /// Fills parts_[height - 1] with child number `child` of each part at `height`.
   void enter(int height, int child) {
     auto& inner = parts_[static_cast<std::size_t>(height - 1)];
     inner.clear();

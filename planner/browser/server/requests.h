@@ -26,7 +26,7 @@ struct RequestKind {
 };
 
 const std::vector<RequestKind>& request_kinds();
-/// Throws voxel::Error, Input, with the nearest kind.
+/// Throws voxel::Error, Input, if there is no such kind; the message names the nearest one.
 const RequestKind& find_request_kind(const std::string& name);
 
 }  // namespace octotomy::planner::serve

@@ -138,7 +138,7 @@ Message draw_slice(Session& session, const Request& request, const std::stop_tok
       outlined.push_back({id, object.voxel.octree});
     }
   }
-  // A tried step makes an additional object and replaces none.
+  // A tried step makes an additional object if the one that it would replace is not drawn.
   if (const Object* made = preview.object(); made != nullptr && !made->voxel.octree.is_empty() &&
                                              std::find(drawn.begin(), drawn.end(), replaced) == drawn.end()) {
     drawn.push_back(replaced);

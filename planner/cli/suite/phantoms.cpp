@@ -30,7 +30,7 @@ Json study_json(const verify::PhantomSuite& suite) {
                                    {"in_use", c.in_use},
                                    {"needed_by_99_percent", c.p99},
                                    {"poses", c.poses},
-                                   {"seeds", "odd; the cases have even ones"}});
+                                   {"seeds", "odd seeds calibrate, even seeds make the cases"}});
   for (const verify::Convergence& c : suite.convergences)
     json["convergence"].push_back({{"quantity", c.quantity},
                                    {"radii_voxels", c.radii_voxels},

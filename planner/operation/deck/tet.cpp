@@ -47,8 +47,9 @@ struct Tet {
   std::vector<ObjectName> regions;
   int order = 1;
   std::filesystem::path scan;
-  Stiffness stiffness;     ///< of that scan
-  bool of_voxels = false;  ///< of a step: of the object's octree, as the verb is of an .octree file
+  Stiffness stiffness;  ///< of that scan
+  bool of_voxels =
+      false;  ///< a step fills the object's octree and not its mesh, as the verb does for an .octree file
 
   std::vector<std::string> inputs() const {
     std::vector<std::string> names{file.name};

@@ -204,7 +204,7 @@ std::vector<std::string> findings_of(const voxel::Region& region) {
                        (crossing.all.size() == 1 ? " crosses itself" : " cross another or themselves") +
                        ", so that parts enclosed twice are left out, first at " +
                        place_of(crossing.all.front().at_mm) +
-                       ": join them where the parts belong to the region");
+                       ": join the contours if the parts that are enclosed twice belong to the region");
   return findings;
 }
 

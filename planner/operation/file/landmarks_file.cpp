@@ -226,8 +226,8 @@ std::vector<brep::Landmark> read_landmarks(const std::filesystem::path& path) {
     for (const char* statement : {"frame", "unit", "units", "coordinateSystem", "coordinateUnits", "space"})
       if (is_list("landmarks") && root.contains(statement))
         throw std::runtime_error(std::string("states '") + statement +
-                                 "' beside \"landmarks\", whose \"point_mm\" are LPS millimetres: write them "
-                                 "so and leave it out");
+                                 "' beside \"landmarks\", whose \"point_mm\" are LPS millimetres: convert "
+                                 "the points, and delete the statement");
     if (is_list("landmarks") && is_list("markups"))
       throw std::runtime_error("has both \"landmarks\" and \"markups\": keep the list that is meant");
     if (is_list("landmarks"))

@@ -25,7 +25,8 @@ using SvgPlacement = std::function<glm::dmat3(double mm_per_unit, const std::opt
 
 struct SvgOutlines {
   std::vector<std::vector<glm::dvec2>> polygons_mm;
-  std::vector<std::string> findings;  ///< what was left out, and what a unit is taken for
+  std::vector<std::string>
+      findings;  ///< what was left out, and the length that a user unit is assumed to have
 };
 
 /// The closed outlines of an SVG file: path, polygon, polyline, rect, circle and ellipse with their

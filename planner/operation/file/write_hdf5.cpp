@@ -80,8 +80,7 @@ class Writer {
     return put(object_header(
         4, header_message(0x01, coded(1, 1) + coded(1, 1) + coded(0, 6) + coded(count, 8)) +
                header_message(0x03, type) +
-               // Allocates storage when the data are written, and fills it with the default, which is no
-               // bytes.
+               // Storage is allocated when the data are written; there is no fill value (its size is 0).
                header_message(0x05, coded(2, 1) + coded(2, 1) + coded(2, 1) + coded(1, 1) + coded(0, 4)) +
                header_message(0x08, coded(3, 1) + coded(1, 1) + coded(at, 8) + coded(size, 8))));
   }

@@ -48,7 +48,7 @@ std::vector<Field> flap_fields() {
               .required()
               .from(2)
               .to(2),
-          field("face", of(&FlapFields::face), "A point off that axis, on the face of the bone to be turned.")
+          field("face", of(&FlapFields::face), "A point beside that axis, on the face that 'facing' turns.")
               .required(),
           field("facing", of(&FlapFields::facing), "The direction of that face in the first segment, LPS.")
               .direction(),

@@ -240,7 +240,7 @@ void take_out_unfounded(std::vector<LandmarkGuess>& found, std::map<std::string,
       if (missing.contains(source) &&
           std::erase_if(found, [&](const LandmarkGuess& at) { return at.name == name; }) > 0)
         missing[name] =
-            "it is sought from " + source + ", which was not found, and the other side's is missing";
+            "it is sought from " + source + ", which was not found, and it is missing on the other side, too";
   };
   for (const auto& [side, opposite] :
        {std::pair<std::string, std::string>("_left", "_right"), {"_right", "_left"}}) {

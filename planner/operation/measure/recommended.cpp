@@ -180,7 +180,8 @@ verify::SizeIntervals intervals_of_labels(const voxel::Scene& scan, double low, 
   // Triangles that lose part of the counted volume also lose its surface.
   const double lost_mm2 = by_surface.area_mm2.value * lost_mm3 / counted_mm3;
   by_surface.area_mm2.half_width += lost_mm2;
-  by_surface.area_mm2.sources.push_back({"surface", "S of the share that triangles lose", lost_mm2, true});
+  by_surface.area_mm2.sources.push_back(
+      {"surface", "area times the share of the volume that triangles lose", lost_mm2, true});
   return by_surface;
 }
 
@@ -251,7 +252,7 @@ std::vector<std::string> findings_of(const verify::SizeIntervals& found, bool is
                           });
     findings.push_back(std::string("WARN ") + name + ": its interval is wider than its value (" +
                        three_figures(interval->value) + " \u00b1 " + three_figures(interval->half_width) +
-                       "): the scan does not resolve this object; the largest part is '" + largest.name +
+                       "): the scan does not resolve this object; the largest term is '" + largest.name +
                        "': " + largest.formula);
   }
   return findings;

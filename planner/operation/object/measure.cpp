@@ -68,7 +68,7 @@ bool is_whole_window(const Objects& objects, const Object& object) {
   return still_of(objects, object).kind == "window" && (!object.image || object.image->is_whole);
 }
 
-/// The window of a label map, where the object is that whole window; none where the object comes from other
+/// The window on a label map that an object is; none if the object is only a part of a window, or comes from other
 /// samples or from several objects.
 const Shown* label_window_of(const AnswerBench& bench, const Object& object) {
   if (object.bound.windows.empty() || !is_whole_window(bench.objects, object)) return nullptr;

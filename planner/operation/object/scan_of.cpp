@@ -138,7 +138,7 @@ void need_one_meaning(const ScanOf& step, const ScanBench& bench, const voxel::E
 // The second reading: places of samples that are drawn at random, decided by the objects' witnesses and by an
 // interpolation of its own. Neither shares code with the voxel kernel.
 
-/// Whether a place is in an expression, and the object in it that gives the sample.
+/// Whether an expression contains a place, and the object whose sample the place has.
 struct Owned {
   bool is_inside = false;
   bool is_known = true;  ///< no surface is near

@@ -243,8 +243,8 @@ void check(const Segment& segment, const FieldLocation& place) {
                    (segment.tolerance ? 1 : 0) + (segment.label ? 1 : 0) + (segment.named ? 1 : 0);
   if (ways != 1 && place.scope != nullptr)
     place.refuse(
-        "needs exactly one of 'window', 'otsu', 'clusters', 'tolerance' with 'seeds_mm', 'label' and "
-        "'named'");
+        "needs exactly one of 'window', 'otsu', 'clusters', 'label', 'named', or 'tolerance' together with "
+        "'seeds_mm'");
   if (!segment.names.empty() && !segment.named)
     place.at("names").refuse("applies only to a label that 'named' chooses");
   if (segment.regions.empty() && !segment.structure.empty())
@@ -342,7 +342,7 @@ void voxels(const Segment& segment, const VoxelBench& bench, VoxelSide& made) {
     made.lineage = "voxels chosen in the scan";
     return;
   }
-  // The window still places the surface within a voxel, and a motion samples that surface.
+  // The window stays in the expression: it places the surface more finely than a voxel, and a motion samples it.
   made.symbol = bench.within_universe(window_on(scan.grey, *segment.window)) &
                 voxel::Expression(voxel::bounds(scan.scene().lattice));
   made.symbol = cut_bridges(*made.symbol, bridges_of(segment));

@@ -51,7 +51,7 @@ void triangles(const Smooth& smooth, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "smooth");
   const brep::Solid& solid = bench.object(smooth.object.name);
   made.whole = brep::trusted_solid(smoothed(smooth, solid, made.details), brep::Proof::Connection);
-  made.lineage = "steps in and out along the mesh (Taubin 1995)";
+  made.lineage = "alternating steps that shrink and inflate the mesh (Taubin 1995)";
 }
 
 void bound(const Smooth& smooth, const BoundBench& bench, Object& made) {

@@ -391,9 +391,9 @@ Operation screw_operation() {
       .takes(field(
           "side", &Screw::side,
           "The side from which it is screwed in: anterior, posterior, left, right, superior, inferior, or "
-          "AZ,EL in degrees; of the head as it is held. With 'at', in place of 'direction': the screw "
-          "enters where 'at' is seen on the bone from there. With 'flap': where the segment is placed; "
-          "default: inferior."))
+          "AZ,EL in degrees; of the head as it is held. It replaces 'direction': with 'at' the screw enters "
+          "where 'at' is seen on the bone from that side. With 'flap' it is the side of the segment in its "
+          "new place; default: inferior."))
       .takes(field("diameter_mm", &Screw::diameter_mm,
                    "The outer diameter; 2 is usual for plates of the midface.")
                  .from(0.8)

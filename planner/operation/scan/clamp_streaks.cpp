@@ -42,8 +42,9 @@ Operation clamp_streaks_operation() {
       .takes(field("low", &ClampStreaks::low, "Lower samples near metal are raised to this."))
       .takes(field("high", &ClampStreaks::high,
                    "Higher samples near metal that are not metal are lowered to this."))
-      .takes(field("reach_mm", &ClampStreaks::reach_mm, "Distance from metal within which samples are held.")
-                 .greater_than(0.0))
+      .takes(
+          field("reach_mm", &ClampStreaks::reach_mm, "Distance from metal within which samples are clamped.")
+              .greater_than(0.0))
       .example(R"({"id": "held", "do": "clamp_streaks", "scan": "ct", "reach_mm": 20})")
       .on_files("clamp_streaks=METAL,LOW,HIGH,REACH")
       .scan(made);

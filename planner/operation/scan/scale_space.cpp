@@ -58,10 +58,12 @@ Operation scale_space_operation() {
                 "Standard deviation of the coarsest blur: about half the width of the objects to separate.")
               .required()
               .greater_than(0.0))
-      .takes(field("window", &ScaleSpaceStep::window,
-                   "Samples that belong to regions: LOW:HIGH or LOW: in the scan's unit, or a tissue.")
-                 .required()
-                 .for_example("\"300:\""))
+      .takes(
+          field(
+              "window", &ScaleSpaceStep::window,
+              "Samples that belong to regions: 'LOW:HIGH' or 'LOW:' in the scan's unit, or a tissue's name.")
+              .required()
+              .for_example("\"300:\""))
       .takes(field("objects", &ScaleSpaceStep::objects,
                    "Whether the objects are brighter or darker than their surroundings.")
                  .one_of({"bright", "dark"}))

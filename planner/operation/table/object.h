@@ -114,7 +114,7 @@ struct Object {
   std::string definition;        ///< in words: "skull & cut"
   bool is_tool = false;          ///< only helps to make others, as a mask
   bool is_interpolated = false;  ///< a part of it comes from samples between images
-  bool is_surely_empty = false;  ///< its definition is empty for any objects, such as a - a
+  bool is_surely_empty = false;  ///< its definition is empty whatever its operands are, as a - a
   VoxelSide voxel;
   MeshSide mesh;
   BoundTerms bound;

@@ -286,7 +286,8 @@ void discard(const fs::path& hidden, const fs::path& place, bool sure) {
   if (empty) fs::remove_all(hidden, ignored);
 }
 
-/// For file systems without the exchange: between its two renames the old result is beside its place.
+/// For file systems that cannot exchange two folders at once: between the two renames the old result has another
+/// name beside its place.
 void exchange_in_steps(const fs::path& staged, const fs::path& place) {
   const fs::path old = staged.string() + steps_suffix;
   fs::rename(place, old);
