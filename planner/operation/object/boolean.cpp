@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The Boolean of two or more objects: by corefinement of their meshes, and of their octrees. `combine` evaluates
-// whole expressions; this one can prove its volumes by exact numbers.
+// whole expressions; this operation can prove its volumes by exact numbers.
 #include "brep/boolean/boolean.h"
 
 #include <algorithm>

@@ -502,11 +502,12 @@ Operation segment_operation() {
       .takes(field("window", &Segment::window, "LOW:HIGH or LOW: in the scan's unit, or a tissue.")
                  .for_example("\"bone\"")
                  .in_plans_only())
-      .takes(field("otsu", &Segment::otsu,
-                   "Number of classes of least variance into which the samples are parted; the object is one "
-                   "of them.")
-                 .from(2)
-                 .to(8))
+      .takes(
+          field("otsu", &Segment::otsu,
+                "Number of classes of least variance into which the samples are divided; the object is one "
+                "of them.")
+              .from(2)
+              .to(8))
       .takes(
           field("clusters", &Segment::clusters,
                 "Number of clusters of the samples by density and gradient; the object is one of them. Edges "
