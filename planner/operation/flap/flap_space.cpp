@@ -47,7 +47,7 @@ BeamSegment slab_about(const FlapPlane& cut, const glm::dvec3& across, double sl
   return {{cut.point_mm - half, cut.normal}, {cut.point_mm + half, cut.normal}, cut.normal, aside};
 }
 
-/// The motion from where a segment is placed to where its uncut bone lies; none: the space is not there.
+/// The motion from where a segment is placed to where its uncut bone lies; none: the space is not on the uncut bone.
 std::optional<glm::dmat4> uncut_from_placed(const FlapSpace& space,
                                             const std::vector<FlapSegment>& segments) {
   if (!space.uncut_at) return std::nullopt;
