@@ -223,7 +223,8 @@ void check(const Build& asked, const FieldLocation& place) {
 FileAnswer on_files(const Build& asked, const FileBench& bench) {
   asked.as.empty() ? need_octree_extension(asked.out) : need_form_name(asked);
   if (asked.window && asked.grey)
-    throw std::runtime_error("--grey: a tree is --grey or an object by --window, not both");
+    throw std::runtime_error(
+        "--grey: an octree holds all samples (--grey) or an object (--window), not both");
   need_folder_of(asked.out);
   const voxel::OctreeFile file = !asked.from.empty() ? from_representation(asked, bench.timings)
                                  : names_octree(asked.file.name, bench) ? from_octree(bench, asked)
