@@ -204,7 +204,7 @@ int run_chosen(Program& program) {
 void need_named_outputs(const CLI::App& verb) {
   for (const CLI::Option* option : verb.get_options())
     if (option->check_sname("o") && option->count() > 0 && option->results().back().empty())
-      throw CLI::ValidationError("-o", "has no name: say which file or folder to write");
+      throw CLI::ValidationError("-o", "has no name: give the file or folder to write");
   for (const CLI::App* chosen : verb.get_subcommands()) need_named_outputs(*chosen);
 }
 
