@@ -518,7 +518,7 @@ class Modeller {
   };
 
   Moved add_plane(const LatticePlane& plane, const Triangle& triangle, double area_mm2) {
-    // A displacement of one in n . q is one of 1 / |n'| millimetres, n' the normal in LPS.
+    // A displacement by 1 in n . q is a displacement by 1 / |n'| millimetres, n' the normal in LPS.
     const glm::dmat3 normal_from_voxel =
         glm::transpose(glm::inverse(glm::dmat3(frame_.lattice.lps_from_voxel)));
     const glm::dvec3 normal = normal_from_voxel * glm::dvec3(plane.normal);

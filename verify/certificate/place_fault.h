@@ -28,8 +28,7 @@ inline bool is_within(const glm::ivec3& voxel, const voxel::Octree& octree) {
          glm::all(glm::lessThan(voxel, glm::ivec3(octree.universe().side())));
 }
 
-/// Away from surfaces the witness is read at one voxel of this number: one in each block of two voxels a
-/// side.
+/// Away from surfaces the witness is read at one of this number of voxels: one in each block of two voxels a side.
 inline constexpr int sampled_one_in = 8;
 constexpr bool is_sampled(int x, int y, int z) {
   return ((x + 2 * y + 4 * z) & (sampled_one_in - 1)) == 0;
