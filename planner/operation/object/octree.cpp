@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Writes an octree: the verb that of a scan's window or of all its samples, or one of a file in another form; the
-// step that of an object.
+// Writes an octree. The verb makes it from a scan's window or all its samples, or writes a file's octree in another
+// form; the step writes that of an object.
 #include <algorithm>
 #include <array>
 #include <fstream>

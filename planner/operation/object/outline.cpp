@@ -231,7 +231,7 @@ Operation outline_operation() {
                  .greater_than(0.0)
                  .to(1000.0)
                  .read_if<Outline>([](const Outline& outline) { return outline.at_mm.empty(); },
-                                   "is of planes that are not named: leave 'at_mm' out"))
+                                   "applies only without named planes: leave 'at_mm' out"))
       .takes(field("thin_mm", &Outline::thin_mm, "Removes points within this distance of a straight piece.")
                  .from(0.0)
                  .to(1e6))
