@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tetrahedra of one closed mesh, or of octrees: the verb of files, the step of objects. The step `deck` fills several
-// objects together, with materials of their scan and motions of the plan.
+// Tetrahedra of one closed mesh, or of octrees. The verb reads files, the step fills objects. The step `deck` fills
+// several objects together, with materials of their scan and motions of the plan.
 #include <algorithm>
 #include <cmath>
 
