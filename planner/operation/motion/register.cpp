@@ -24,7 +24,7 @@ namespace {
 
 struct Register {
   ObjectName object, onto;
-  std::vector<std::string> landmarks;  ///< files of the object's and of the other's
+  std::vector<std::string> landmarks;  ///< files of the object's landmarks and of the other object's
   bool landmarks_only = false;
   std::string motion = "rigid";
   double overlap = brep::SurfaceFitOptions{}.overlap;
