@@ -40,7 +40,7 @@ glm::dvec3 square_at(const BeamSegment& piece, double radians) {
   return std::cos(radians) * piece.across + std::sin(radians) * glm::cross(piece.along, piece.across);
 }
 
-/// The slab of one thickness about a cut.
+/// The slab of the thickness `slab_mm` about a cut.
 BeamSegment slab_about(const FlapPlane& cut, const glm::dvec3& across, double slab_mm) {
   const glm::dvec3 aside = glm::normalize(across - cut.normal * glm::dot(cut.normal, across));
   const glm::dvec3 half = 0.5 * slab_mm * cut.normal;
