@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 The patient's bone is parted from what lies beside it.
+// 1 The patient's bone is separated from the objects beside it.
 // 2 Its mid-plane gives left and right. Up follows from nose and orbits, found at several pitches.
 // 3 All rules are applied once to fine maps. They are then applied to coarse maps, with everything changed that they
 //   depend on.
