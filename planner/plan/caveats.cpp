@@ -18,8 +18,8 @@
 namespace octotomy::planner {
 namespace {
 
-/// The parts of an object from a scan that no image measured. For an object made from such an object, a note
-/// of this.
+/// The parts of an object from a scan that no image measured. For an object made from one with such parts, a note of
+/// this.
 std::vector<std::string> interpolated_parts(const MadeOf& from, const Object& object) {
   if (!object.voxel.measures.extents) return {};
   const voxel::Box& box = *object.voxel.measures.extents;
