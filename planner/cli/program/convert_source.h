@@ -47,7 +47,7 @@ std::vector<glm::dvec3> corners_of(const voxel::Lattice& lattice);
 void need_on_source(const ConvertText& text, const voxel::DicomSource& source,
                     const std::vector<glm::dvec3>& points_mm, std::vector<std::string>& findings);
 
-/// Adds findings and what was done to the identity to the JSON; prints findings as warnings.
+/// Adds findings, and the changes of the identity, to the JSON; prints findings as warnings.
 void tell(const ConvertText& text, const std::vector<std::string>& findings, Json& json);
 
 /// The labels of a label map as objects on its own lattice, with their names.

@@ -135,7 +135,7 @@ class Watch {
       const bool late = is_processor_time_over ||
                         (program.time_limit_s &&
                          std::chrono::duration<double>(Clock::now() - start).count() > *program.time_limit_s);
-      if (interrupts > 1) end_now("interrupted twice: ended at once, what was unfinished is removed");
+      if (interrupts > 1) end_now("interrupted twice: ended at once, unfinished files are removed");
       if (!late && interrupts == 0) continue;
       program.stop.request_stop();
       if (!asked) asked = Clock::now();
