@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // A fork and an exec instead of voxel::spawn(), which cannot ask for a signal at the end of the parent
-// (PR_SET_PDEATHSIG). The system sends that signal when the thread that forked ends; the same thread waits
-// for the child, so it ends first only where the process does.
+// (PR_SET_PDEATHSIG). The system sends that signal when the thread that forked ends. The same thread waits for the
+// child, so it ends before the child only if the whole process ends.
 #include "planner/cohort/child_process.h"
 
 #include <algorithm>

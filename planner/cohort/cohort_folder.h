@@ -12,7 +12,7 @@ namespace octotomy::planner {
 /// The files and folders that a command will write into a cohort's folder.
 struct CohortNeeds {
   std::string plan_text;             ///< stored as cohort_plan(); empty: the stored plan is not changed
-  std::vector<std::string> files;    ///< files that engines write into code/: cohort_labels, ......
+  std::vector<std::string> files;    ///< files that engines write into code/, such as cohort_labels
   std::vector<std::string> folders;  ///< folders of results: "sub-01", "group"
 };
 

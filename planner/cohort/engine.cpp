@@ -76,7 +76,7 @@ std::string submit(const EngineRequest& request, const Words& options, const Wor
   return job;
 }
 
-/// Whether, by GNU parallel's log, a process ended with that status, which is in the seventh column.
+/// Whether GNU parallel's log lists a process that ended with out_of_resources; the status is in the seventh column.
 bool log_tells_end_of_resources(const fs::path& log) {
   std::ifstream file(log);
   bool tells = false;

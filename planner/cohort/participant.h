@@ -20,7 +20,7 @@ struct SubjectRecord {
   enum class State { Done, Doubtful, Failed, Missing, Changed };
 
   State state = State::Missing;
-  std::string reason;  ///< of what has no answer
+  std::string reason;  ///< why there is no answer
   /// The kind of the error that ended the evaluation of a subject. Internal: a mistake in the program.
   std::optional<Fault> fault = {};
   /// Every WARN and FAIL of the audits of its scans, as ScanAudits has them.

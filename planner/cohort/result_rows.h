@@ -50,7 +50,7 @@ std::string plan_sha256(const nlohmann::ordered_json& plan);
 /// The long table: one row per subject and number.
 std::string long_header();
 std::string long_line(const ResultRow& row);
-/// The inverse of both. Throws voxel::Error (Input) with the row's number.
+/// Reads the table that long_header() and long_line() make. Throws voxel::Error (Input) with the row's number.
 std::vector<ResultRow> parse_long_table(std::string_view text);
 
 }  // namespace octotomy::planner

@@ -55,7 +55,7 @@ Spread spread_of(std::vector<double> numbers);
 
 /// Agreement of two methods over a cohort (Bland, Altman 1986).
 struct Agreement {
-  std::vector<std::pair<double, double>> points;  ///< mean of both, and second minus first
+  std::vector<std::pair<double, double>> points;  ///< mean of the two methods, and second minus first
   double bias = 0.0;                              ///< mean difference
   double low = 0.0, high = 0.0;                   ///< limits of agreement: bias -+ 1.96 sd
 };

@@ -28,11 +28,11 @@ struct Subject {
 ///   outside them, these form one more subject. A plan's scan NAME is the file of a subject that ends in
 ///   _NAME before its extension, or the subject's only scan; label maps (_dseg, _mask, ...) are not counted
 ///   as scans there;
-/// - a .csv, or a .tsv of tabs: a column participant_id (or subject), and one column per scan of the plan;
-///   `scan` denotes a plan's only one. Paths are relative to the table. For BIDS's participants.tsv, which
-///   has no columns of scans, the subjects are the folders beside it. Throws voxel::Error (Input) with path
-///   and reason: a path that is neither a folder nor a file; no subjects; a duplicate label or one with other
-///   characters; a missing column. A subject whose scans are unknown has `trouble` set.
+/// - a .csv, or a .tsv of tabs: a column participant_id (or subject), and one column per scan of the plan; a plan's
+///   only scan may have the column `scan`. Paths are relative to the table. For BIDS's participants.tsv, which has no
+///   columns of scans, the subjects are the folders beside it. Throws voxel::Error (Input) with path and reason: a
+///   path that is neither a folder nor a file; no subjects; a duplicate label or one with other characters; a missing
+///   column. A subject whose scans are unknown has `trouble` set.
 std::vector<Subject> find_subjects(const std::filesystem::path& input, const Plan& plan);
 
 /// Doubts about a cohort as a whole, one sentence each: subjects with the same path of a scan, and unused

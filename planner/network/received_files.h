@@ -13,7 +13,7 @@ namespace octotomy::planner {
 
 struct ReceiveLimits {
   std::uint64_t object_bytes = std::uint64_t{4} << 30;  ///< most bytes of an object
-  std::uint64_t total_bytes = std::uint64_t{64} << 30;  ///< most bytes of all
+  std::uint64_t total_bytes = std::uint64_t{64} << 30;  ///< most bytes of all objects
 };
 
 /// An object that was received whole.

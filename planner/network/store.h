@@ -47,10 +47,11 @@ struct ReceiveOptions {
   std::optional<TlsFiles> tls = std::nullopt;
   std::chrono::milliseconds patience{30000};  ///< for each unit of an association
   int associations = 8;                       ///< largest number at a time; others are rejected as temporary
-  std::optional<std::size_t> objects =
-      std::nullopt;  ///< ends after this number of objects; none: when it is stopped
+  /// Ends after this number of objects. None: runs until it is stopped.
+  std::optional<std::size_t> objects = std::nullopt;
   std::function<void(int port)> listening = {};
-  std::function<void(const std::string&)> refused = {};  ///< what a peer did wrong; one call at a time
+  /// called with what a peer did wrong; one call at a time
+  std::function<void(const std::string&)> refused = {};
 };
 
 /// Receives objects by C-STORE, and answers C-ECHO, until it is stopped. An object is acknowledged when it is in the

@@ -18,8 +18,8 @@
 namespace octotomy::planner {
 namespace {
 
-/// The parts of an object from a scan that no image measured. For an object made from such an object, a note
-/// of this.
+/// The parts of an object from a scan that no image measured. For an object made from one with such parts, a note of
+/// this.
 std::vector<std::string> interpolated_parts(const MadeOf& from, const Object& object) {
   if (!object.voxel.measures.extents) return {};
   const voxel::Box& box = *object.voxel.measures.extents;
@@ -71,8 +71,7 @@ std::uint64_t unmeasured_samples(const voxel::Scene& scene) {
       scene.samples);
 }
 
-/// The number of unmeasured samples in runs along an axis with samples of a window at both ends, as far as the object's
-/// box reaches.
+/// The number of unmeasured samples that lie between samples of a window along an axis, within the object's box.
 std::uint64_t enclosed_samples(const voxel::Scene& scene, const Shown& window, const Object& object) {
   if (!object.voxel.measures.extents) return 0;
   const glm::ivec3 dims = scene.lattice.dims;
@@ -182,8 +181,8 @@ void add_unmeasured(const MadeOf& from, Object& made) {
   }
 }
 
-/// At most the tissue that padding may hide within an object, by all windows that it was made of. None if the samples of one
-/// are not known.
+/// An upper bound of the tissue that padding hides within an object, from all windows that it was made of. None if
+/// the samples of a window are not known.
 std::optional<double> missing_mm3(const Object& object) {
   double missing = 0.0;
   for (const Shown& window : object.bound.windows) {

@@ -394,9 +394,9 @@ class Evaluator {
     return object;
   }
 
-  /// The agreed answer of operations that choose connected parts. Whether a neck thinner than a few voxels
-  /// exists is accidental, so parts that only one kernel joins by such a neck stay in both answers. Those that the
-  /// plan keeps are no doubt.
+  /// The agreed answer of operations that choose connected parts. Whether a neck thinner than a few voxels exists is
+  /// accidental, so parts that only one kernel joins by such a neck stay in both answers. Parts that the plan keeps
+  /// raise no doubt.
   Object agreed_answer(const Step& step, const void* value, const Object& begun) {
     constexpr int most_rounds = 4;
     Object made = answer(step, value, begun);
@@ -474,8 +474,8 @@ class Evaluator {
   /// it loses.
   bool grows() const { return options_.meshes || !options_.only_look_up; }
 
-  /// A solid that was reshaped without a mesh ends silently at the universe's border, which no surface beyond it
-  /// shows. None if an object that it was made of is there already, as where the scan ends.
+  /// Adds a finding if an object without a mesh ends at the universe's border, because no surface beyond the border
+  /// shows this. None if an operand ends there already, as where the scan ends.
   void add_border_finding(const Step& step, Object& object) const {
     if (options_.meshes || object.is_tool || !object.ends_with_universe || object.kind == "combine") return;
     const auto touches = [](const Object& each) {
@@ -535,7 +535,7 @@ class Evaluator {
     for (const std::string& step : steps) result_.file_preparations[step] = begun;
   }
 
-  /// Whether the mesh has voxels of the other kernel or a witness of its own beside it.
+  /// Whether the mesh is compared with voxels of the other kernel or with a witness of its own.
   static bool is_judged(const Operation& operation, const Object& object) {
     return operation.voxel || verify::is_reshaped(object.witness) || verify::is_scan_blend(object.witness);
   }
@@ -602,7 +602,7 @@ class Evaluator {
   const Plan& plan_;
   const EvaluateOptions& options_;
   const std::optional<voxel::Box> room_;
-  voxel::Universe least_universe_;  ///< without room
+  voxel::Universe least_universe_;  ///< before it was enlarged
   Evaluation result_;
   double told_ = 0.0;  ///< the fraction that was reported last
   std::map<std::string, LoadedScan> loaded_;

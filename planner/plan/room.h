@@ -8,10 +8,10 @@
 
 namespace octotomy::planner {
 
-/// The universe of a plan lies around its first scan. An evaluation in which an object reaches out of it, by a
-/// motion or by growing, starts again in a larger one. Thrown to evaluate(), which catches it: no other caller
-/// sees it, and no handler of errors catches it, because it is no std::exception.
-/// Each box contains the one before and an object outside of it, so an evaluation ends.
+/// The universe of a plan lies around its first scan. An evaluation in which an object reaches out of it, by a motion
+/// or by growing, starts again in a larger one. Thrown to evaluate(), which catches it: no other caller sees it, and
+/// no handler of errors catches it, because it is no std::exception. Each box contains the previous box and an object
+/// that reached out of it, so the restarts end.
 struct NeedsRoom {
   voxel::Box box_mm;  ///< LPS; the universe must contain it
 };
@@ -22,9 +22,9 @@ struct NeedsRoom {
 std::optional<voxel::Universe> with_room(const voxel::Universe& universe, const voxel::Box& box_mm);
 
 /// Throws NeedsRoom if a part of an object lies outside of the universe. The box contains `room`, which earlier
-/// objects needed, and the object. `least` is the universe before it was enlarged. If with_room() has none, a
-/// motion or mirror image throws std::runtime_error with the distance; another object keeps its caveat, because
-/// a later step may bring it back. Precondition: the caveats of the object are complete (add_caveats()).
+/// objects needed, and the object. `least` is the universe before it was enlarged. If with_room() returns none, a
+/// motion or mirror image throws std::runtime_error with the distance; another object keeps its caveat, because a
+/// later step may bring it back. Precondition: the caveats of the object are complete (add_caveats()).
 void need_room(const Objects& objects, const Object& made, const voxel::Universe& least,
                const std::optional<voxel::Box>& room);
 

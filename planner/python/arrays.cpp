@@ -12,8 +12,8 @@
 namespace octotomy::planner::python {
 namespace {
 
-/// Refuses numbers that are not finite or not of `rows` (-1: any) by `columns`; 0 rows: one row without a
-/// dimension of its own.
+/// Refuses an array that has numbers that are not finite, or not the shape (`rows`, `columns`). `rows` -1: any number
+/// of rows; 0: one row, as an array of one dimension.
 void check_shape(const Numbers& numbers, const char* what, int rows, int columns) {
   const bool fits = rows == 0 ? numbers.ndim() == 1 && numbers.shape(0) == columns
                               : numbers.ndim() == 2 && numbers.shape(1) == columns &&

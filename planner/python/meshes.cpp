@@ -91,7 +91,7 @@ void add_meshes(py::module_& module) {
   py::class_<Triangles, SharedTriangles> mesh(
       module, "Mesh", "Arbitrary triangles in LPS millimetres, which need not be closed.",
       py::dynamic_attr());
-  mesh.attr("audit") = py::tuple();  // of meshes that no file was read for
+  mesh.attr("audit") = py::tuple();  // for meshes that were not read from a file
   mesh.def(
           py::init(&triangles_of_arrays), py::arg("vertices_mm"), py::arg("triangles"),
           "Copies vertices (n, 3) and the numbers of each triangle's vertices (m, 3), counter-clockwise seen "

@@ -14,15 +14,15 @@
 //          centres the count follows the surface to half a voxel's step, floor(z) + 1/2 - z. The integral of
 //          this step over the triangles within 15 degrees of an axis is exact up to the scatter of columns,
 //          which `count` includes. A displaced part adds area past its rim: a displacement d times the
-//          integral of the
-//          curvature there (the first variation of area; do Carmo, Differential Geometry of Curves and
+//          integral of the curvature there (the first variation of area; do Carmo, Differential Geometry of
+//          Curves and
 //          Surfaces, section 3.5), which is d times the rim's length where the surface turns by a right
 //          angle. Parts are displaced independently, so the squares of their areas add up.
 //
 // count    Elsewhere the error of a count is a sum over the reciprocal lattice (Poisson; Kendall, "On the
-//          number of lattice points inside a random oval", 1948): over all places of the lattice its variance
-//          is the sum over integer vectors k of the indicator's Fourier transform squared, and that is, where
-//          the boundary is curved, a(k) / (4 pi^2 |k|^4) for every point whose normal is along k, with a the
+//          number of lattice points inside a random oval", 1948). Over all positions of the lattice its
+//          variance is the sum, over integer vectors k, of the squared Fourier transform of the indicator.
+//          Where the boundary is curved, that square is a(k) / (4 pi^2 |k|^4) for every k along a normal, a the
 //          area there per solid angle of normals (1 / Gaussian curvature). A sphere has 0.0666 S in all, a
 //          root mean square of 0.258 sqrt(S): the 0.20 to 0.32 that were measured. Of other solids a(k) is
 //          computed from the triangles whose normal is near k for the 13 nearest directions and their
@@ -46,9 +46,9 @@
 //          1 - l / h, and with it two crossings. Across a wedge whose faces turn by t at an edge, chords at a
 //          distance x from the edge have the length x / f, f = sin a sin(t - a) / sin t for a line at the
 //          angle a to one face. The loss is twice h f / 2 crossings along each unit of the edge. Over all
-//          directions, with
-//          the 13 directions' mean distance of 1.39 h, the area loses 2 / (3 pi) 1.39 h (1 - t cot t) = 0.295
-//          h (1 - t cot t) along each unit. Up to 75 degrees that is less than 0.3 of the mean curvature's
+//          directions, with the 13 directions' mean distance of 1.39 h, the area loses
+//          2 / (3 pi) 1.39 h (1 - t cot t) = 0.295 h (1 - t cot t) along each unit. Up to 75 degrees that is
+//          less than 0.3 of the mean curvature's
 //          0.5 t. The probability of chords: Santalo, Integral Geometry and Geometric Probability, 1976,
 //          chapter 4.
 // This file is long because all terms of the model use the same points and displacements.
@@ -117,7 +117,7 @@ struct LatticePlane {
 /// The largest distance, in voxels, of a lattice plane's points from it: a thousand times the rounding of
 /// coordinates in a universe of 4096 voxels.
 constexpr double flatness_voxels = 1000.0 * 4096.0 * std::numeric_limits<double>::epsilon();
-/// The largest component of such a normal. Planes with larger normals err by less than h / 8 in each voxel,
+/// The largest component of a LatticePlane's normal. Planes with larger normals err by less than h / 8 in each voxel,
 /// and not coherently.
 constexpr int largest_index = 3;
 
@@ -381,7 +381,7 @@ class Modeller {
     int way = 0;
     double mm3 = 0.0;
   };
-  /// The volumes that the pieces of such a face gain; any other face has no pieces.
+  /// The volumes that the pieces of a face nearly along the lattice gain; any other face has no pieces.
   struct NearlyPlane {
     std::size_t count = 0;
     int way = 0;
@@ -410,7 +410,8 @@ class Modeller {
     return made;
   }
 
-  /// Joins such faces of one `way` to connected parts and adds the area that each part gains past its rim.
+  /// Joins faces nearly along the lattice, of one `way`, to connected parts. Adds the area that each part gains past
+  /// its rim.
   void add_nearly_rims() {
     brep::DisjointSets sets(nearly_.size());
     const auto each_side = [&](const auto& take) {
@@ -517,7 +518,7 @@ class Modeller {
   };
 
   Moved add_plane(const LatticePlane& plane, const Triangle& triangle, double area_mm2) {
-    // A displacement of one in n . q is one of 1 / |n'| millimetres, n' the normal in LPS.
+    // A displacement by 1 in n . q is a displacement by 1 / |n'| millimetres, n' the normal in LPS.
     const glm::dmat3 normal_from_voxel =
         glm::transpose(glm::inverse(glm::dmat3(frame_.lattice.lps_from_voxel)));
     const glm::dvec3 normal = normal_from_voxel * glm::dvec3(plane.normal);

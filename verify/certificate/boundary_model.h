@@ -36,20 +36,20 @@ struct BoundaryModel {
   double area_mm2 = 0.0;
   glm::dvec3 flat_mm2{0.0};   ///< area of planes along the universe's planes, by the axis of their normal
   double coherent_mm2 = 0.0;  ///< area of all planes whose normal has small integers in voxels
-  /// Volume by which counting centres displaces planes with such normals: exact, with its sign.
+  /// Volume by which counting centres displaces the planes of `coherent_mm2`: exact, with its sign.
   VolumeShift planes;
   VolumeSpread planes_without_sign;
   /// The shift of boundary that is curved or rough but nearly along the lattice, as a plane is after blur and
   /// noise.
   VolumeShift nearly_planes;
-  /// Area gained or lost past the rims of both kinds of planes: the rims' length times the displacement.
+  /// Area gained or lost past the rims of `planes` and `nearly_planes`: the rims' length times the displacement.
   double rims_mm2 = 0.0;
   /// Displacement of unknown sign: of planes through voxel centres and of the rims of planes. An isosurface
   /// chamfers a rim over the width of a sample, so the rim is not found to be flat.
   VolumeSpread unsure;
   double tied_mm3 = 0.0;  ///< the part of planes through voxel centres: half a layer of voxels
-  /// The variance of a count over all positions of the lattice, for the boundary outside those planes: in
-  /// mm6, times the arm squared, and times the fourth power of the arm.
+  /// The variance of a count over all positions of the lattice, for the boundary outside lattice planes: in mm6,
+  /// times the arm squared, and times the fourth power of the arm.
   double count_mm6 = 0.0, count_mm8 = 0.0, count_mm10 = 0.0;
   /// The integral of mean curvature in units of samples: half the sum over edges of length times angle times
   /// the squared spacing of samples across the edge, positive for convex edges. `bent` keeps the sign;
@@ -57,7 +57,7 @@ struct BoundaryModel {
   VolumeShift bent;
   VolumeSpread bent_without_sign;
   double curvature_mm = 0.0;  ///< the integral of absolute mean curvature, by the same cells
-  /// Area that lattice lines miss at sharp edges beyond 0.3 of that curvature, per millimetre of voxel edge.
+  /// Area that lattice lines miss at sharp edges beyond 0.3 times the mean curvature, per millimetre of voxel edge.
   double sharp_mm = 0.0;
   /// The Crofton formula with 13 directions on these triangles, in the limit of fine voxels.
   double crofton13_mm2 = 0.0;

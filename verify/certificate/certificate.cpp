@@ -105,7 +105,7 @@ void judge_independence(Certificate& certificate) {
   for (const std::string& maker : shared) names += (names.empty() ? "" : "; ") + maker;
   lower(certificate, Verdict::Warn,
         "The answers are not independent, as the same code made both: " + names +
-            ". Their agreement shows nothing of what that code does.");
+            ". Their agreement does not test that code.");
 }
 
 std::string text_of(const WorstPlace& worst) {

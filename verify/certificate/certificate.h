@@ -90,22 +90,23 @@ struct Certificate {
   double difference_mm3 = 0.0;  ///< voxel minus mesh
   double tolerance_mm3 = 0.0;
   std::vector<ToleranceTerm> terms;
-  double symmetric_difference_mm3 = 0.0;  ///< volume of the voxels that only one of them holds
+  double symmetric_difference_mm3 = 0.0;  ///< volume of the voxels that only one answer holds
   double symmetric_difference_tolerance_mm3 = 0.0;
   std::optional<double> centroid_distance_mm;
   std::optional<double> centroid_tolerance_mm;
   std::optional<double> hausdorff_mm;    ///< largest, both directions, voxel faces to triangles and back
-  std::optional<double> hausdorff95_mm;  ///< 95th percentile, as the definition in the report says
+  std::optional<double> hausdorff95_mm;  ///< 95th percentile, as the report defines it
   std::optional<WorstPlace> worst;       ///< none: the answers are equal, or there is no mesh to compare
   std::optional<DetectionLimit> limit;   ///< set if the answers were judged place by place
   std::vector<WorstPlace> bridges;       ///< parts of one kernel alone beyond thin necks, the largest first
-  std::optional<LineCount> third;        ///< amounts by lines through the scan, by code of neither kernel
-  /// Inputs that both kernels share and neither computed: values that a step measures once for both, filtered
-  /// samples.
+  /// volume along lines through the scan, computed by code of neither kernel
+  std::optional<LineCount> third;
+  /// Inputs that both kernels share and neither computed: filtered samples, and values that a step measures once for
+  /// both.
   std::vector<std::string> shared_values;
   std::vector<Comparison> comparisons;  ///< every quantity that was compared
   Verdict verdict = Verdict::Pass;
-  std::vector<std::string> reasons;  ///< why not PASS
+  std::vector<std::string> reasons;  ///< why the verdict is not PASS
   std::optional<Unresolved> unresolved;
   double milliseconds = 0.0;
 
@@ -115,15 +116,15 @@ struct Certificate {
   /// Volume of the largest wrong part that could pass: the detection limit if there is one, else the
   /// tolerance.
   double unseen_mm3() const { return limit ? limit->volume_mm3 : tolerance_mm3; }
-  /// The larger of both volumes, without sign.
+  /// The larger of the two volumes' absolute values.
   double larger_mm3() const;
 };
 
 /// Whether the verdict rests on evidence: the voxels resolve the object, or its detection limit is at most
 /// evident_share of its volume.
 bool is_evident(const Certificate& certificate);
-/// Sets `unresolved` where a wrong part of more than evident_share of the object could pass, or where the
-/// tolerance of its volume is larger than that. Keeps an `unresolved` that is set already.
+/// Sets `unresolved` if a wrong part of more than evident_share of the object could pass, or if the volume's
+/// tolerance is larger than that share. Keeps an `unresolved` that is set already.
 void judge_evidence(Certificate& certificate);
 /// Lowers the verdict to WARN where both answers are empty, because nothing was compared. The reason states
 /// `missed_mm3`, the volume of a part that could have been missed.
@@ -146,8 +147,8 @@ std::string text_of(const WorstPlace& worst);
 /// the ratio is 0 without a difference and infinite with one.
 double worst_share(const Certificate& certificate);
 
-/// Whether a's verdict is worse than b's. Of equal verdicts that of a resolved object is worse than that of
-/// an unresolved one; then the one with the larger worst_share() is worse.
+/// Whether a's verdict is worse than b's. Of equal verdicts, a resolved object's is worse than an unresolved one's.
+/// If that is equal, too, the certificate with the larger worst_share() is worse.
 bool is_worse(const Certificate& a, const Certificate& b);
 
 /// A certificate's objects, kept for pictures.

@@ -17,9 +17,11 @@ namespace {
 
 /// The witness's readings at the centres of some voxels.
 struct CentreCount {
-  std::uint64_t surplus = 0, lacking = 0;  ///< voxels that must not be there, and that must
+  /// voxels that the octree has and must not have; that it lacks and must have
+  std::uint64_t surplus = 0, lacking = 0;
   std::uint64_t on_surface = 0, unknown = 0;
-  std::uint64_t by_witness = 0;  ///< inside; where either side is allowed, as the octree has it
+  /// voxels inside by the witness; where it allows both sides, those that the octree has
+  std::uint64_t by_witness = 0;
   std::optional<glm::ivec3> first_surplus, first_lacking;
 
   void add(const CentreCount& other) {

@@ -32,16 +32,15 @@
 namespace octotomy::verify {
 namespace {
 
-/// With fewer voxels across, most of the object's voxels are boundary.
+/// The least extent of a resolved object. With fewer voxels across, most of its voxels lie on its boundary.
 constexpr double resolved_voxels = 6.0;
 /// A surface has no counterpart if the other surface is further away than this multiple of the distance that
 /// digitisation explains. Parts thinner than a voxel may be lost over two or three voxels, so the verdict is
 /// WARN, not FAIL.
 constexpr double lost = 3.0;
 
-/// Adds a comparison of totals. With a witness the verdict is WARN at worst, unless totals decide: a
-/// difference that is no error of a kernel in any place comes from resampling or from triangles between
-/// samples.
+/// Adds a comparison of totals. With a witness the verdict is WARN at worst, unless totals decide: if no place shows
+/// an error of a kernel, resampling or flat triangles between samples cause the difference.
 void compare(Certificate& certificate, const Evidence& evidence, Comparison comparison,
              Verdict worst_verdict = Verdict::Fail) {
   add_comparison(certificate, std::move(comparison),
@@ -93,8 +92,8 @@ void compare_inertia(Certificate& certificate, const Evidence& evidence, const b
            "The inertia tensors differ by up to % in a component"});
 }
 
-/// Adds the volume of the parts and cavities that hold no voxel's centre, and raises the detection limit to the
-/// largest of them, because voxels do not show its loss. The witness judges their triangles as all others.
+/// Adds the volume of the parts and cavities that hold no voxel's centre. Raises the detection limit to the largest
+/// of them, because voxels do not show its loss. The witness judges their triangles like all others.
 void add_specks(Certificate& certificate, const Specks& specks) {
   if (specks.count == 0) return;
   const double largest_mm3 = specks.largest->volume_mm3;
@@ -112,12 +111,12 @@ void add_specks(Certificate& certificate, const Specks& specks) {
   judge_evidence(certificate);
 }
 
-/// Compares area and distances; for a resolved object with a witness, at first on a sample of the surfaces'
-/// points. If a bound is exceeded, looks for parts thinner than a voxel. A resolved object that differs only
-/// by those is not resolved there, and the certificate states the lost area. Surfaces beside `lost_voxels`, which the
-/// certificate lists as lost by resampling, do not count for the mean and the percentile. If there is a
-/// witness and a bound is exceeded, parts of the mesh that its own voxels, `digitised`, do not represent do
-/// not count either: the witness judges their triangles and every voxel in which the kernels differ.
+/// Compares area and distances; for a resolved object with a witness, at first on a sample of the surfaces' points.
+/// If a bound is exceeded, looks for parts thinner than a voxel. A resolved object that differs only by such parts is
+/// not resolved there, and the certificate states the lost area. Mean and percentile leave out surfaces beside
+/// `lost_voxels`, which the certificate lists as lost by resampling. With a witness, if a bound is exceeded, they
+/// also leave out parts of the mesh that its own voxels, `digitised`, do not represent: the witness judges their
+/// triangles and every voxel in which the kernels differ.
 void compare_surfaces(Certificate& certificate, const Evidence& evidence, const voxel::Octree& octree,
                       const brep::Solid& solid, const voxel::Octree& digitised,
                       const std::vector<glm::ivec3>& lost_voxels) {
@@ -164,14 +163,14 @@ void compare_surfaces(Certificate& certificate, const Evidence& evidence, const 
            .unit = "mm",
            .difference = distances.percentile95_mm(),
            .tolerance = bounds.percentile95_mm,
-           .formula = "half a voxel's diagonal + 0.1 s; in doubt, without parts thinner than a voxel",
+           .formula = "half a voxel's diagonal + 0.1 s; if exceeded, without parts thinner than a voxel",
            .statement = "Five per cent of one surface is % or more from the other"});
   compare(certificate, evidence,
           {.quantity = "mean distance",
            .unit = "mm",
            .difference = distances.mean_mm(),
            .tolerance = bounds.mean_mm,
-           .formula = "h/4 on curved boundary + displacement of flats + 0.1 s; in doubt, as above",
+           .formula = "h/4 on curved boundary + displacement of flats + 0.1 s; if exceeded, as above",
            .statement = "The surfaces are % apart on average"});
   if (!evidence.witnessed && distances.largest_mm() > far_mm)
     lower(certificate, Verdict::Warn, text_of(distances.worst()));
@@ -194,7 +193,7 @@ void judge_by_witness(Certificate& certificate, const Evidence& evidence, const 
                   .unit = "mm3",
                   .difference = voxels_mm3,
                   .tolerance = 0.0,
-                  .formula = "0: voxels at which the scan and the plan leave a kernel one answer",
+                  .formula = "0: voxels at which the scan and the plan allow a kernel only one answer",
                   .statement = "Voxels of % contradict the scan"},
                  most);
   add_comparison(certificate,
@@ -202,7 +201,7 @@ void judge_by_witness(Certificate& certificate, const Evidence& evidence, const 
                   .unit = "mm2",
                   .difference = places.stray_mm2,
                   .tolerance = 0.0,
-                  .formula = "0: triangles where the scan and the plan have a surface",
+                  .formula = "0: a triangle must lie where the scan and the plan have a surface",
                   .statement = "Triangles of % lie where the scan has no surface"},
                  most);
 }
@@ -234,16 +233,16 @@ void judge_bridges(Certificate& certificate, const Places& places) {
               "or take smaller voxels.");
   }
   if (large > most_told)
-    certificate.reasons.push_back(std::to_string(large - most_told) + " more parts hang on by such bridges.");
+    certificate.reasons.push_back(std::to_string(large - most_told) +
+                                  " more parts are connected by ambiguous bridges.");
   if (!certificate.worst) certificate.worst = certificate.bridges.front();
 }
 
 /// Share of an object that resampling may lose before the verdict is WARN. A smaller share is only stated.
 constexpr double stated_share = 0.002;
 
-/// Adds the volume of the parts that resampling lost, as WARN if it is more than stated_share of the object. Each
-/// place was compared with the witness, which has the mesh's answer there, so that the mesh is right and the
-/// voxels are too large.
+/// Adds the volume of the parts that resampling lost, as WARN if it is more than stated_share of the object. The
+/// witness agrees with the mesh at each of these places, so the mesh is right and the voxels are too large.
 void judge_lost(Certificate& certificate, const Evidence& evidence, const Places& places) {
   if (!places.worst_lost) return;
   const std::string near = voxel::rounded(places.worst_lost->at_mm);

@@ -24,9 +24,9 @@ struct BoundInputs {
   glm::dvec3 flat_cut_mm2{0.0};
   /// The box that the scan's voxels fill, if the solid may end with the scan.
   std::optional<voxel::Box> scan_box_mm = {};
-  /// The mean distance that right answers may have over the surface because each kernel measures distances by
-  /// itself (offset_allowance_mm()). If it is above 0, totals fail beyond twice their tolerance even with a
-  /// witness, because the witness of such an object is coarser than the totals.
+  /// The mean distance between the surfaces of two right answers, because each kernel measures distances by itself
+  /// (offset_allowance_mm()). If it is above 0, totals fail beyond twice their tolerance even with a witness, because
+  /// the witness of such an object is coarser than the totals.
   double measured_apart_mm = 0.0;
   /// Every voxel's centre is a sample, and the object is one window of these samples. All other samples lie
   /// below the window, or all above it. Then topology must agree too.

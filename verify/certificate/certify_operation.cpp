@@ -79,7 +79,7 @@ void judge_operands(const brep::Solid& a, const brep::Solid& b, Certificate& cer
   if (certificate.unseen_mm3() <= evident_share * smaller_mm3) return;
   certificate.unresolved = {std::nullopt, "both answers are empty and a part of " +
                                               voxel::rounded(certificate.unseen_mm3()) +
-                                              " mm3 could be missed, the smaller operand has " +
+                                              " mm3 could be missed; the smaller operand has " +
                                               voxel::rounded(smaller_mm3) + ": take smaller voxels"};
 }
 

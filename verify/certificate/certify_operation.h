@@ -20,8 +20,9 @@ struct OperationAnswers {
 };
 
 struct MeshOperationOptions {
-  std::optional<double> voxel_mm;                ///< edge; none: 1/128 of the largest extent of both operands
-  std::optional<voxel::Universe> universe = {};  ///< to compare in; none: cubes of that edge around both
+  std::optional<double> voxel_mm;  ///< edge; none: 1/128 of the largest extent of both operands
+  /// for the comparison; none: cubes of that edge around both operands
+  std::optional<voxel::Universe> universe = {};
   voxel::Progress progress{};
 };
 /// A Boolean of two solids in both kernels (tier Bounded): by corefinement, and by voxelising each operand

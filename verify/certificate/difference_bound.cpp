@@ -162,7 +162,7 @@ void derive_volume_tolerance(Certificate& certificate, const Evidence& evidence)
        "s/2 * area", evidence.border.mm3},
       {"bent", "Triangles are chords of a curved surface.",
        "0.33 |integral of s^2 curvature|, with rough at most 0.1 s S", share * bent_mm3},
-      {"rough", "One kernel joins samples that meet diagonally, the other parts them.",
+      {"rough", "One kernel joins samples that meet diagonally, the other separates them.",
        "0.12 * integral of |s^2 curvature|, with bent at most 0.1 s S", share * rough_mm3},
       {"distances", "Each kernel measures distances to its own points of a surface.",
        "mean errors of both distances * S", evidence.apart.mm3},

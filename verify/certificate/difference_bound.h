@@ -38,10 +38,10 @@ Evidence evidence_of(const voxel::Octree& octree, const brep::Solid& solid, cons
 void derive_volume_tolerance(Certificate& certificate, const Evidence& evidence);
 /// Sets the tolerances of the symmetric difference and of the centroid. Precondition: the volume's are set.
 void derive_other_tolerances(Certificate& certificate, const Evidence& evidence);
-/// For a component of the inertia tensor, of which the largest is `largest_mm5`. Precondition: the other
-/// terms are set.
+/// The tolerance of a component of the inertia tensor, whose largest component is `largest_mm5`. Precondition: the
+/// tolerances of volume and centroid are set.
 double inertia_tolerance_mm5(const Certificate& certificate, const Evidence& evidence, double largest_mm5);
-/// For the area by the Crofton formula, with `thin_mm2` of parts thinner than a voxel.
+/// The tolerance of the area by the Crofton formula; `thin_mm2` is the area of parts thinner than a voxel.
 double area_tolerance_mm2(const Evidence& evidence, double thin_mm2);
 
 struct DistanceBounds {
@@ -52,7 +52,7 @@ DistanceBounds distance_bounds(const Evidence& evidence);
 /// The longest of three edges or extents.
 double longest(const glm::dvec3& edges_mm);
 
-/// How far from a box's side a coordinate of a cut there may lie after some roundings.
+/// The largest distance from a box's side of a coordinate that was cut at this side, after some roundings.
 double on_border_mm(const voxel::Box& box_mm);
 
 }  // namespace octotomy::verify

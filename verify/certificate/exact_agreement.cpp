@@ -263,7 +263,7 @@ std::string text_of(const Expression& expression) {
   return voxel::print_expression(expression, labels);
 }
 
-/// The differing voxel nearest to the middle of their box, and the box's largest side.
+/// The differing voxel nearest to the middle of the box of all differing voxels, and the largest side of this box.
 WorstPlace worst_of(const ExactAnswers& answers, const voxel::Octree& differing) {
   const voxel::VoxelRange range = voxel::range_of(differing);
   glm::ivec3 found = range.low;

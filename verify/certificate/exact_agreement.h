@@ -24,7 +24,7 @@ struct ExactAnswers {
   std::vector<brep::Mesh> solids;
   std::string operation;
   double unit_mm3 = 1.0;              ///< volume of a refined voxel in the patient
-  glm::dmat4 lps_from_unit{1.0};      ///< to the patient's millimetres, to within a voxel
+  glm::dmat4 lps_from_unit{1.0};      ///< to LPS millimetres, accurate to a voxel
   bool areas_add_up = true;           ///< no two of the solids share a face
   double shift_mm = 0.0;              ///< how far the corefinements moved operands; not zero is a failure
   std::vector<std::string> findings;  ///< of the corefinements

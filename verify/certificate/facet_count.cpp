@@ -208,7 +208,8 @@ class Part {
   bool is_first_;
   std::size_t sides_;
   std::vector<glm::dvec3> points_;
-  std::array<std::vector<double>, 3> side_, outward_;  ///< by axis: turns for k of one along it, weights
+  /// by axis: a side's turns for k = 1 along this axis, and its weights
+  std::array<std::vector<double>, 3> side_, outward_;
   std::array<std::vector<Phases>, 3> power_;
   glm::ivec3 last_{0};
   Phases yz_, phase_;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// A neck may be thinner than the spacing of the voxels, and then no path of voxels leads through it. So a
-// part that no voxel connects is followed through the witness's reading, at `fine` points per voxel edge. A
-// point belongs to the path if the reading allows either kernel to have it inside. Bone may be thinner than
-// that spacing as well, over the whole length of a path. A part of the mesh that the reading does not connect is
-// connected if one component of the mesh contains voxels of both answers.
+// A neck may be thinner than the spacing of the voxels, and then no path of voxels leads through it. So a part that
+// no voxel connects is followed through the witness's reading, at `fine` points per voxel edge. A point belongs to
+// the path if the reading allows either kernel to have it inside. Bone may be thinner than the spacing of these
+// points as well, over the whole length of a path. A part that the reading does not connect counts as connected if
+// the component of the mesh that contains it contains voxels of both answers.
 #include "verify/certificate/necks.h"
 
 #include <algorithm>
@@ -180,7 +180,7 @@ std::optional<glm::dvec3> Necks::neck_by_mesh(const std::vector<glm::ivec3>& par
     const voxel::Octree joined =
         voxel::combine(universe, voxel::Expression(own) & voxel::Expression(*common_));
     if (joined.is_empty()) return std::nullopt;
-    // Along the surface from the part; the first place beside voxels of both answers is beyond the neck.
+    // Walks along the surface from the part. The first place beside voxels of both answers is beyond the neck.
     std::vector<bool> seen(triangles.faces.size(), false);
     for (const std::uint32_t face : next) seen[face] = true;
     for (std::size_t i = 0; i < next.size(); ++i) {

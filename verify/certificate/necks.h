@@ -14,10 +14,9 @@
 
 namespace octotomy::verify {
 
-/// With fewer voxels across, noise and the position of the voxels decide whether a neck is present. The same
-/// holds for a neck thinner than the spacing of the scan's samples, and for any neck through which no path
-/// leads whose points both kernels must have inside, because the kernels interpolate differently between
-/// samples.
+/// Narrower necks are thin: with fewer voxels across, noise and the position of the voxels decide whether a neck is
+/// present. A neck is also thin if it is thinner than the spacing of the scan's samples, or if on no path through it
+/// both kernels must be inside, because the kernels interpolate differently between samples.
 inline constexpr int bridge_voxels = 3;
 inline constexpr const char* thin_neck =
     "3 voxels, a sample or the difference of the kernels' interpolations";
@@ -34,32 +33,31 @@ class Necks {
   /// reported.
   Necks(ChosenParts chosen, Witness whole);
 
-  /// Returns the place of the thin neck that connects a part to the voxels of both answers. `part_mm` are the
-  /// part's points, LPS millimetres, which one answer alone has. None in four cases: the answers agree at one
-  /// of the points; one of the points is connected by a neck that is not thin, along a path whose points both
-  /// kernels must have inside; neither a path inside the reading
-  /// nor a component of the solid connects the first point to the voxels of both answers; or the plan decides
-  /// about the neck. Cost: at the first call a labelling and an erosion of the set.
+  /// Returns the place of the thin neck that connects a part to the voxels of both answers. `part_mm`, in LPS
+  /// millimetres, are the part's points, which only one answer has. None in four cases: the answers agree at one of
+  /// the points; a neck that is not thin connects one of the points, along a path on which both kernels must be
+  /// inside; neither a path inside the reading nor a component of the solid connects the first point to the voxels of
+  /// both answers; the plan decides about the neck. Cost: at the first call a labelling and an erosion of the set.
   std::optional<glm::dvec3> neck_mm(const std::vector<glm::dvec3>& part_mm) const;
-  /// Whether the plan keeps a part: a neck that connects it, the one that was found or the one that neck_mm()
-  /// finds without decisions, is near one that the plan keeps. Cost: as neck_mm().
+  /// Whether the plan keeps a part: a neck that the plan keeps is near `found_mm`, or near the neck that connects the
+  /// part if the plan's decisions are ignored. Cost: as neck_mm().
   bool keeps(const std::vector<glm::dvec3>& part_mm, const glm::dvec3& found_mm) const;
 
  private:
-  /// One answer's set. `whole` are the parts of the set, and `eroded` those of the set eroded by a voxel or
-  /// half a sample, that meet the voxels of both answers.
+  /// One answer's set. `whole`: the parts of the set that meet the voxels of both answers. `eroded`: such parts of
+  /// the set after an erosion by a voxel or half a sample.
   struct Side {
     const voxel::Octree* set = nullptr;
     std::optional<voxel::Octree> whole, eroded;
   };
   void prepare() const;
-  /// As neck_mm(), whatever the plan decides.
+  /// As neck_mm(), but ignores the plan's decisions.
   std::optional<glm::dvec3> any_neck_mm(const std::vector<glm::dvec3>& part_mm) const;
   /// The side of the answer that alone has the voxel or a neighbour of it; null where the answers agree.
   Side* side_near(const glm::ivec3& at) const;
   bool is_thick(Side& side, const std::vector<glm::ivec3>& part) const;
-  /// Whether some path from the part to voxels of both answers allows both kernels only one answer on its
-  /// way. Both kernels must then have connected the part, however they interpolate.
+  /// Whether on some path from the part to voxels of both answers both kernels must be inside. Both kernels must then
+  /// have connected the part, however they interpolate.
   bool is_surely_connected(const std::vector<glm::ivec3>& part) const;
   std::optional<glm::dvec3> neck_by_voxels(Side& side, const std::vector<glm::ivec3>& part) const;
   std::optional<glm::dvec3> neck_by_reading(const glm::ivec3& from) const;

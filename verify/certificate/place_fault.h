@@ -18,9 +18,9 @@ enum class PlaceFault : std::uint8_t { None, VoxelsLack, VoxelsHave, MeshLacks, 
 
 PlaceFault fault_of(const Reading& reading, bool in_voxels, bool in_mesh);
 
-/// If a part is connected by less than a voxel, such as thin bone, chance decides whether a kernel keeps it.
-/// So a group of Apart voxels is no fault if it has fewer voxels than a block of three a side and shares no
-/// face with voxels of the kernel that lacks it.
+/// Where less than a voxel connects a part, as in thin bone, chance decides whether a kernel keeps the part. So a
+/// group of Apart voxels is no fault if it has fewer voxels than a block of three a side and shares no face with
+/// voxels of the kernel that lacks it.
 inline constexpr std::size_t chance_voxels = 27;
 
 inline bool is_within(const glm::ivec3& voxel, const voxel::Octree& octree) {
@@ -28,8 +28,7 @@ inline bool is_within(const glm::ivec3& voxel, const voxel::Octree& octree) {
          glm::all(glm::lessThan(voxel, glm::ivec3(octree.universe().side())));
 }
 
-/// Away from surfaces the witness is read at one voxel of this number: one in each block of two voxels a
-/// side.
+/// Away from surfaces the witness is read at one of this number of voxels: one in each block of two voxels a side.
 inline constexpr int sampled_one_in = 8;
 constexpr bool is_sampled(int x, int y, int z) {
   return ((x + 2 * y + 4 * z) & (sampled_one_in - 1)) == 0;

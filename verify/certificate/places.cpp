@@ -47,7 +47,8 @@ constexpr std::array<const char*, 7> clauses{
     "only one kernel has a part there",
     "walls or gaps thinner than a voxel were lost there by resampling"};
 
-/// A side that only the choice of parts leaves open was decided for the whole object by the kernel's own interpolation.
+/// Whether resampling lost or filled a voxel. If only the choice of parts leaves the mesh's side open, that side
+/// counts as decided: the mesh kernel's own interpolation decided it for the whole object.
 bool is_lost(const Reading& reading, bool in_voxels, bool in_mesh) {
   return in_voxels != in_mesh && reading.voxel == either_side && !reading.mesh.is_open() &&
          reading.mesh.allows(in_mesh);

@@ -25,9 +25,9 @@ struct Places {
   /// Parts that one kernel joins to the object by a thin_neck and the other kernel cuts there, the largest
   /// first. Neither kernel is wrong, because the scan does not show whether the neck is present.
   std::vector<OpenPart> open;
-  /// Voxels of the parts that resampling lost or filled, in the order of before(): the kernels differ, the
-  /// witness agrees with the mesh, and leaves the voxels either answer (`untold`). Groups of eight voxels or
-  /// more that touch; smaller ones are left out, because chance decides about them.
+  /// Voxels of the parts that resampling lost or filled, in the order of before(). There the kernels differ, and the
+  /// witness agrees with the mesh but allows the voxels either answer (`untold`). Only groups of eight voxels or more
+  /// that touch, because chance decides about smaller ones.
   std::vector<glm::ivec3> lost;
   std::optional<WorstPlace> worst_lost = {};  ///< the largest such group
   DetectionLimit limit;

@@ -9,7 +9,7 @@
 #include "verify/certificate/certificate.h"
 #include "voxel/space/lattice.h"
 
-// Parts and cavities of a solid that no set of voxels can have, such as a scan's noise makes.
+// Parts and cavities of a solid that no set of voxels can have, for instance from noise in a scan.
 namespace octotomy::verify {
 
 /// Closed shells that enclose no voxel's centre.
@@ -18,7 +18,7 @@ struct Specks {
   double volume_mm3 = 0.0;  ///< sum over parts and cavities, without sign
   /// The speck of largest volume; its size is the longest side of its box.
   std::optional<WorstPlace> largest;
-  /// The solid's other triangles; without specks none, because they are the solid's own.
+  /// The solid's other triangles. Empty if there are no specks; the solid's own triangles then serve.
   brep::Triangles others;
 };
 /// Triangles that share an edge belong to one shell. Shells of more than 4096 voxels are no specks. Cost:

@@ -48,7 +48,7 @@ SurfaceDistances::Points face_centres(const voxel::Octree& octree) {
 
 struct Farthest {
   double mm = -1.0;
-  std::size_t number = 0;  ///< of equal ones the first
+  std::size_t number = 0;  ///< of equal distances the first
 
   static Farthest of(const Farthest& a, const Farthest& b) {
     return a.mm > b.mm || (a.mm == b.mm && a.number < b.number) ? a : b;
@@ -201,8 +201,8 @@ double SurfaceDistances::leave_out_thin() {
     const glm::dvec3 along = glm::abs(samples_.normals[numbers[i]] * axes_mm);
     widths_mm[i] = along.x + along.y + along.z;
   }
-  // Sheets may be stacked, and the far end of a voxel may lie in the next sheet or gap. So reads along the
-  // whole distance to that end.
+  // Sheets may be stacked, and the far end of a voxel may lie in the next sheet or gap. So the whole distance to that
+  // end is searched.
   std::vector<std::uint8_t> thin(count, 0);
   std::vector<std::size_t> left;
   std::vector<glm::dvec3> within_mm, beyond_mm;

@@ -80,7 +80,7 @@ void for_samples(const brep::Triangles& mesh, const std::vector<std::uint32_t>& 
   if (steps == 2) visit((a + b + c) / 3.0);
 }
 
-/// Raises a number that several threads raise.
+/// Raises a number to `to` if it is lower. Several threads may call this.
 void raise(std::atomic<double>& number, double to) {
   double now = number.load(std::memory_order_relaxed);
   while (now < to && !number.compare_exchange_weak(now, to, std::memory_order_relaxed)) {
@@ -93,7 +93,7 @@ FarSample farthest(const brep::Triangles& mesh, const TriangleGrid& from, double
   constexpr std::size_t some = 1024;
   const std::vector<std::uint32_t> first = first_faces(mesh);
   std::vector<FarSample> of_face(mesh.faces.size());
-  std::atomic<double> largest_mm{0.0};  // so far; the largest is not below it
+  std::atomic<double> largest_mm{0.0};  // the largest distance so far
   voxel::SharedProgress done(progress, mesh.faces.size() / some + 1);
   tbb::parallel_for(std::size_t{0}, mesh.faces.size() / some + 1, [&](std::size_t part) {
     if (progress.stop.stop_requested()) return;

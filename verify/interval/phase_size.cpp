@@ -103,8 +103,8 @@ Interval interval_of(const LogRange& range, const std::string& name, const std::
   return {value, half_width, {{name, formula, half_width}}};
 }
 
-/// In standard deviations. 99 of 100 normal errors are within 2.6; the rest allows for an error in the noise
-/// itself.
+/// Half-width of the noise's interval in standard deviations. 99 of 100 normal errors are within 2.6; the rest allows
+/// for an error in the noise itself.
 constexpr double confidence = 2.8;
 
 /// The half level's area at two added blurs, extrapolated to no blur by the variance and by the deviation.
@@ -154,7 +154,7 @@ std::optional<Interval> phase_area(const PhaseEvidence& found, const glm::dvec3&
   if (edges && found.level_mm2[3] >= 0.5 * found.level_mm2[2])
     return interval_of(
         *edges, "edges",
-        "the half level's area at two blurs, continued to none by the variance or the deviation");
+        "the half level's area at two blurs, extrapolated to no blur by the variance or the deviation");
   const double middle = std::log(found.sum * sample_mm3 / std::cbrt(sample_mm3)) + fit.log_ratio + 0.05;
   // Thin walls close together keep a larger share of the sums than a single wall, so the fit underestimates
   // their area.
@@ -164,7 +164,7 @@ std::optional<Interval> phase_area(const PhaseEvidence& found, const glm::dvec3&
   if (edges) range = {middle, std::min(range.low, edges->low), std::max(range.high, edges->high)};
   return interval_of(
       range, "shape",
-      "sheets, rods and balls that leave these sums of squares, and the half level while it lasts");
+      "sheets, rods and balls fitted to the sums of squares, and the half level while it exists");
 }
 
 }  // namespace octotomy::verify

@@ -2,10 +2,10 @@
 //
 // Passes:
 // 1 Estimate the densities of most of the scan, of the samples beside the solid, and of the core.
-// 2 If the first two are equal, treat the scan as one of two densities. If they differ or that fails, samples
-//   of a third density below the surroundings, such as air around tissue, count as surroundings if they do
-//   not touch the solid. If they touch it the scan is rejected. A density between both makes the result
-//   ambiguous.
+// 2 If the first two are equal, treat the scan as one of two densities. If they differ, or if two densities do not fit,
+//   samples of a third density below the surroundings, such as air around tissue, count as surroundings if they do
+//   not touch the solid. If they touch it the scan is rejected. A density between those of solid and surroundings
+//   makes the result ambiguous.
 // 3 Mark the samples near the solid: those that rise above noise after a blur of one sample, and all samples
 //   within three samples of them.
 // 4 Sum over the samples near the solid and over those away from it.
@@ -307,8 +307,8 @@ class Reading {
       least_seen_ = std::max(5.0 * refined(values, densest(values)).noise, least_seen_);
   }
 
-  /// Marks the samples near the solid. False: nothing rises above noise, or a third density touches what
-  /// does.
+  /// Marks the samples near the solid. False: no sample rises above noise, or a third density touches the samples
+  /// that do.
   bool find_near(const SampleValues& at_one) {
     near_.resize(at_one.size());
     solid_.resize(at_one.size());

@@ -31,7 +31,7 @@ struct PhaseEvidence {
   double highest = 0.0;     ///< the highest share, after a blur of one sample
   double sum = 0.0;         ///< sum of the shares: the volume in samples
   std::size_t band = 0;     ///< samples near the solid that are not deep in it
-  double tail = 0.0;        ///< sum of shares of the samples just beyond those
+  double tail = 0.0;        ///< sum of shares of the samples just beyond the band
   std::array<double, 4> squares{};    ///< sum of squared shares at each added_blur
   double counted_mm3 = 0.0;           ///< volume of the samples over the half level
   std::array<double, 4> level_mm2{};  ///< area of the half level at each added_blur

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 The closed form of a row's teeth and gum on a lattice, its surface, and its points moved onto the closed form.
-// 2 Without what the lattice's box cuts, and without the gum's upper edge, the surface is open.
+// 1 Sample the closed form of a row's teeth and gum on a lattice, and move its isosurface's points onto the closed form.
+// 2 Remove the parts that the lattice's box cuts, and the gum's upper edge, so that the surface is open.
 // 3 Random holes, bend, noise and pose.
 #include "verify/phantom/tooth_scan_phantom.h"
 
@@ -168,7 +168,7 @@ ToothScanPhantom tooth_scan_phantom(const ToothScanPhantomOptions& options) {
   if (!(options.spacing_mm > 0.0))
     throw std::invalid_argument("the spacing of a scan's points must be above 0 mm");
   const brep::Triangles& row = row_of(options.is_upper, options.spacing_mm);
-  // Neighbouring seeds of Chance give one stream, shifted by one number.
+  // Neighbouring seeds of Chance yield the same stream, shifted by one number, so the seeds are spread.
   Chance chance(options.seed * 1'000'003);
   ToothScanPhantom made;
   made.lps_from_scan = pose_by_chance(chance);

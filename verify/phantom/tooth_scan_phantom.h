@@ -34,9 +34,9 @@ struct ToothScanPhantom {
   std::vector<glm::dvec3> scan_points_mm, points_mm;
 };
 
-/// The gum lies 1.2 mm before the bone, and reaches up to 10 mm from the tips. Throws std::invalid_argument if
-/// the spacing is not above 0. The same bits on any number of threads. Cost: a second of processor time for a
-/// row, the first call of a row and a spacing only.
+/// The gum lies 1.2 mm before the bone, and reaches up to 10 mm from the tips. Throws std::invalid_argument if the
+/// spacing is not above 0. The same bits on any number of threads. Cost: a second of processor time at the first call
+/// for a row and a spacing.
 ToothScanPhantom tooth_scan_phantom(const ToothScanPhantomOptions& options = {});
 
 }  // namespace octotomy::verify

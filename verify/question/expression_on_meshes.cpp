@@ -277,7 +277,7 @@ void MeshExpressions::corefine(brep::Operation operation, Pair& pair) {
     learn(brep::booleans(pair.a, pair.b, {true, true, true, false}, stop_));
     if (pair.answers.contains(operation)) return;
   } catch (const brep::Error& error) {
-    // Perhaps only one of the answers that are not needed cannot be represented.
+    // The answer that cannot be represented may be one that is not needed.
     if (error.code() == brep::ErrorCode::Cancelled) throw;
   }
   learn(brep::booleans(pair.a, pair.b,

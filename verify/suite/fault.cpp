@@ -241,7 +241,7 @@ const std::vector<Fault>& faults() {
       {quarter_voxel, "the mesh is moved along y", true},
       {eighth_voxel, "the mesh is moved along z", true},
       {mirrored_axis, "one answer is mirrored in x about the universe's middle", true},
-      {swapped_operands, "one kernel takes b - a for a - b", true},
+      {swapped_operands, "one kernel computes b - a instead of a - b", true},
       {slice_spacing, "one kernel divides the scan's height by one slice too many", true},
       {window_quarter, "one kernel's window begins a quarter of the contrast higher", true},
       {window_eighth, "one kernel's window begins an eighth of the contrast lower", true},
@@ -250,7 +250,7 @@ const std::vector<Fault>& faults() {
       {stale_box, "one kernel has the box where it was before it moved by two voxels along each axis", true},
       {wrong_pivot, "one kernel turns about the origin instead of the given point", true},
       {shell_thrice, "the mesh contains its surface three times", true},
-      {both_empty, "both kernels answer nothing", true},
+      {both_empty, "both kernels return an empty answer", true},
       {lost_by_both, "both kernels have lost what lies in one half of the universe", true}};
   return all;
 }
@@ -263,7 +263,7 @@ std::vector<FaultTrial> try_faults(const FaultOptions& options) {
   std::vector<Work> work;
   for (const int voxels : options.sizes) {
     if (voxels < 8 || (voxels & (voxels - 1)) != 0)
-      throw voxel::InvalidInput("faults are tried at powers of two from 8 on, not at " +
+      throw voxel::InvalidInput("faults are injected at sizes that are powers of two from 8 on, not at " +
                                 std::to_string(voxels));
     for (const char* subject : {"ellipsoid", "ring"}) work.push_back({subject, voxels});
     if (voxels >= resolved_size) work.push_back({"head", voxels});

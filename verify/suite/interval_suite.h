@@ -20,8 +20,8 @@ struct IntervalCoverage {
   std::string group, spacing, sampling;
   int cases = 0;
   double held = 0.0;  ///< the share of cases whose interval holds the truth
-  double p99_share =
-      0.0;  ///< 99th percentile of |error| / half-width; the width is 1 / p99_share times what is necessary
+  /// 99th percentile of |error| / half-width; the width is 1 / p99_share times what is necessary
+  double p99_share = 0.0;
   double bias_percent = 0.0, p99_error_percent = 0.0;  ///< of the recommended value
   double median_width_percent = 0.0;                   ///< of the half-width, in per cent of the truth
 };
@@ -33,7 +33,7 @@ struct IntervalSuiteOptions {
   int solids = 400;  ///< divided among all groups, spacings and samplings
   std::uint64_t seed = 1;
   voxel::Progress progress = {};
-  /// The measurement that drawn_suite() tests. Empty: that by the surface and the sum of samples.
+  /// The measurement that drawn_suite() tests. Empty: the measurement by the surface and by the sum of samples.
   MeasureSizes measure = {};
 };
 

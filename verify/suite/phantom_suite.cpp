@@ -41,10 +41,11 @@ constexpr double contrast = -2.0 * phantom_low;
 
 struct Kind {
   std::string name;
-  const char* solid;       // of solid_phantom(), or null for a plate
-  double radius;           // in the least spacing
-  bool turned = true;      // at random; otherwise along the lattice
-  double thickness = 0.0;  // of a plate, in the longest spacing, so that it does not depend on the pose
+  const char* solid;   // of solid_phantom(), or null for a plate
+  double radius;       // in units of the least spacing
+  bool turned = true;  // at random; otherwise along the lattice
+  // of a plate, in units of the longest spacing, so that it does not depend on the pose
+  double thickness = 0.0;
 };
 
 const std::vector<Kind>& kinds() {
@@ -307,7 +308,8 @@ class Suite {
          static_cast<int>(bends.size())}};
     for (const Calibration& c : suite_.calibrations)
       suite_.checks.push_back(
-          {"the constant in use covers 99 of 100 calibration poses and is at most three times that: " +
+          {"the constant in use covers 99 of 100 calibration poses and is at most three times the least "
+           "constant that does: " +
                c.constant,
            c.p99, c.in_use, c.p99 <= c.in_use && c.in_use <= 3.0 * c.p99});
   }

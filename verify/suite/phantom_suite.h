@@ -32,11 +32,11 @@ struct Tightness {
   std::string spacing, sampling;
   int cases = 0;             ///< resolved ones: at least six voxels across
   double worst_share = 0.0;  ///< the largest |difference| / tolerance; above 1 the case does not pass
-  double p99_share = 0.0;    ///< its 99th percentile; the tolerance is 1 / p99_share times that difference
+  double p99_share = 0.0;    ///< 99th percentile of |difference| / tolerance
 };
 
-/// A constant of the tolerances, and the value that the cases need with other seeds than those of the
-/// calibration.
+/// A constant of the tolerances, and the value that suffices in calibration poses. Their seeds differ from those of
+/// the cases.
 struct Calibration {
   std::string constant;
   double in_use = 0.0;

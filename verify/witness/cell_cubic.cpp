@@ -16,9 +16,9 @@ double slope(const Cubic& cubic, double at) {
   return (3.0 * cubic[3] * at + 2.0 * cubic[2]) * at + cubic[1];
 }
 
-/// Where the cubic has the value `level`. Newton's method; a step that leaves the stretch that still holds the
-/// crossing is replaced by the stretch's middle. Precondition: the values at the stretch's ends lie on different
-/// sides of `level`.
+/// Where the cubic has the value `level`, by Newton's method in a stretch that shrinks around the crossing. A step
+/// that leaves the stretch goes to its middle instead. Precondition: the values at the stretch's ends lie on
+/// different sides of `level`.
 double crossing(const Cubic& cubic, double level, Share stretch) {
   constexpr int most_steps = 200;
   constexpr double close = 1e-15;

@@ -11,8 +11,8 @@
 
 namespace octotomy::verify {
 
-/// Classes of samples by density, x, in the scan's unit, and length of the gradient, y, in that unit per
-/// millimetre; and the number of the class that the witness describes.
+/// Classes of samples by two features: x is the density in the scan's unit, y the length of the gradient in that unit
+/// per millimetre. `meant` is the number of the class that the witness describes.
 struct ClassedBy {
   std::vector<glm::dvec2> centres;
   glm::dvec2 scale{1.0};  ///< both features are divided by it before distances are compared

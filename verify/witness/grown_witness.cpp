@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Two floods over the scan's samples: one through those that surely belong, one through those that may. A
-// sample of the first is certainly inside, one that the second does not reach is certainly outside.
+// Two floods over the scan's samples: one through those that surely belong to the region, one through those that may
+// belong. A sample that the first one reaches is certainly inside. A sample that the second one does not reach is
+// certainly outside.
 #include "verify/witness/grown_witness.h"
 
 #include <algorithm>

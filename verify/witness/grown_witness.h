@@ -14,18 +14,18 @@ namespace octotomy::verify {
 /// The seeds and limits of growing through a scan's own samples.
 struct GrownFrom {
   std::vector<glm::dvec3> seeds_mm;  ///< LPS; each begins at the nearest sample
-  /// Grows through the samples in the range of the seeds' samples, widened by this at both ends. None:
-  /// through those in low..high, both included; seeds outside of that grow nothing.
+  /// Grows through the samples in the range of the seeds' samples, widened by this tolerance at both ends. None:
+  /// through the samples in low..high, both included; a seed outside low..high grows nothing.
   std::optional<double> tolerance = {};
   double low = 0.0, high = std::numeric_limits<double>::infinity();
   int neighbours = 6;  ///< 6 by faces, 18 by edges too, 26 by corners too
-  /// The largest rounding of a sample by a kernel, in the scan's unit. Samples that near a bound may belong
-  /// or not, and so may all samples reached only through them.
+  /// The largest rounding of a sample by a kernel, in the scan's unit. A sample as near as this to a bound may belong
+  /// or not, and so may all samples that are reached only through such samples.
   double rounding = 0.0;
-  /// With a tolerance: grows in rounds. In each, all neighbours join whose samples lie within the tolerance
-  /// of the mean of the region's samples before the round. Samples are rounded to the nearest multiples of
-  /// this, halves upwards, because the mean depends on all samples and so on their rounding. None: only the
-  /// seeds determine the range.
+  /// With a tolerance: grows in rounds. In each, all neighbours join whose samples lie within the tolerance of the
+  /// mean of the region's samples before the round. Samples are rounded to the nearest multiple of this value, halves
+  /// upwards, because the mean depends on all samples and so on their rounding. None: only the seeds determine the
+  /// range.
   std::optional<double> mean_of_steps = {};
 };
 

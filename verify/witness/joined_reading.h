@@ -10,7 +10,7 @@ inline AllowedSides negated(const AllowedSides& a) {
   return {a.out, a.in, a.near, a.chosen};
 }
 
-/// Whether choices alone leave the side open: no operand is open without one.
+/// Whether only choices of parts leave the side open: every open operand is open by a choice.
 inline bool by_choice(const AllowedSides& a, const AllowedSides& b) {
   return (a.chosen || b.chosen) && (a.chosen || !a.is_open()) && (b.chosen || !b.is_open());
 }

@@ -257,8 +257,8 @@ class WindowAlong {
     return cell;
   }
 
-  /// Where the line enters and leaves the cells of a number along an axis. The first and the last extend beyond the
-  /// samples without end.
+  /// Where the line enters and leaves the layer of cells that have this number along an axis. The first and the last
+  /// layer extend beyond the samples without end.
   Span passes_mm(const Course& course, int axis, int cell) const {
     if (course.du[axis] == 0.0) return {-infinity, infinity};
     Span passed{cell < 0 ? -infinity : course.crosses_mm(axis, cell),
@@ -400,8 +400,8 @@ LineReading window_reading(std::shared_ptr<const voxel::Scene> scan, double low,
           [window](const voxel::Box& part) { return window->may_meet(part); }, box, 100.0};
 }
 
-/// The cost of two hundred windows. An expression of more has no reading, nor has one whose size a plan's
-/// steps double repeatedly. A line would take seconds, and the recursion would be as deep as the number of
+/// The cost of two hundred windows. An expression that costs more has no reading, for instance one whose size a
+/// plan's steps double repeatedly. A line would take seconds, and the recursion would be as deep as the number of
 /// operands.
 constexpr double most_cost = 2e4;
 

@@ -40,8 +40,8 @@ struct LineReading {
   explicit operator bool() const { return static_cast<bool>(inside); }
 };
 
-/// The samples low..high of the trilinear interpolant, up to half a sample beyond the outermost. Shares the
-/// scan.
+/// The points at which the trilinear interpolant of the samples lies in low..high, up to half a sample beyond the
+/// outermost samples. Shares the scan.
 LineReading lines_in_window(std::shared_ptr<const voxel::Scene> scan, double low, double high);
 /// The inside of polygons by the even-odd rule, in a picture plane with the axes `right` and `up`, extended
 /// without limit across the plane.
@@ -55,8 +55,8 @@ struct HalfSpace {
 };
 LineReading lines_in_half_spaces(std::vector<HalfSpace> sides);
 
-/// Booleans. The answer is empty if an operand is empty, and if reading a line would cost more than reading
-/// two hundred windows.
+/// Booleans. The answer is empty if an operand is empty, or if reading a line would cost more than reading two
+/// hundred windows.
 LineReading lines_in_both(LineReading a, LineReading b);
 LineReading lines_in_either(LineReading a, LineReading b);
 LineReading lines_without(LineReading a, LineReading b);

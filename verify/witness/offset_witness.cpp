@@ -6,26 +6,26 @@
 //           off a corner the nearest one is the middle of the triangle through the three edges, at most
 //           2/3 D from the corner, so that d is off by at most that. Between voxels' centres, as under a
 //           motion, the kernel interpolates distances at a cell's corners, D / 2 from its middle.
-//           Of an object that is known by whole voxels the surface lies up to h / 2 elsewhere, too.
+//           If only whole voxels of an object are known, its surface may lie up to h / 2 elsewhere, too.
 //   mesh    The surface's triangles have vertices within c / 1000 of the surface and are thinned by at most
 //           c / 50. Between vertices they lie within c / 16 of it where distances are linear; elsewhere
-// edges are at most sqrt(3) c / 4, so that a point is within c / 4 of a vertex (Jung), and distances change
-// by at most the distance between points. The bound that is used is c, because triangles between levels are
-// longer.
+//           edges are at most sqrt(3) c / 4, so that a point is within c / 4 of a vertex (Jung), and distances
+//           change by at most the distance between points. The bound that is used is c, because triangles
+//           between levels are longer.
 //   witness An edge between voxels' centres meets the operand's surface between a place that is certainly
 //           inside and one that is certainly outside. The places between, h / 8 apart, are all taken. Any
 //           point of the surface is within 2/3 D of such an edge's crossing, as above.
 //   thin    A wall or gap that passes between voxels' centres has no such edge. The mesh kernel has it, and its
-//           operand's triangles that are farther than 5/6 of that from all crossings propose places. A place
-//           counts where the operand's witness has the surface within half a voxel along the normal: at the
-//           scan's samples, not at voxels. Points of a triangle are within 1/6 of the same length of a proposed
-//           one, so no surface is farther from both kinds of places than allowed. There the mesh kernel must
+//           operand's triangles that are farther than 5/6 of own_error_mm() from all crossings propose places. A
+//           place counts where the operand's witness has the surface within half a voxel along the normal: at the
+//           scan's samples, not at voxels. Points of a triangle are within 1/6 of own_error_mm() of a proposed
+//           place, so no surface is farther from both kinds of places than allowed. There the mesh kernel must
 //           have the wall, and the voxel kernel, which resampled it away, may answer either.
 // On the mean over the surface (offset_allowance_mm):
 //   voxels  On a plane a point is within D / sqrt(12) of a point that is measured to, on the mean of squares
 //           within a third of that squared: D^2 / 36. That lengthens d by D^2 / 72 (1 / d + 1 / r), r the
 //           radius with which the operand bends; three voxels at least, below which nothing is resolved.
-//           Of whole voxels an offset takes those that stick out farthest, up to h / 2.
+//           If only whole voxels are known, an offset follows those that stick out farthest, up to h / 2.
 //   mesh    Chords: a third of the kernel's tolerance, c^2 / (4 b), and the two shares of c above.
 //   edges   Across an operand's edge with an exterior angle t the offset is a sector of a ball. A cell cuts
 //           the edge off: with u and v how far its two crossings lie from the voxel's centre the sector's
@@ -266,7 +266,7 @@ SurfacePlaces thin_places_of(const OffsetOperand& operand, const std::vector<glm
       const glm::dvec3 across = glm::cross(corners_mm[1] - corners_mm[0], corners_mm[2] - corners_mm[0]);
       const double length = glm::length(across);
       if (!(length > 0.0)) continue;
-      // A point of a part is within 2/3 of its longest edge of its centroid.
+      // Each point of a part lies within 2/3 of the part's longest edge of the part's centroid.
       for_parts(corners_mm, 1.5 * (1.0 - thin_share) * error_mm, [&](const glm::dvec3& p_mm) {
         const bool is_here =
             glm::all(glm::greaterThan(p_mm, world.low_mm)) && glm::all(glm::lessThan(p_mm, world.high_mm));

@@ -4,8 +4,8 @@
 //   smooth    Each of 2 n steps adds up the coordinates of some neighbours, six on average and rarely over
 //             thirty: 32 roundings of numbers as large as the largest coordinate. Steps in and out leave
 //             waves nearly as they were or take them off, so that roundings add up and do not grow.
-// decimate The largest requested error. The step measures both surfaces at samples and undoes what lies
-// farther off. Between the samples a right answer may lie somewhat farther, which is a WARN.
+//   decimate  The largest requested error. The step measures both surfaces at samples and undoes what lies
+//             farther off. Between the samples a right answer may lie somewhat farther, which is a WARN.
 #include "verify/witness/reshaped_witness.h"
 
 #include <algorithm>

@@ -28,9 +28,9 @@ struct ReshapedSurface {
 /// A kernel's answer fails beyond this multiple of the reach, as all comparisons do (add_comparison()).
 inline constexpr double reach_doubt = 2.0;
 
-/// The witness that reads a point. If it is set, the surface only serves expected_surface(). If not, a
-/// point within reach_doubt times the reach is near the surface; any other point is inside if a ray crosses
-/// the surface an odd number of times.
+/// `sides` reads a point. If it is set, `expected` only serves expected_surface(). If it is not set, a point within
+/// reach_doubt times the reach is near the surface; any other point is inside if a ray crosses the surface an odd
+/// number of times.
 struct Reshaped {
   ReshapedSurface expected;
   Witness sides = {};
@@ -41,9 +41,8 @@ struct Reshaped {
 /// this witness. Cost of a reading: some triangles of the surface.
 Witness witness_of_reshaped(std::function<Reshaped()> make);
 
-/// The part of the object in a box. A reshaped witness stays one, with the surface that the step made, so
-/// an object that ends at its universe's border is judged like any other. Any other witness becomes both()
-/// with the box.
+/// The part of the object in a box. A reshaped witness stays reshaped and keeps the surface that the step made, so an
+/// object that ends at its universe's border is judged like any other. Any other witness becomes both() with the box.
 Witness cut_by_box(const Witness& whole, const voxel::Box& box);
 
 /// Whether a witness is a reshaped one, and not a Boolean or a motion of others.

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// A point is the scan's if its nearest point on the scan, the point itself and its distance are within every limit by
-// more than the border's width; it is the object's if it is beyond one of them. Each limit has a slack: the largest
-// deviation of a right answer. The scan's side of a point follows from the solid angle under which the point sees the
-// scan. Of the full angle that is at least half inside a scan of crowns, and at most none outside, seen from above the
-// scan's border. In between, as inside a flat scan, the normals of the triangle's corners decide, interpolated at the
-// nearest point. Where that normal is nearly square to the line to the point, both sides are allowed.
+// The scan decides a point if its nearest point on the scan, the point itself and its distance are within every limit
+// by more than the border's width. The object decides it if it is beyond one of the limits. Each limit has a slack:
+// the largest deviation of a right answer. The scan's side of a point follows from the solid angle under which the
+// point sees the scan. As a share of the full angle it is at least a half inside a scan of crowns, and at most zero
+// outside, above the scan's border. In between, as inside a flat scan, the normals of the triangle's corners decide,
+// interpolated at the nearest point. Where that normal is nearly perpendicular to the line to the point, both sides
+// are allowed.
 #include "verify/witness/scan_blend_witness.h"
 
 #include <algorithm>
@@ -80,7 +81,7 @@ class SeenShare {
     return cluster;
   }
 
-  /// Of a triangle about the origin, by the tangent of half of it (Euler, 1781).
+  /// The solid angle under which the origin sees a triangle, by the tangent of half of the angle (Euler, 1781).
   static double solid_angle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
     return 2.0 * std::atan2(glm::dot(a, glm::cross(b, c)),
@@ -113,7 +114,7 @@ class ScanBlendReader {
     if (least > asked_.blend_mm + slack) return {of_scan, of_scan, of_scan.near ? 2 : 0};
     const Reading object = of_object(p_mm, slack);
     if (object.mesh == of_scan) return object;
-    // Mixed distances lie between both: no surface is near where both decide alike.
+    // Mixed distances lie between those of the scan and the object: no surface is near where both have the same side.
     return {on_surface, on_surface, 2};
   }
 
@@ -126,8 +127,8 @@ class ScanBlendReader {
     return through(asked_.scan.faces[foot.face], foot.weights, values);
   }
 
-  /// Weighted by area and summed over all triangles that share a corner with those at a point, so that small
-  /// triangles that noise turned over do not count.
+  /// Computes the normals at the points: sums, weighted by area, over all triangles that share a corner with a
+  /// triangle at the point. So small triangles that noise turned over do not count.
   void find_normals() {
     const std::vector<glm::dvec3>& points = asked_.scan.points_mm;
     std::vector<glm::dvec3> own(points.size(), glm::dvec3(0.0));
@@ -142,7 +143,7 @@ class ScanBlendReader {
     add(normals_, [&](const auto& face) { return own[face[0]] + own[face[1]] + own[face[2]]; });
   }
 
-  /// Edges of one triangle only.
+  /// Collects the edges that only one triangle has.
   void find_border() {
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> count;
     for (const auto& face : asked_.scan.faces)
@@ -159,7 +160,7 @@ class ScanBlendReader {
     border_ = BoxGrid(boxes, asked_.blend_mm);
   }
 
-  /// At most the width of two borders.
+  /// The distance to the scan's border, at most twice `blend_mm`.
   double border_distance_mm(const glm::dvec3& p_mm) const {
     const double most = 2.0 * asked_.blend_mm;
     double least = most;

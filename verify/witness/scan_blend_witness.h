@@ -9,9 +9,9 @@
 
 namespace octotomy::verify {
 
-/// The numbers of a step that replaces crowns by those of a scan, as brep::ScanBlendOptions has them, LPS mm.
+/// The parameters of a step that replaces crowns by those of a scan, as in brep::ScanBlendOptions; LPS.
 struct WitnessedScan {
-  brep::Triangles scan;  ///< open, wound outward, where it was laid
+  brep::Triangles scan;  ///< open, wound outward, in its place on the object
   glm::dvec3 to_roots{0, 0, 1};
   double tips_mm = 0.0, depth_mm = 0.0, blend_mm = 1.0, reach_mm = 1.0;
   std::vector<glm::dvec3> about_mm = {};
@@ -25,7 +25,7 @@ struct WitnessedScan {
 /// the object has no witness. Cost of a reading: some triangles, and the object's reading where it counts.
 Witness witness_of_scan_blend(Witness object, WitnessedScan asked);
 
-/// Whether a witness is one of these, and not a Boolean or a motion of others.
+/// Whether a witness is that of a scan blend, and not a Boolean or a motion of others.
 bool is_scan_blend(const Witness& witness);
 
 }  // namespace octotomy::verify

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // A point is `near` where its value changes sign within near_mm, in the plane or across it:
-// in the plane A value is a distance, or a weighted mean of two, and changes by at most the distance between
-// points.
+//   in the plane  A value is a distance, or a weighted mean of two, and changes by at most the distance
+//                 between points.
 //   across        The value is read near_mm before and behind the point as well, because it jumps halfway
 //                 between slices and at both ends of the stack.
 // near_mm is the width of contours, and the rounding of coordinates after several motions.
@@ -75,7 +75,7 @@ class Outline {
   struct Side {
     glm::dvec2 from, to;
   };
-  /// The box of sides that follow each other, which most points are far from.
+  /// Successive sides with their box. Most points are far from most boxes.
   struct Run {
     glm::dvec2 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
   };
@@ -122,7 +122,7 @@ class SliceWitness {
     const glm::dvec2 p(glm::dot(p_mm, right_), glm::dot(p_mm, up_));
     const double at_mm = glm::dot(p_mm, look_);
     const double most_mm = near_mm + mesh_within_mm_;
-    // Between outlines the interpolated one lies within the box of both.
+    // Between two slices the interpolated outline lies within the box of both outlines.
     if (glm::any(glm::lessThan(p, low_ - most_mm)) || glm::any(glm::greaterThan(p, high_ + most_mm)) ||
         at_mm < begin_mm_ - most_mm || at_mm > end_mm_ + most_mm)
       return {certainly_out, certainly_out, 0};

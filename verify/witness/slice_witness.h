@@ -12,7 +12,7 @@ namespace octotomy::verify {
 struct DrawnStack {
   struct Slice {
     double position_mm = 0.0;                          ///< p . look for the points p of its plane
-    std::vector<std::vector<glm::dvec2>> polygons_mm;  ///< (p . right, p . up); without any, it is empty
+    std::vector<std::vector<glm::dvec2>> polygons_mm;  ///< (p . right, p . up); none: the slice is empty
   };
   glm::dvec3 look{0.0, 1.0, 0.0}, up{0.0, 0.0, 1.0}, right{1.0, 0.0, 0.0};
   std::vector<Slice> slices;  ///< in ascending order

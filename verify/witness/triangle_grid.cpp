@@ -62,9 +62,9 @@ bool crosses(const glm::dvec3& p, glm::dvec3 a, glm::dvec3 b) {
   return p.z < a.z + (p.y - a.y) / (b.y - a.y) * (b.z - a.z);
 }
 
-/// A distance to a box of triangles beyond which none of them is computed to be within `mm`. Coordinates
-/// and numbers computed from them are accurate to about 2^-50 of the largest; boxes lie within a cell's
-/// length of the point's distance to them.
+/// A box of triangles at this distance or more has no triangle whose computed distance is within `mm`. Coordinates
+/// and numbers computed from them are accurate to about 2^-50 of the largest; boxes lie within a cell's length of the
+/// point's distance to them.
 double surely_beyond_mm(double mm, const glm::dvec3& p_mm) {
   return mm + 0x1p-40 * (mm + 1.0 + std::abs(p_mm.x) + std::abs(p_mm.y) + std::abs(p_mm.z));
 }
@@ -83,7 +83,7 @@ std::vector<BoxGrid::Box> boxes_of(const brep::Triangles& triangles) {
   return boxes;
 }
 
-/// Their projections along x, as boxes without an extent along it.
+/// The boxes' projections along x, as boxes without an extent along x.
 std::vector<BoxGrid::Box> projected(std::vector<BoxGrid::Box> boxes) {
   for (BoxGrid::Box& box : boxes) box.low_mm.x = box.high_mm.x = 0.0;
   return boxes;

@@ -30,8 +30,7 @@ class BoxGrid {
   bool has(const glm::ivec3& cell) const;
   /// The distance of a point to a cell, up to rounding.
   double distance_mm(const glm::ivec3& cell, const glm::dvec3& p_mm) const;
-  /// Calls `visit` with the number of each box that overlaps a cell of the grid. Stops where that returns
-  /// true.
+  /// Calls `visit` with the number of each box that overlaps a cell of the grid. Stops when `visit` returns true.
   template <typename Visit>
   bool any_in(const glm::ivec3& cell, const Visit& visit) const {
     const std::size_t i = index(cell);

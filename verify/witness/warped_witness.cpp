@@ -169,7 +169,7 @@ ReshapedSurface surface_warped(const brep::Triangles& still, const NodeMotion& m
   brep::Triangles moved = still;
   tbb::parallel_for(std::size_t{0}, moved.points_mm.size(),
                     [&](std::size_t i) { moved.points_mm[i] += motion.displacement_mm(still.points_mm[i]); });
-  // A share of a corner is rounded by some roundings of coordinates over an element's height.
+  // The error of a corner's share is some roundings of coordinates, divided by the element's height.
   double farthest_mm = 1.0;
   for (const glm::dvec3& p_mm : moved.points_mm) farthest_mm = std::max(farthest_mm, glm::length(p_mm));
   constexpr double shares_of_flat_elements = 1e4;

@@ -18,11 +18,10 @@
 // plan with its own code.
 namespace octotomy::verify {
 
-/// The window low..high of a scan, both bounds included. The mesh kernel's surface lies in the scan's own
-/// cells, with vertices where samples interpolated along edges reach a bound, both bounds on an edge from below
-/// to above; the voxel kernel interpolates
-/// trilinearly between the scan's samples, and rounds to a multiple of `step` at the centres of the
-/// universe's voxels: its grey octree keeps the scan (GreyOctree::with_scan()). Shares the scan.
+/// The window low..high of a scan, both bounds included. The mesh kernel's surface lies in the scan's own cells. Its
+/// vertices lie where samples interpolated along an edge reach a bound; an edge from below the window to above it has
+/// two. The voxel kernel interpolates trilinearly between the scan's samples, and rounds to a multiple of `step` at
+/// the centres of the universe's voxels: its grey octree keeps the scan (GreyOctree::with_scan()). Shares the scan.
 Witness witness_of_window(std::shared_ptr<const voxel::Scene> scan, double low, double high,
                           const voxel::Universe& universe, double step = 1.0);
 
@@ -61,8 +60,8 @@ Witness with_voxels_within(Witness tight, double by_mm);
 /// Some of the object's connected parts. For a point inside the object both answers are allowed, because its
 /// part may not be chosen.
 Witness witness_of_parts(Witness whole);
-/// The connected parts that each kernel chose, the places of necks that the plan keeps or cuts and of those
-/// that it keeps (LPS millimetres), and the spacing of the scan's samples.
+/// The connected parts that each kernel chose. `decided_mm`: the necks that the plan keeps or cuts; `kept_mm`: those
+/// that it keeps; LPS millimetres. `sample_mm`: the spacing of the scan's samples.
 struct ChosenParts {
   voxel::Octree voxels;
   brep::Solid mesh;

@@ -272,7 +272,7 @@ void add_archive_options(CLI::App& verb, ArchiveText& text) {
           "", "title"));
   verb.add_option("--certificate", text.tls.certificate, "This side's TLS certificate, PEM")
       ->check(CLI::ExistingFile);
-  verb.add_option("--key", text.tls.key, "Its private key, PEM")->check(CLI::ExistingFile);
+  verb.add_option("--key", text.tls.key, "The certificate's private key, PEM")->check(CLI::ExistingFile);
   verb.add_option("--authorities", text.tls.authorities,
                   "Certificates, PEM, one of which must have signed the other side's certificate. Default: "
                   "the system's; a receiver without this option accepts every client")
@@ -314,7 +314,7 @@ void add_archive_verbs(Program& program) {
   receives.add_option("-o,--out", got->out, "The folder");
   receives.add_option("--from", got->address, "http:// or https:// of a DICOMweb service");
   receives.add_option("--study", got->study, "The study to fetch, its unique identifier");
-  receives.add_option("--series", got->series, "Only this series of it");
+  receives.add_option("--series", got->series, "Only this series of the study");
   receives.add_option("--instance", got->instance, "Only this instance of the series");
   receives.add_option("--find", got->find,
                       "Lists studies: KEY=VALUE, for example PatientID=17; may be repeated");

@@ -271,7 +271,7 @@ class ShareMaker {
       return of_objects(read.objects, read.scene.identity);
     }
     ConvertText words = text_;
-    words.scan.series.clear();  // that of the input, not of the source
+    words.scan.series.clear();  // the input's series, not the source's
     source = source_around(program_, words, scene.identity, corners_of(scene.lattice), "segmentation",
                            timings_, findings_);
     Shares shares{scene.lattice};

@@ -51,7 +51,7 @@ void add_words(const Json& value, std::string& words) {
     for (const Json& inside : value) add_words(inside, words);
 }
 
-/// Refuses a plan in whose texts something stands that names the source's patient, as in a step's name.
+/// Refuses a plan with a text, such as a step's name, that names the source's patient or study.
 void need_unnamed(const Json& plan, const voxel::DicomSource& source, const fs::path& path) {
   std::string words;
   add_words(plan, words);
@@ -107,7 +107,7 @@ void need_result(const fs::path& result) {
     refuse(result.string(), "holds no result.json: give a folder that octotomy run wrote, as --pictures");
 }
 
-/// Refuses words that do not fit a plan.
+/// Refuses options that do not fit a plan.
 void need_plan_words(const ConvertText& text) {
   if (text.out.has_extension())
     refuse(text.out.string(), "a plan and its pictures are several DICOM objects: give a folder");

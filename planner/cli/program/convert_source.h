@@ -47,7 +47,7 @@ std::vector<glm::dvec3> corners_of(const voxel::Lattice& lattice);
 void need_on_source(const ConvertText& text, const voxel::DicomSource& source,
                     const std::vector<glm::dvec3>& points_mm, std::vector<std::string>& findings);
 
-/// Adds findings and what was done to the identity to the JSON; prints findings as warnings.
+/// Adds findings, and the changes of the identity, to the JSON; prints findings as warnings.
 void tell(const ConvertText& text, const std::vector<std::string>& findings, Json& json);
 
 /// The labels of a label map as objects on its own lattice, with their names.
@@ -75,10 +75,10 @@ int convert_fractions(const Program& program, const ConvertText& text);
 int convert_model(const Program& program, const ConvertText& text);
 /// Writes a PDF as an encapsulated DICOM document.
 int convert_report(const Program& program, const ConvertText& text);
-/// Writes a plan, and of --pictures its views, as DICOM objects of one study.
+/// Writes a plan, and the views in the folder of --pictures, as DICOM objects of one study.
 int convert_plan(const Program& program, const ConvertText& text);
-/// Writes an archive's document or picture as the file that it was, byte for byte; of a picture the pixels. None if the
-/// input or the output is of another kind.
+/// Writes an archive's document as the original file, byte for byte, or an archive's picture from its pixels. None if
+/// the input or the output is of another kind.
 std::optional<int> unpack_archived(const Program& program, const ConvertText& text);
 /// Describes an archive's document or picture; none if the file is another kind.
 std::optional<int> info_of_archived(const Program& program, const std::filesystem::path& path);

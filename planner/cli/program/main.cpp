@@ -135,7 +135,7 @@ class Watch {
       const bool late = is_processor_time_over ||
                         (program.time_limit_s &&
                          std::chrono::duration<double>(Clock::now() - start).count() > *program.time_limit_s);
-      if (interrupts > 1) end_now("interrupted twice: ended at once, what was unfinished is removed");
+      if (interrupts > 1) end_now("interrupted twice: ended at once, unfinished files are removed");
       if (!late && interrupts == 0) continue;
       program.stop.request_stop();
       if (!asked) asked = Clock::now();
@@ -204,7 +204,7 @@ int run_chosen(Program& program) {
 void need_named_outputs(const CLI::App& verb) {
   for (const CLI::Option* option : verb.get_options())
     if (option->check_sname("o") && option->count() > 0 && option->results().back().empty())
-      throw CLI::ValidationError("-o", "has no name: say which file or folder to write");
+      throw CLI::ValidationError("-o", "has no name: give the file or folder to write");
   for (const CLI::App* chosen : verb.get_subcommands()) need_named_outputs(*chosen);
 }
 

@@ -333,7 +333,7 @@ class OperationRun {
   std::vector<std::string> beyond_;  ///< meshes that the octree's universe cuts off
   std::vector<Object> inputs_;
   Objects objects_;
-  std::shared_ptr<void> settled_;  ///< the operation's value with what it found out; empty: as typed
+  std::shared_ptr<void> settled_;  ///< the operation's value after settle(); empty: as typed
   nlohmann::ordered_json settled_details_ = nlohmann::ordered_json::object();
 };
 

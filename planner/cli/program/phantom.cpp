@@ -131,7 +131,7 @@ bool is_tooth_scan(const PhantomText& text) {
   return text.kind == "upper_teeth" || text.kind == "lower_teeth";
 }
 
-/// A scan of teeth, and in the JSON what tooth_scan needs to lay it onto the head phantom.
+/// Writes a scan of teeth. The JSON has the data that tooth_scan needs to place the scan on the head phantom.
 int teeth(const Program& program, const PhantomText& text) {
   need_mesh_extension(text.out);
   Timings timings;

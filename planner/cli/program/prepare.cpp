@@ -28,7 +28,7 @@ struct PrepareText {
   ScanIn scan;
 };
 
-/// The operations that make a scan of another one alone; others take objects, too, and are steps of plans only.
+/// The operations that make a scan from another scan alone. Those that also take objects are steps of plans only.
 std::vector<const Operation*> known_steps() {
   std::vector<const Operation*> known;
   for (const Operation& operation : operations())

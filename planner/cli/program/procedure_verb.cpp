@@ -115,7 +115,7 @@ ProcedureInput input_of(const ProcedureText& text) {
   return input;
 }
 
-/// The procedure's plan, alone or after another one's; sets `carried` to the landmarks that went with a piece.
+/// The procedure's plan, alone or after another one's; sets `carried` to the landmarks that moved with a piece.
 Json planned(Program& program, const ProcedureText& text, std::vector<std::string>& carried) {
   const Procedure procedure = with_options(read_procedure(text.name), text.options);
   const ProcedureInput input = input_of(text);

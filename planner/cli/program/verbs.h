@@ -3,7 +3,7 @@
 
 #include "planner/cli/verb/verb.h"
 
-// Each of these adds the verbs of its file.
+// Each function adds the verbs of one source file.
 namespace octotomy::planner::cli {
 
 /// A verb for every operation of the table that works on files: a plan of one step. Its options, their

@@ -141,7 +141,7 @@ std::optional<bool> decoder_is_confined() {
   }
 }
 
-/// What a fault means here, as a line.
+/// The consequence of a fault on this system, as a line.
 std::string meaning_of(const KnownFault& fault, const Json& versions, bool is_confined) {
   std::string text = fault.library;
   if (versions.contains(fault.library)) text += " " + versions[fault.library].get<std::string>();

@@ -26,7 +26,7 @@ std::string help_of(const Field& field, void* fresh) {
   std::string text = field.says;
   if (const std::string unit = field.unit(); !unit.empty()) text += " In " + unit + ".";
   if (field.is_required || is_flag(field, fresh)) return text;
-  // The default of a field that is read on a condition, too.
+  // Fields that are read on a condition have a default, too.
   Field always = field;
   if (const auto* conditional = field.slot.target<ConditionalSlot>()) always.slot = conditional->slot;
   const auto printed = print_fields({always}, fresh);

@@ -11,7 +11,7 @@ namespace octotomy::planner::cli {
 /// Adds --frame and --unit to a verb, unless it already has an option of that name.
 void add_mesh_options(CLI::App& verb);
 
-/// Passes the words of the verb's --frame and --unit to choose_mesh_reading(). Throws as that does.
+/// Passes the words of the verb's --frame and --unit to choose_mesh_reading(). Throws as choose_mesh_reading() does.
 void choose_mesh_options(const CLI::App& verb);
 
 }  // namespace octotomy::planner::cli

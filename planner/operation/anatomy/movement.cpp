@@ -58,7 +58,8 @@ bool nearer(const voxel::Octree& piece, const std::optional<voxel::Expression>& 
     };
     const double of_piece = in_reach(voxel::Expression(piece), at_mm),
                  of_others = staying ? in_reach(*staying, still_mm) : 0.0;
-    // On a cut both have about half. The landmark then moves with the piece, which the cut was planned for.
+    // At a cut, the piece and the bone that stays have about half each. The landmark then moves with the piece, for
+    // which the cut was planned.
     if (of_piece > 0.0 || of_others > 0.0) return of_piece > 0.5 * of_others;
   }
   return false;

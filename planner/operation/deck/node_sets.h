@@ -16,7 +16,7 @@ void check_set_names(const std::vector<std::string>& words);
 /// Sets of nodes of the elements' surface, in LPS millimetres, each as NAME=WHERE:
 ///   x,y,z          the node nearest to a point, as x,y,z,0
 ///   x,y,z,r        the nodes within r mm of a point
-///   x,y,z,u,v,w the nodes on a plane through a point with a normal, as after a saw cut
+///   x,y,z,u,v,w    the nodes on a plane through a point with a normal, as after a saw cut
 ///   TEXT           the node nearest to a landmark of that name, or the nodes on the surface of a mesh file
 /// On a plane or surface means nearer than a quarter of the mean side of the elements' surface triangles. Where
 /// triangles of the elements' surface lie along a plane, within 30 degrees, only their nodes are on it: other

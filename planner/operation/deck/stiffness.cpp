@@ -25,7 +25,7 @@ std::vector<Field> stiffness_fields() {
                 "voxels at the surface hold bone and its surroundings; 0: every point has its own.")
               .from(0.0)
               .to(20.0),
-          field("poisson_ratio", &Stiffness::poisson_ratio, "Poisson's ratio of them.")
+          field("poisson_ratio", &Stiffness::poisson_ratio, "Poisson's ratio of the materials.")
               .from(0.0)
               .to(0.499)
               .called("poisson")};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tetrahedra of one closed mesh, or of octrees: the verb of files, the step of objects. The step `deck` fills several
-// objects together, with materials of their scan and motions of the plan.
+// Tetrahedra of one closed mesh, or of octrees. The verb reads files, the step fills objects. The step `deck` fills
+// several objects together, with materials of their scan and motions of the plan.
 #include <algorithm>
 #include <cmath>
 
@@ -48,8 +48,8 @@ struct Tet {
   int order = 1;
   std::filesystem::path scan;
   Stiffness stiffness;  ///< of that scan
-  bool of_voxels =
-      false;  ///< a step fills the object's octree and not its mesh, as the verb does for an .octree file
+  /// A step fills the object's octree instead of its mesh, as the verb does for an .octree file.
+  bool of_voxels = false;
 
   std::vector<std::string> inputs() const {
     std::vector<std::string> names{file.name};
@@ -175,7 +175,7 @@ struct CheckedMesh {
   brep::Health health;
 };
 
-/// Appends findings on the mending.
+/// Reads and checks the mesh. Appends findings on the mending.
 CheckedMesh checked_mesh(const FileBench& bench, const Tet& asked, std::vector<std::string>& findings) {
   CheckedMesh surface;
   if (asked.mend) {

@@ -48,8 +48,7 @@ std::string place(const voxel::View& view, const glm::dvec2& p, double position_
   return "near (" + hundredths(at.x) + ", " + hundredths(at.y) + ", " + hundredths(at.z) + ") mm";
 }
 
-/// Takes contours that are drawn again in their plane once: by the even-odd rule they would delete each
-/// other.
+/// Keeps one of several equal contours of a plane: by the even-odd rule they would delete each other.
 void take_once(voxel::SliceMask& mask, const std::string& where, std::vector<std::string>& findings) {
   std::size_t count = 0;
   std::string first;
@@ -271,7 +270,7 @@ std::optional<std::string> slices_without_contours(const voxel::SliceMask& mask,
 std::optional<std::string> cut_at_cube(const voxel::SliceMask& mask, const voxel::Universe& universe,
                                        const std::string& where) {
   const Volumes volumes = volumes_of(mask, universe.lattice());
-  // Less than a voxel is what decimals round at the border.
+  // Less than a voxel comes from rounding decimals at the border.
   const glm::dvec3 voxel_mm = universe.lattice().spacing_mm();
   if (!(volumes.beyond_mm3 > voxel_mm.x * voxel_mm.y * voxel_mm.z)) return std::nullopt;
   return "FAIL: " + where + ": is cut at the border of the octree's cube: " + share_of(volumes) +

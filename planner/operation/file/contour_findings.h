@@ -9,7 +9,7 @@
 #include "voxel/solid/slice_mask.h"
 #include "voxel/space/lattice.h"
 
-// What is doubtful about contours on slices, in sentences. `where` begins each.
+// Findings on contours on slices, in sentences that begin with `where`.
 namespace octotomy::planner {
 
 /// The largest error of a plane's position that rounding to a decimal string causes, as a share of the least
@@ -18,8 +18,8 @@ constexpr double off_plane_mm() {
   return 0.01;
 }
 
-/// Removes contours that repeat another of their plane, as the even-odd rule would delete both, and adds a
-/// line on these, and one on contours that cross another of their plane or themselves.
+/// Removes contours that repeat another one of their plane, because the even-odd rule would delete both. Adds a
+/// finding on these, and one on contours that cross themselves or another one of their plane.
 void add_contour_findings(voxel::SliceMask& mask, const std::string& where,
                           std::vector<std::string>& findings);
 
@@ -38,8 +38,8 @@ std::optional<std::string> beyond_scan(const voxel::SliceMask& mask, const voxel
 std::optional<std::string> slices_without_contours(const voxel::SliceMask& mask, const voxel::Lattice& scan,
                                                    const std::string& where);
 
-/// A line, a FAIL, on contours of which a part lies beyond the cube of the octree that they become, and is
-/// left out: how much. None where all lies within.
+/// A FAIL that states the part of the contours' volume that lies beyond the octree's cube and is left out. None where
+/// all lies within.
 std::optional<std::string> cut_at_cube(const voxel::SliceMask& mask, const voxel::Universe& universe,
                                        const std::string& where);
 

@@ -17,7 +17,7 @@ struct DrawnRegion {
   std::vector<std::string> findings;
 };
 
-/// Lines that approximate a curve are nowhere farther from it.
+/// The largest distance of lines from the curve that they approximate.
 inline constexpr double curve_tolerance_mm = 0.02;
 
 /// VIEW:FILE, or FILE alone of an SVG drawing over a picture. The file is
@@ -28,8 +28,8 @@ inline constexpr double curve_tolerance_mm = 0.02;
 /// Throws std::runtime_error saying what was given, the place in the file and what is expected there.
 DrawnRegion read_drawn_region(const std::string& text);
 
-/// "PICTURE.png:X,Y X,Y X,Y" in pixels from the top left, whole numbers at pixels' centres; a semicolon
-/// begins another polygon. The picture is one that `render` or `slice` wrote. Throws as the former.
+/// "PICTURE.png:X,Y X,Y X,Y" in pixels from the top left, whole numbers at pixels' centres; a semicolon begins
+/// another polygon. The picture is one that `render` or `slice` wrote. Throws as read_drawn_region().
 DrawnRegion region_of_pixels(const std::string& text);
 
 }  // namespace octotomy::planner

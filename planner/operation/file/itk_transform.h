@@ -16,11 +16,12 @@ struct TransformFile {
 };
 
 /// Reads a linear transform: affine, rigid, Euler angles, versor, translation, identity, or a composite of them,
-/// whose last one is applied first. ITK's transforms map a place after the motion to the one before, in LPS, so
-/// the motion is the inverse; Slicer reads them in the same way. A file is text, or HDF5 by its first bytes. Throws std::runtime_error with path, line and
-/// cause: no such header, another kind of transform or a grid, several transforms without a composite, numbers
-/// that are missing or not finite, no inverse, an HDF5 file that is damaged or of a form that Hdf5File refuses.
-/// Source: itk::TxtTransformIO, itk::HDF5TransformIO, itk::MatrixOffsetTransformBase, itk::Euler3DTransform, itk::CompositeTransform.
+/// whose last one is applied first. ITK's transforms map a place after the motion to the one before, in LPS, so the
+/// motion is the inverse; Slicer reads them in the same way. A file is text, or HDF5 by its first bytes. Throws
+/// std::runtime_error with path, line and cause: another header, another kind of transform or a grid, several
+/// transforms without a composite, numbers that are missing or not finite, no inverse, an HDF5 file that is damaged
+/// or of a form that Hdf5File refuses. Source: itk::TxtTransformIO, itk::HDF5TransformIO,
+/// itk::MatrixOffsetTransformBase, itk::Euler3DTransform, itk::CompositeTransform.
 TransformFile read_itk_transform(const std::filesystem::path& path);
 
 /// A file's format: text, .tfm, or HDF5, .h5.
@@ -29,8 +30,8 @@ enum class TransformFormat { Text, Hdf5 };
 /// The text of a .tfm file. Reading it returns the same motion to rounding, 1e-12 mm on a head.
 /// Precondition: the motion has an inverse.
 std::string itk_transform_text(const glm::dmat4& moved_from_still);
-/// The bytes of an .h5 file of the same transform, to the last bit of its numbers. Its parameters have the names without
-/// the s of "Trans" that ITK itself writes and that all of its versions read.
+/// The bytes of an .h5 file of the same transform, with its exact numbers. Its parameters have the names without the
+/// s of "Trans" that ITK itself writes and that all of its versions read.
 std::string itk_transform_hdf5(const glm::dmat4& moved_from_still);
 
 }  // namespace octotomy::planner

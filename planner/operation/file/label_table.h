@@ -14,7 +14,7 @@ namespace octotomy::planner {
 /// The names of labels.
 struct LabelTable {
   std::map<int, std::string> names;
-  std::filesystem::path file;  ///< that has them; empty where there are none
+  std::filesystem::path file;  ///< the file that has the names; empty where there are none
   /// Files beside a label map that look like its table but are none or contradict it, and rows of the table
   /// that name no label, each with the reason; also the encoding of a table that is not UTF-8.
   std::vector<std::string> passed_over = {};

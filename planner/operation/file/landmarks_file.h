@@ -10,15 +10,14 @@
 
 namespace octotomy::planner {
 
-/// Reads named points from JSON: ours,
-///   { "landmarks": [ { "name": "nasion", "point_mm": [0, -90, 30], "weight": 2 }, ... ] }
-/// in LPS millimetres, weights 1 where absent, also as find_landmarks writes them once each "confirmed" is
-/// true; or 3D Slicer's markups (.mrk.json, its control points' labels and positions; points that are not
-/// placed are passed over); or its older .fcsv: a point a line, whose columns, coordinate system and version
-/// the lines with '#' name. Slicer's points are turned to LPS where the file says RAS, and .fcsv where it
-/// says nothing, which then was RAS. Throws std::runtime_error with path and what is wrong: no such list, an
-/// entry without name or three finite numbers, an unknown key, a guess that is not confirmed, a coordinate
-/// system or unit that is not known.
+/// Reads named points from one of three kinds of file. JSON of this program: { "landmarks": [ { "name": "nasion",
+/// "point_mm": [0, -90, 30], "weight": 2 }, ... ] } in LPS millimetres, with the weight 1 where none is stated; also
+/// the file of find_landmarks, once each "confirmed" is true. 3D Slicer's markups (.mrk.json): labels and positions
+/// of the control points that are placed. Slicer's older .fcsv: one point a line; lines with '#' name the columns,
+/// the coordinate system and the version. Slicer's points are converted to LPS if the file states RAS; a .fcsv that
+/// states no system is in RAS. Throws std::runtime_error with path and cause: no such list, an entry without name or
+/// three finite numbers, an unknown key, a guess that is not confirmed, a coordinate system or unit that is not
+/// known.
 std::vector<brep::Landmark> read_landmarks(const std::filesystem::path& path);
 
 /// Whether a file holds landmarks by its extension: .json or .fcsv.

@@ -43,7 +43,7 @@ bool names(const std::string& word, const std::filesystem::path& path) {
   return name == path.string() || name == path.filename().string();
 }
 
-/// The choice for a file: one that names it, else one that names none.
+/// The choice for a file: one that names the file, else one that names no file.
 std::optional<std::string> chosen(const std::vector<std::string>& words, const std::filesystem::path& path) {
   std::optional<std::string> made;
   for (const std::string& word : words)

@@ -8,7 +8,7 @@ namespace octotomy::planner {
 /// A text file's bytes as UTF-8.
 struct DecodedText {
   std::string utf8;      ///< without a byte-order mark
-  std::string encoding;  ///< that is not UTF-8, with what it rests on; else empty
+  std::string encoding;  ///< the encoding if it is not UTF-8, with the evidence for it; else empty
 };
 /// Decodes UTF-16 if there is a byte-order mark, UTF-8 if the bytes are valid, else Latin-1 (ISO 8859-1),
 /// which is an assumption.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Names of the structures are those of the HDF5 File Format Specification, version 3.0, whose sections stand in brackets.
+// Names of the structures are those of the HDF5 File Format Specification, version 3.0, whose sections are in
+// brackets.
 #include "planner/operation/file/read_hdf5.h"
 
 #include <algorithm>

@@ -209,7 +209,7 @@ Slices planes_of(const voxel::Structure& structure, const voxel::View& view, con
   }
   if (worst_mm > off_plane_mm())
     findings.push_back(source + ": points lie up to " + three_figures(worst_mm) +
-                       " mm off their contour's plane: they are taken in it");
+                       " mm off their contour's plane: they are moved into it");
   std::stable_sort(single.begin(), single.end(),
                    [](const auto& a, const auto& b) { return a.position_mm < b.position_mm; });
   Slices planes;
@@ -294,7 +294,7 @@ std::vector<Slices> parts_of(const Slices& planes) {
   return parts;
 }
 
-/// Whether a plane of the other part lies between two of this part that miss no plane between them.
+/// Whether a plane of `other` lies between two neighbouring planes of `part` between which no plane is missing.
 bool interleave(const Slices& part, const Slices& other) {
   const double usual_mm = usual_distance_mm(part);
   for (std::size_t i = 1; i < part.size(); ++i) {

@@ -21,20 +21,19 @@ voxel::Region read_region(const voxel::View& view, const std::filesystem::path& 
 /// "polygons_mm": [...]}, ...]}; "between" may be left out. Slices are put in order. Throws as read_region(),
 /// and what check(SliceMask) refuses.
 ///
-/// Of a DICOM structure set, the region of this name, or of this ROI number where no name or several are it:
-/// its closed contours as polygons of its planes, holes by the even-odd rule. Planes are as far apart as the
-/// set's nearest ones. The region is empty at a plane without a contour; the first and the last plane stand
-/// for half a distance beyond them. A region that the file declares as interpolated, by the type
-/// INTERPOLATED_PLANAR or by slabs as thick as its planes are apart, goes on between its planes. Throws
-/// std::runtime_error if the name is not one of the set's or several have it, or none is given and there are
-/// several; if the region's contours cannot be read, lie in no parallel planes, or lie all in one plane or in
-/// planes within 0.02 mm, which determine no distance.
+/// From a DICOM structure set: the region with this name, or with this ROI number if no region or several have the
+/// name. Its closed contours are polygons of its planes, holes by the even-odd rule. Planes are as far apart as the
+/// set's nearest ones. The region is empty at a plane without a contour; the first and the last plane stand for half
+/// a distance beyond them. A region that the file declares as interpolated, by the type INTERPOLATED_PLANAR or by
+/// slabs as thick as its planes are apart, continues between its planes. Throws std::runtime_error if the name is not
+/// one of the set's or several have it, or none is given and there are several; if the region's contours cannot be
+/// read, lie in no parallel planes, or lie all in one plane or in planes within 0.02 mm, which determine no distance.
 ///
 /// A voxel whose centre lies on a contour, within a millionth of a millimetre, is inside where the region
 /// goes on towards growing u, v or position, so that it counts once among regions that share the contour.
 ///
-/// A contour that is drawn again in its plane, within 0.01 mm, is taken once. Where planes are ten times as
-/// far apart, points up to 0.1 mm off a plane belong to it.
+/// Contours of a plane that are equal within 0.01 mm count once. Points up to 0.1 mm off a plane belong to it if
+/// planes are ten times as far apart.
 voxel::SliceMask read_slices(const std::filesystem::path& path, const std::string& structure = {});
 
 /// As read_slices() above. Adds to `findings` a line on contours that occur twice, and one on contours that

@@ -15,8 +15,8 @@ std::vector<std::string> representation_names();
 
 /// The octree as that representation's file: a line end closes a text. Multivalued codes take several objects of one
 /// universe, numbered from 1 in their order; a voxel of several belongs to the first. Throws std::invalid_argument
-/// for a name that is none, with the nearest, and for several objects of another code; std::length_error if
-/// the universe is too deep for a representation that holds every voxel, with the largest depth.
+/// for an unknown name, with the nearest known one, and for several objects of another code; std::length_error if the
+/// universe is too deep for a representation that holds every voxel, with the largest depth.
 std::string represented(const std::vector<voxel::Octree>& objects, std::string_view name);
 
 /// The inverse. The representation does not state the universe, so the caller passes it. From a multivalued

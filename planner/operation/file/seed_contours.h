@@ -32,17 +32,17 @@ struct SeedContours {
 /// which is possible where seeds there have different samples; and as slice_contours().
 SeedContours contours_at_seeds(const voxel::Scene& scene, const std::vector<glm::dvec3>& seeds_mm);
 
-/// What belongs to the region around a seed: the samples of a window, or those no farther from the seed's own sample
-/// than the tolerance. One of both is set.
+/// The samples that belong to the region around a seed: those of a window, or those no farther from the seed's own
+/// sample than the tolerance. Exactly one of the two is set.
 struct RegionSamples {
   std::optional<SampleWindow> window;
   std::optional<double> tolerance;
 };
 
 /// For each seed, the contour around the connected region of its slice in which it lies, and those of the region's
-/// holes; a region with several seeds appears once. `threshold` is the lower bound, `away_mm` the distance of the seed
-/// from the region's contours. The mask and what is thrown are as of contours_at_seeds(); a seed outside the window is
-/// refused with its sample.
+/// holes; a region with several seeds appears once. `threshold` is the lower bound, `away_mm` the distance of the
+/// seed from the region's contours. The mask and the exceptions are those of contours_at_seeds(); a seed outside the
+/// window is refused with its sample.
 SeedContours contours_around_seeds(const voxel::Scene& scene, const std::vector<glm::dvec3>& seeds_mm,
                                    const RegionSamples& samples);
 

@@ -101,7 +101,7 @@ struct EditedContour {
 /// Of each slice.
 using EditedSlices = std::vector<std::vector<EditedContour>>;
 
-/// One edit of a file: where it stands, and the contours of its slice.
+/// One edit of a file: its place in the file, and the contours of its slice.
 class Edit {
  public:
   Edit(const nlohmann::json& json, std::string where, EditedSlices& slices)

@@ -26,23 +26,23 @@ struct SliceWindow {
 /// Reads POSITION=WINDOW: "30=250:". Throws std::runtime_error with an example.
 SliceWindow parse_slice_window(const std::string& text);
 
-/// Follows contours with separate windows for the slices at these positions; `window` is that of the others,
-/// which have no contours without it. Throws std::runtime_error if no slice is within half a slice's distance
-/// of a position, or two positions are of one slice.
+/// Follows contours with separate windows for the slices at these positions. The other slices use `window`; without
+/// it they have no contours. Throws std::runtime_error if no slice is within half a slice's distance of a position,
+/// or two positions are of one slice.
 voxel::SliceMask slice_contours(const voxel::Scene& scene, const std::optional<SampleWindow>& window,
                                 const std::vector<SliceWindow>& own);
 
 /// What is done to every contour, in this order.
 struct Refinement {
-  double least_area_mm2 = 0.0;           ///< smaller contours go, holes too
+  double least_area_mm2 = 0.0;           ///< smaller contours are removed, holes too
   double thin_mm = 0.0;                  ///< removes points within this distance of a straight piece
   std::optional<std::size_t> harmonics;  ///< smoothed by its lowest ones
   double offset_mm = 0.0;                ///< outward, or inward if below 0; contours that meet are united
 };
 
-/// A contour that thinning or smoothing makes cross itself takes twice the harmonics, and so on, or stays as
-/// it is; `findings` names each. Throws std::runtime_error naming the slice's position if contours cannot be
-/// moved, or if nothing is left of all.
+/// If thinning or smoothing would make a contour cross itself, its harmonics are doubled repeatedly, or it stays
+/// unchanged; `findings` lists each such contour. Throws std::runtime_error naming the slice's position if contours
+/// cannot be moved, or if no contour is left.
 voxel::SliceMask refined(const voxel::SliceMask& mask, const Refinement& refinement,
                          std::vector<std::string>& findings);
 

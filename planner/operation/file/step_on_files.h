@@ -24,7 +24,8 @@ voxel::OctreeFile octree_named(const std::string& name, const FileBench& bench);
 brep::Triangles triangles_named(const std::string& name, const FileBench& bench);
 
 /// Writes a step's file by a verb's function `run`. `object` is the first object that it uses, empty if it uses a
-/// scan; `path` is the file within the result's folder. Scans are those of the plan. If `run` has no answer, its reason becomes a finding, and no file is written.
+/// scan; `path` is the file within the result's folder. Scans are those of the plan. If `run` has no answer, the
+/// reason becomes a finding, and no file is written.
 void write_by_verb(const std::string& object, const std::filesystem::path& path,
                    const std::function<FileAnswer(const FileBench& bench)>& run, const AnswerBench& bench,
                    Exported& made);

@@ -30,7 +30,7 @@ constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 28;
 /// Illustrator counts points; Inkscape changed from 90 in version 0.92.
 struct PixelLength {
   int per_inch = 96;
-  std::string program;  ///< empty where it is none of these
+  std::string program;  ///< empty for any other program
   double mm() const { return 25.4 / per_inch; }
 };
 PixelLength pixel_of(const std::string& text) {

@@ -10,13 +10,13 @@
 
 namespace octotomy::planner {
 
-/// The picture that an SVG file was drawn over: the first image of it.
+/// The picture that an SVG file was drawn over: the file's first image.
 struct SvgPicture {
   std::string link;             ///< as the file states it: a path relative to the file, or data:image/png
   glm::dvec2 shown_units{0.0};  ///< width and height that the file states
-  bool keeps_aspect = true;     ///< it is fitted into them, in their middle
-  glm::dmat3 user_from_shown{
-      1.0};  ///< from a place within its rectangle, in its own units, from the top left
+  bool keeps_aspect = true;     ///< the picture is fitted into `shown_units` and centred there
+  /// From a place within the picture's rectangle, in the rectangle's own units, from the top left.
+  glm::dmat3 user_from_shown{1.0};
   std::size_t line = 0;
 };
 
@@ -25,8 +25,8 @@ using SvgPlacement = std::function<glm::dmat3(double mm_per_unit, const std::opt
 
 struct SvgOutlines {
   std::vector<std::vector<glm::dvec2>> polygons_mm;
-  std::vector<std::string>
-      findings;  ///< what was left out, and the length that a user unit is assumed to have
+  /// What was left out, and the length that a user unit is assumed to have.
+  std::vector<std::string> findings;
 };
 
 /// The closed outlines of an SVG file: path, polygon, polyline, rect, circle and ellipse with their

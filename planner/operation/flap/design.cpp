@@ -128,8 +128,8 @@ std::vector<FlapSegment> flap_segments(const FlapPlan& plan) {
   const std::vector<glm::dvec3> along = directions_of(plan);
   const std::vector<FlapPlane> cuts = cuts_of(plan, along);
 
-  glm::dvec3 across =
-      square_to(along[0], plan.facing, "'facing' is along the first segment: give a direction square to it");
+  glm::dvec3 across = square_to(along[0], plan.facing,
+                                "'facing' is along the first segment: give a direction perpendicular to it");
   across = glm::dvec3(glm::rotate(glm::dmat4(1.0), glm::radians(plan.roll_deg), along[0]) *
                       glm::dvec4(across, 0.0));
   std::vector<FlapSegment> segments;

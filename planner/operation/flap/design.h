@@ -30,7 +30,7 @@ struct FlapPlane {
 
 /// One segment, in order along the curve and along the donor.
 struct FlapSegment {
-  FlapPlane start, end;                             ///< its cuts where it is placed
+  FlapPlane start, end;                             ///< its cuts at its place in the patient
   glm::dvec3 along{0.0};                            ///< unit, from start to end
   glm::dvec3 across{0.0};                           ///< unit, perpendicular to `along`: the direction of the
                                                     ///< donor's face

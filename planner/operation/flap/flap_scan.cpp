@@ -27,7 +27,7 @@ void check(const FlapScan& step, const FieldLocation& place) {
     place.at("segment").refuse("is beyond the curve, which has " + std::to_string(count) + " segments");
 }
 
-/// The same beyond the outer cuts of the uncut bone, on which a guide sits.
+/// Samples up to this distance beyond the outer cuts of the uncut bone are included, because a guide sits there.
 constexpr double beyond_uncut_mm = 25.0;
 
 /// The box, in the donor's scan, of the bone from one segment to another and its continuation.

@@ -40,14 +40,14 @@ glm::dvec3 square_at(const BeamSegment& piece, double radians) {
   return std::cos(radians) * piece.across + std::sin(radians) * glm::cross(piece.along, piece.across);
 }
 
-/// The slab of one thickness about a cut.
+/// The slab of the thickness `slab_mm` about a cut.
 BeamSegment slab_about(const FlapPlane& cut, const glm::dvec3& across, double slab_mm) {
   const glm::dvec3 aside = glm::normalize(across - cut.normal * glm::dot(cut.normal, across));
   const glm::dvec3 half = 0.5 * slab_mm * cut.normal;
   return {{cut.point_mm - half, cut.normal}, {cut.point_mm + half, cut.normal}, cut.normal, aside};
 }
 
-/// The motion from where a segment is placed to where its uncut bone lies; none: the space is not there.
+/// The motion from where a segment is placed to where its uncut bone lies; none: the space is not on the uncut bone.
 std::optional<glm::dmat4> uncut_from_placed(const FlapSpace& space,
                                             const std::vector<FlapSegment>& segments) {
   if (!space.uncut_at) return std::nullopt;

@@ -8,12 +8,12 @@
 
 #include "planner/operation/table/scope.h"
 
-// What guides, screws and motions read of a step that made the space of a free flap.
+// The facts that guides, screws and motions read from a step that made the space of a free flap.
 namespace octotomy::planner {
 
 class Action;
 
-/// A cut at an end of such a space, LPS. Points p of the cut: dot(away, p - point_mm) = 0.
+/// A cut at an end of a flap's space, LPS. Points p of the cut: dot(away, p - point_mm) = 0.
 struct FlapCut {
   glm::dvec3 point_mm{0.0};      ///< on the axis of the flap or donor
   glm::dvec3 away{0, 0, 1};      ///< unit: towards the side of the saw's kerf

@@ -60,7 +60,7 @@ class Face {
   void place(const std::string& name, const glm::dvec3& at) { found_.places[name + side_.first] = at; }
   void doubt(const std::string& name, double mm) { found_.doubt_mm[name + side_.first] = mm; }
   void miss(const std::string& name, const std::string& why) { found_.missing[name + side_.first] = why; }
-  /// How far back the bone begins, `out` to this side.
+  /// The backward coordinate where bone begins, at `out_mm` to this side.
   double front(double out_mm, int row) const {
     return maps_.front.at(maps_.front.column(side_.second * out_mm), row);
   }

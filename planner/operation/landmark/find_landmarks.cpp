@@ -26,7 +26,7 @@ namespace {
 /// A landmark's entry in the definitions of this folder.
 struct Meaning {
   std::string name, says;
-  double least_mm = 0.0;  ///< least error of a rule, however sharp, against human observers
+  double least_mm = 0.0;  ///< the least error that any rule has against human observers
 };
 constexpr auto members_of(const Meaning&) {
   return std::tuple(member("name", &Meaning::name), member("says", &Meaning::says),

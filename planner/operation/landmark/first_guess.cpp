@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 The patient's bone is parted from what lies beside it.
+// 1 The patient's bone is separated from the objects beside it.
 // 2 Its mid-plane gives left and right. Up follows from nose and orbits, found at several pitches.
-// 3 All rules are applied once to fine maps, then with everything that they depend on changed, to coarse
-//   ones.
-// 4 How far the answers scatter, with each rule's own doubt, is the interval; what scatters widely is
-//   missing.
+// 3 All rules are applied once to fine maps. They are then applied to coarse maps, with everything changed that they
+//   depend on.
+// 4 The interval follows from the scatter of the answers and from each rule's own doubt. A landmark whose answers
+//   scatter widely is missing.
 #include "planner/operation/landmark/first_guess.h"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ constexpr double plane_rest_mm =
     0.02;                          ///< a fit ends with a round that moves the surface less than this, which
                                    ///< does not change results
 constexpr double coarse_mm = 1.0;  ///< step of the maps of other trials
-/// Pitches in degrees at which a face is sought, nearest first; how often its pitch is corrected.
+/// Pitches in degrees at which a face is searched for, nearest first; and the number of corrections of its pitch.
 constexpr std::array<double, 5> first_pitches{0.0, 12.0, -12.0, 24.0, -24.0};
 constexpr int corrections = 2;
 /// Angles in a head that is level by its Frankfurt plane: by `nose_lean_deg` the line from spine to nasion
@@ -340,7 +340,7 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
     if (missing.contains(other) &&
         std::erase_if(guess.found,
                       [name = std::string(one)](const LandmarkGuess& at) { return at.name == name; }) > 0)
-      missing[one] = "the other side's was not found, which it must match";
+      missing[one] = "the other side's landmark was not found, which it must match";
   take_out_unfounded(guess.found, missing);
   guess.missing.assign(missing.begin(), missing.end());
   guess.findings = guess.mid_plane.findings;

@@ -89,7 +89,7 @@ void keep_alike(FoundPlaces& found) {
       for (const std::string& name : {left, right}) {
         if (found.find(name) != nullptr) found.doubt_mm[name] += 2.0;
         if (pair.is_known_by_both)
-          take_out(found, name, "the other side's was not found, which it must match");
+          take_out(found, name, "the other side's landmark was not found, which it must match");
       }
       continue;
     }

@@ -57,16 +57,17 @@ Json measure(const Airway& asked, const AnswerBench& bench) {
 
 Operation airway_operation() {
   return Describe<Airway>("airway",
-                          "Measures an airway: its volume, its sections square to its centre line, and where "
-                          "it is narrowest.",
+                          "Measures an airway: its volume, its sections perpendicular to its centre line, "
+                          "and where it is narrowest.",
                           Makes::Measurement)
       .takes(field("object", &Airway::object,
                    "The air in the airway: usually a window on air, cut at the airway's limits, of which one "
                    "part is kept.")
                  .required())
-      .takes(field("begin", &Airway::begin, "Its beginning: a point or a landmark in it.").required())
-      .takes(field("end", &Airway::end, "Its end.").required())
-      .takes(field("step_mm", &Airway::step_mm, "From section to section.").from(0.1).to(20.0))
+      .takes(
+          field("begin", &Airway::begin, "The airway's beginning: a point or a landmark in it.").required())
+      .takes(field("end", &Airway::end, "The airway's end.").required())
+      .takes(field("step_mm", &Airway::step_mm, "The distance between sections.").from(0.1).to(20.0))
       .example(
           R"({"id": "narrow", "do": "airway", "object": "rest", "begin": [0, 0, 20], "end": [0, 0, -20]})")
       .measure(measure);

@@ -22,7 +22,7 @@ struct AirwaySection {
 };
 
 struct AirwaySections {
-  std::vector<AirwaySection> sections;  ///< in their order
+  std::vector<AirwaySection> sections;  ///< in their order along the line
   double length_mm = 0.0;
   std::size_t narrowest = 0;
 };

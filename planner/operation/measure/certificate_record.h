@@ -6,7 +6,7 @@
 #include "planner/operation/table/record.h"
 #include "verify/certificate/certificate.h"
 
-// Certificates as they stand in results. A number that is infinite has no value there.
+// Certificates in the form of results, in which an infinite number has no value.
 namespace octotomy::planner {
 
 /// One kernel's answer.

@@ -222,7 +222,7 @@ Operation compare_operation() {
       .takes(field("spacing_mm", &Compare::spacing_mm,
                    "Distance of the samples. Default: 200 000 samples a surface.")
                  .greater_than(0.0))
-      .takes(field("bins", &Compare::bins, "Of the histogram.").from(1).to(10000))
+      .takes(field("bins", &Compare::bins, "Number of bins of the histogram.").from(1).to(10000))
       .takes(field("no_dice", &Compare::no_dice, "Leaves out the common volume."))
       .verb_takes(field("out", &Compare::out,
                         "A coloured by its distance to B, red outside, blue inside: .ply, .vtp or .glb."))

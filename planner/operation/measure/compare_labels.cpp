@@ -50,8 +50,8 @@ bool is_stored_otherwise(const voxel::Lattice& a, const voxel::Lattice& b) {
   return true;
 }
 
-/// `onto` determines the storage order of samples. It changes no object, but the triangles of an octree
-/// follow its axes.
+/// Reads a label map. `onto` determines the storage order of samples: it changes no object, but the triangles of an
+/// octree follow the order of the axes.
 Side side_of(const fs::path& path, const FileBench& bench, std::vector<std::string>& findings,
              const voxel::Lattice* onto = nullptr) {
   Side side{path, bench.read_scan(path), {}};

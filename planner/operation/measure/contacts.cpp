@@ -58,7 +58,7 @@ MeasuredContacts measured(const ContactMap& asked, const AnswerBench& bench) {
       bench.universe.lattice().voxel_mm3();
   made.estimator = found.by_mesh ? "vertices of the first mesh to the second's nearest triangle"
                                  : "voxels of the first's boundary to the second's nearest voxel";
-  if (!found.by_mesh) made.findings.push_back("not both objects have a mesh: areas are not reported");
+  if (!found.by_mesh) made.findings.push_back("at least one object has no mesh: areas are not reported");
   return made;
 }
 

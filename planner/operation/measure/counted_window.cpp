@@ -19,7 +19,7 @@ std::size_t plane_of(const glm::ivec3& dims) {
   return static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y);
 }
 
-/// Means of two along one axis.
+/// Averages pairs of samples along one axis.
 template <typename Sample>
 voxel::Samples<Sample> averaged(const voxel::Samples<Sample>& samples, glm::ivec3& dims, int axis,
                                 const std::optional<double>& padding) {

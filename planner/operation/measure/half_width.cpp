@@ -108,8 +108,8 @@ HalfWidth angle_half_width(const std::array<glm::dvec3, 3>& points_mm, const Dig
   const glm::dvec3 first = points_mm[0] - points_mm[1], last = points_mm[2] - points_mm[1];
   const double first_mm = glm::length(first), last_mm = glm::length(last);
   const double cosine = std::clamp(glm::dot(first, last) / (first_mm * last_mm), -1.0, 1.0);
-  // The angle's gradient with respect to an end is perpendicular to its leg, with one over the leg's length;
-  // with respect to the vertex it is minus the sum of both.
+  // The angle's gradient with respect to an end is perpendicular to the end's leg, and its size is one over the leg's
+  // length. With respect to the vertex it is minus the sum of both gradients.
   const auto across = [&](const glm::dvec3& leg, double leg_mm, const glm::dvec3& other, double other_mm) {
     const glm::dvec3 side = leg / leg_mm * cosine - other / other_mm;
     const double size = glm::length(side);

@@ -35,9 +35,9 @@ struct SeenSize {
   double volume_mm3 = 0.0;
   std::optional<double> area_mm2 = {};
 };
-/// Voxels miss parts thinner than themselves. If the counted number differs from the other estimate by more
-/// than three half-widths (of three standard deviations each), this is not chance: the difference, `off`,
-/// then becomes the half-width and its last term. Returns whether it does.
+/// Voxels miss parts thinner than themselves. If the counted number differs from the other estimate by more than
+/// three half-widths (of three standard deviations each), this is not chance: the difference, `off`, then becomes the
+/// half-width and its last term. Returns whether the half-width was widened.
 bool widen_to_seen(HalfWidth& width, const Doubt& off);
 
 /// The resolution at which a solid was digitised, and its uncertainties.
@@ -75,8 +75,8 @@ HalfWidth area_half_width(const SurfaceSize& surface, const Digitised& digitised
 /// step of the samples, or else of the voxels, along each axis.
 HalfWidth distance_half_width(const std::array<glm::dvec3, 2>& points_mm, const Digitised& digitised);
 
-/// Half-width of the angle at the second of three such points, in degrees. Precondition: it is neither of the
-/// others.
+/// Half-width of the angle at the second of three points with such errors, in degrees. Precondition: the second point
+/// equals neither of the others.
 HalfWidth angle_half_width(const std::array<glm::dvec3, 3>& points_mm, const Digitised& digitised);
 
 /// Half-width of the least distance of two surfaces, in millimetres, for a distance in this direction. Its

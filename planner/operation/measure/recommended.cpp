@@ -167,7 +167,7 @@ void add_counting(double doubt_mm3, verify::SizeIntervals& found) {
   // Sections that miss part of an object's volume also miss its surface.
   const double missed_mm2 = area.value * doubt_mm3 / volume.value;
   area.half_width += missed_mm2;
-  area.sources.push_back({"samples", "S of the volume's share in doubt", missed_mm2, true});
+  area.sources.push_back({"samples", "S times the doubtful share of the volume", missed_mm2, true});
 }
 
 verify::SizeIntervals intervals_of_labels(const voxel::Scene& scan, double low, double high,
@@ -265,8 +265,8 @@ verify::SizeIntervals intervals_of_count(const voxel::Measures& measures, const 
   const double area_mm2 = measures.area_crofton13_mm2 + glm::dot(digitised.flat_mm2, 1.0 - shares);
   const double oblique_mm2 =
       (1.0 - std::min({shares.x, shares.y, shares.z})) * std::max(area_mm2 - flat_mm2, 0.0);
-  // If a flat part is displaced by half an edge, the walls around it change by that; parts are assumed to be
-  // two squares.
+  // If a flat part is displaced by half an edge, the walls around it grow or shrink by half an edge; parts are
+  // assumed to be two squares.
   const double rims_mm2 = 4.0 * glm::dot(glm::sqrt(0.5 * digitised.flat_mm2), digitised.voxel_mm);
   HalfWidth area{std::hypot(oblique_mm2, rims_mm2),
                  {{"directions", "(1 - least share of a plane seen) (S - flats)", oblique_mm2},

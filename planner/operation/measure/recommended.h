@@ -21,7 +21,7 @@
 // The recommended volume and area of an object, each one number with one interval.
 namespace octotomy::planner {
 
-/// The interval as it stands in results.
+/// The interval in the form of results.
 MeasuredInterval measured(const verify::Interval& interval, const std::string& unit);
 
 /// The samples from which an object's surface was made.

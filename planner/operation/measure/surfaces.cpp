@@ -167,8 +167,8 @@ PartedSize parted_size(const brep::PartedSurface& surface, const voxel::Scene& s
   return made;
 }
 
-/// Findings on files that are not a table of names, on labels stored with a fraction, and on parts whose
-/// surface encloses another volume than their samples, which are thin layers between others.
+/// Findings on files that are not a table of names, on labels stored with a fraction, and on parts whose surface
+/// encloses another volume than their samples: thin layers between other parts.
 std::vector<std::string> findings_of(const PartedSize& parted, const LabelTable& table,
                                      const voxel::Scene& scene) {
   constexpr double told_share = 0.1;
@@ -274,9 +274,10 @@ void write(const Surfaces& asked, const AnswerBench& bench, Exported& made) {
 
 FileAnswer on_files(const Surfaces& asked, const FileBench& bench) {
   if (!is_of_parts(asked.out) && !brep::is_parts_file(asked.out))
-    throw std::runtime_error(asked.out.string() +
-                             ": several surfaces are one .vtp, .obj or .glb file; or one file a label: put " +
-                             name_mark + " into its name");
+    throw std::runtime_error(
+        asked.out.string() +
+        ": write all surfaces as one .vtp, .obj or .glb file, or one file per label: put " + name_mark +
+        " into its name");
   need_mesh_extension(asked.out);
   need_folder_of(asked.out);
   const fs::path file = asked.scan.name;

@@ -37,7 +37,7 @@ Operation trials_operation() {
                    "Standard deviation of a moved piece's turn about each axis through its centroid.")
                  .from(0.0)
                  .to(30.0))
-      .takes(field("trials", &Trials::trials, "How many.").from(100).to(1000000))
+      .takes(field("trials", &Trials::trials, "Number of trials.").from(100).to(1000000))
       .takes(field("seed", &Trials::seed, "Seed of the random errors: the same seed gives the same numbers.")
                  .from(0)
                  .to(1e9))

@@ -47,7 +47,7 @@ Json wall_json(WeightedValues walls, double whole, const std::optional<glm::dvec
   return json;
 }
 
-/// At each vertex, the mean over the samples of its triangles; each counts by how near it is.
+/// At each vertex, the mean over the samples of its triangles, weighted by their nearness.
 std::vector<double> at_vertices_of(const brep::Solid& solid,
                                    const std::vector<brep::LocalThicknessAt>& surface) {
   const brep::Triangles& triangles = solid.triangles();

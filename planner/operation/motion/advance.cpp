@@ -34,7 +34,7 @@ void check(const Advance& asked, const FieldLocation& place) {
     place.at("direction").refuse("has no length: give where the object goes, for example [0, -1, 0]");
 }
 
-/// Unit, LPS.
+/// The direction of the movement as a unit vector, LPS.
 glm::dvec3 direction_of(const Advance& asked, const glm::dmat3& lps_from_head) {
   if (asked.direction) return glm::normalize(*asked.direction);
   const std::string& word = *asked.towards;
@@ -87,7 +87,9 @@ Operation advance_operation() {
                  .one_of({"forward", "back", "left", "right", "up", "down"}))
       .takes(
           field("direction", &Advance::direction, "The direction instead, LPS; its length does not count."))
-      .takes(field("gap_mm", &Advance::gap_mm, "How far before contact it stops.").from(0.0).to(100.0))
+      .takes(field("gap_mm", &Advance::gap_mm, "The distance before contact at which the object stops.")
+                 .from(0.0)
+                 .to(100.0))
       .takes(field("most_mm", &Advance::most_mm,
                    "The largest distance to try. If the objects overlap at first, the object moves back.")
                  .greater_than(0.0)

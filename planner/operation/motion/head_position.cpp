@@ -84,7 +84,7 @@ Operation head_position_operation() {
                  .to(4))
       .takes(field("midline", &HeadPosition::midline,
                    "Two or more points of the mid-plane, held upright from front to back: nasion, basion. "
-                   "Default: square to the line of the porions.")
+                   "Default: perpendicular to the line of the porions.")
                  .from(2))
       .takes(field("pitch_deg", &HeadPosition::pitch_deg,
                    "The front is held higher than the plane by this angle.")

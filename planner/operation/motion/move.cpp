@@ -311,7 +311,7 @@ Operation move_operation() {
       along(static_cast<double Point::*>(&Point::forward_mm), static_cast<double Point::*>(&Point::left_mm),
             static_cast<double Point::*>(&Point::up_mm));
   point.insert(point.begin(),
-               field("at", &Point::at, "The point before: [x, y, z] or a landmark.").required());
+               field("at", &Point::at, "The point before the motion: [x, y, z] or a landmark.").required());
   point.push_back(field("to", &Point::to, "Its target: [x, y, z] or a landmark, instead of millimetres."));
   return Describe<Move>("move", "Moves an object: rotates it, then translates it.", Makes::Object)
       .takes(field("object", &Move::object, "The object.").required())

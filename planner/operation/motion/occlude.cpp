@@ -49,7 +49,7 @@ void check(const Occlude& asked, const FieldLocation& place) {
     place.at("against").refuse("is the object itself: name what it is to meet");
 }
 
-/// Unit, LPS.
+/// The direction of a word as a unit vector, LPS.
 glm::dvec3 direction_of(const std::string& word, const glm::dmat3& lps_from_head) {
   Displacement by;
   by.up_mm = word == "up" ? 1.0 : -1.0;
@@ -187,7 +187,9 @@ Operation occlude_operation() {
       .takes(field("about_mm", &Occlude::about_mm, "The largest distance of a contact from its place.")
                  .greater_than(0.0)
                  .to(50.0))
-      .takes(field("gap_mm", &Occlude::gap_mm, "How far before contact it stops.").from(0.0).to(20.0))
+      .takes(field("gap_mm", &Occlude::gap_mm, "The distance before contact at which the object stops.")
+                 .from(0.0)
+                 .to(20.0))
       .takes(field("most_mm", &Occlude::most_mm, "The largest displacement of a place.")
                  .greater_than(0.0)
                  .to(200.0))

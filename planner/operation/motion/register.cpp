@@ -24,7 +24,7 @@ namespace {
 
 struct Register {
   ObjectName object, onto;
-  std::vector<std::string> landmarks;  ///< files of the object's and of the other's
+  std::vector<std::string> landmarks;  ///< files of the object's landmarks and of the other object's
   bool landmarks_only = false;
   std::string motion = "rigid";
   double overlap = brep::SurfaceFitOptions{}.overlap;
@@ -83,7 +83,8 @@ struct TrustOfFit {
   Json equal_transforms;
   std::string definition =
       "matched_share of A lies within tolerance_mm of B with normals that agree to 37 degrees; rival_share "
-      "does at another motion of the search; noise_mm is the median distance of a vertex from the mean of "
+      "is that share at another motion of the search; noise_mm is the median distance of a vertex from the "
+      "mean of "
       "its neighbours";
 };
 constexpr auto members_of(const TrustOfFit&) {
@@ -178,7 +179,7 @@ const char* verdict_of(const brep::FitTrust& trust) {
   return trust.verdict == brep::FitVerdict::Doubtful || !trust.equals.empty() ? "WARN" : "PASS";
 }
 
-/// The findings that make an object's certificate no PASS.
+/// The findings that lower an object's certificate below PASS.
 std::vector<Caveat> doubts_of(const std::vector<std::string>& findings) {
   std::vector<Caveat> doubts;
   for (const std::string& finding : findings)
@@ -489,7 +490,8 @@ Operation register_operation() {
           field(
               "by", &Register::by,
               "surfaces, or the samples of the two scans: their correlation, for one kind of scan, or their "
-              "mutual_information, for any two. Default: surfaces; of two files of scans mutual_information.")
+              "mutual_information, for any two. Default: surfaces; for two files of scans, "
+              "mutual_information.")
               .one_of({"surfaces", "correlation", "mutual_information"}))
       .takes(field("least_overlap", &Register::least_overlap,
                    "Least share of the smaller scan that the other one must cover.")

@@ -35,7 +35,7 @@ struct Displaced {
   Json details;
 };
 
-/// Over how many millimetres the displacement fades. Throws std::runtime_error where the typed distance folds
+/// The distance over which the displacement fades. Throws std::runtime_error where the typed distance folds space.
 /// space.
 double fade_of(const Warp& warp, double largest_mm) {
   constexpr double usual_mm = 20.0;
@@ -181,13 +181,11 @@ Operation warp_operation() {
       .takes(field("result", &Warp::result, "CalculiX's .frd file of a deck of linear tetrahedra.")
                  .required()
                  .a_file())
-      .takes(
-          field(
-              "fade_mm", &Warp::fade_mm,
-              "Beyond the deck's box along the patient's axes, the displacement fades to zero over this "
-              "distance. At least 2.54 times the largest displacement, or space would fold. Default: 20 mm, "
-              "or that least where it is longer.")
-              .greater_than(0.0))
+      .takes(field("fade_mm", &Warp::fade_mm,
+                   "Beyond the deck's box along the patient's axes, the displacement fades to zero over this "
+                   "distance. At least 2.54 times the largest displacement, or space would fold. Default: 20 "
+                   "mm, or that minimum if it is longer.")
+                 .greater_than(0.0))
       .verb_takes(field("out", &Warp::out, "A mesh, or a .nrrd, .nii.gz or .mha file.").required())
       .reads_scans()
       .example(R"({"id": "face", "do": "warp", "object": "soft", "result": "face.frd"})")

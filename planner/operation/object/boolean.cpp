@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The Boolean of two or more objects: by corefinement of their meshes, and of their octrees. `combine` evaluates
-// whole expressions; this one can prove its volumes by exact numbers.
+// whole expressions; this operation can prove its volumes by exact numbers.
 #include "brep/boolean/boolean.h"
 
 #include <algorithm>
@@ -162,10 +162,10 @@ Operation boolean_operation() {
                  .positional("op"))
       .takes(field("b", &Boolean::b, "Another object.").required().positional("b"))
       .takes(field("with", &Boolean::further,
-                   "Further objects: all are united, intersected, or taken from the first."))
+                   "Further objects: all are united or intersected, or subtracted from the first."))
       .takes(field("exact", &Boolean::exact,
-                   "The mesh's new points as exact numbers, and proof that the volumes add up as rationals; "
-                   "slower."))
+                   "Computes the mesh's new points as exact numbers, and proves in rational numbers that the "
+                   "volumes add up; slower."))
       .example(R"({"id": "remainder", "do": "boolean", "a": "skull", "op": "difference", "b": "cut"})")
       .on_files(
           "octotomy boolean skull.stl difference box.stl -o rest.stl --json\n"

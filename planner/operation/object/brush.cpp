@@ -73,7 +73,7 @@ std::string changes_no(const std::string& part, const Brush& brush) {
          "': look where its strokes lie, and draw them again";
 }
 
-/// Points that are nearer to each other, and not equal, make a hull whose faces are thinner than rounding.
+/// Unequal points nearer to each other than this make a hull whose faces are thinner than rounding.
 constexpr double least_way_mm = 1e-3;
 /// Farther from the origin, rounding would turn the faces of a small brush.
 constexpr double most_mm = 1e6;

@@ -19,13 +19,13 @@ struct Combine {
 /// Refuses a text that is no expression of earlier objects, with the position of the fault.
 void check_expression(const std::string& expression, const FieldLocation& place);
 
-/// The voxel kernel's Boolean of earlier objects. `expression` builds it from what the names stand for; it is
-/// called twice, with the objects' octrees and with their symbols.
+/// The voxel kernel's Boolean of earlier objects. `expression` builds the Boolean from the operands of its names. It
+/// is called twice: with the objects' octrees and with their symbols.
 void combine_voxels(const VoxelBench& bench,
                     const std::function<voxel::Expression(const voxel::Names& names)>& expression,
                     VoxelSide& made);
 
-/// What a Boolean inherits from its operands, with findings on masks that cut nothing of them.
+/// Adds what a Boolean inherits from its operands, and findings on masks that cut nothing of them.
 void bound_of_operands(const std::vector<std::string>& names, const BoundBench& bench, Object& made);
 
 }  // namespace octotomy::planner

@@ -53,11 +53,11 @@ std::vector<SliceWindow> own_windows(const Contours& contours) {
 /// do not.
 std::string conflict_of(const Contours& contours, const std::function<std::string(const char*)>& name) {
   if (!contours.seeds_mm.empty() && has_windows(contours))
-    return name("seeds_mm") + ": choose the thresholds themselves: leave " + name("window") + " out";
+    return name("seeds_mm") + ": set the thresholds: leave " + name("window") + " out";
   if (!contours.seeds_mm.empty() && !contours.around_mm.empty())
-    return name("around_mm") + ": seeds of regions: leave " + name("seeds_mm") + ", seeds on edges, out";
+    return name("around_mm") + ": cannot be combined with seeds on edges: leave " + name("seeds_mm") + " out";
   if (contours.tolerance && contours.around_mm.empty())
-    return name("tolerance") + ": is of a region around a seed: add " + name("around_mm");
+    return name("tolerance") + ": applies only to a region around a seed: add " + name("around_mm");
   if (contours.tolerance && has_windows(contours))
     return name("tolerance") + ": selects the samples in place of a window: leave " + name("window") + " out";
   if (!contours.around_mm.empty() && !contours.slice_windows.empty())
@@ -245,10 +245,11 @@ Operation contours_operation() {
                    "For regions around pixels, in place of a window: the largest difference from the pixel's "
                    "sample.")
                  .from(0.0))
-      .takes(field("least_area_mm2", &Contours::least_area_mm2, "Leaves contours out that enclose less.")
+      .takes(field("least_area_mm2", &Contours::least_area_mm2,
+                   "Leaves out contours that enclose less than this area.")
                  .from(0.0)
                  .to(1e9))
-      .takes(field("thin_mm", &Contours::thin_mm, "Takes out points within this of a straight piece.")
+      .takes(field("thin_mm", &Contours::thin_mm, "Removes points within this distance of a straight piece.")
                  .from(0.0)
                  .to(1e6))
       .takes(field("harmonics", &Contours::harmonics, "Number of Fourier harmonics that smooth each contour.")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // An object's surface of fewer triangles. Only the mesh kernel has triangles: its answer is voxelised. Its
-// certificate measures how far it lies from the object's surface, and that from it.
+// certificate measures the distances between both surfaces, in both directions.
 #include "brep/shape/decimate.h"
 
 #include <algorithm>
@@ -27,8 +27,8 @@ struct Decimate {
   bool mend = false;
 };
 
-/// The share of a surface's extent that is allowed where no error is given, so that objects of another size or
-/// unit keep their shape: 0.1 mm is reached at 20 mm.
+/// The allowed error as a share of the surface's extent, where no error is given and the share is below 0.1 mm, as
+/// for extents below 20 mm. So objects of another size or unit keep their shape.
 constexpr double default_share() {
   return 1.0 / 200.0;
 }
@@ -132,8 +132,8 @@ Operation decimate_operation() {
                         "Edge of an octree's voxels. Default: a 128th of the answer's extent.")
                       .greater_than(0.0))
       .verb_takes(field("mend", &Decimate::mend,
-                        "A mesh that is no solid is mended first, as repair --solid does; else an open one "
-                        "keeps its borders."))
+                        "Mends a mesh that is no solid first, as repair --solid does. Without it an open "
+                        "mesh keeps its borders."))
       .example(R"({"id": "light", "do": "decimate", "object": "skull", "max_error_mm": 0.2})")
       .on_files("octotomy decimate skull.stl -o light.stl --max-error 0.2 --json", on_files)
       .object(definition, nullptr, triangles, bound);

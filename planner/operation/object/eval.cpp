@@ -72,8 +72,8 @@ glm::dmat4 parse_motion(const std::string& name, const std::string& text) {
   const std::vector<double> numbers = comma_numbers(text);
   if (numbers.size() != 3 && numbers.size() != 7 && numbers.size() != 10)
     throw std::runtime_error("--motion: '" + name + "=" + text +
-                             "' is no motion: give X,Y,Z in mm, then perhaps DEGREES and the "
-                             "axis X,Y,Z, then perhaps the point X,Y,Z in mm it passes through");
+                             "' is no motion: give X,Y,Z in mm, then perhaps DEGREES and the axis X,Y,Z, "
+                             "then perhaps a point X,Y,Z in mm on the axis");
   voxel::Motion motion;
   motion.translate_mm = {numbers[0], numbers[1], numbers[2]};
   if (numbers.size() >= 7) {
@@ -99,7 +99,7 @@ class Motions {
     used_.insert(name);
     return parse_motion(found->first, found->second);
   }
-  /// Refuses motions that no name asked for, because they would change nothing.
+  /// Refuses motions that the expression does not name, because they would change nothing.
   void need_all_used() const {
     for (const auto& [name, unused] : texts_)
       if (!used_.contains(name))
@@ -180,8 +180,8 @@ ShareResult combine_shares(const voxel::Expression& expression,
                              : nullptr;
     if (!operand.shares && octree == nullptr)
       throw std::runtime_error(name +
-                               ": samples have no shares to combine with those of the other operands: "
-                               "make it an octree of its window first");
+                               ": samples have no shares to combine with those of the other operands: make "
+                               "an octree of its window first");
     known.push_back({operand.expression,
                      operand.shares ? *operand.shares : voxel::ShareBracket{*octree, *octree, {}, {}}});
   }
@@ -189,8 +189,8 @@ ShareResult combine_shares(const voxel::Expression& expression,
   ShareResult result{voxel::middle(bracket), Json::object()};
   const voxel::VolumeBracket volume = voxel::volume_mm3(bracket);
   const voxel::Measures counted = voxel::measure(voxel::at_least_half(result.tree));
-  // Three standard deviations of a count on curved or oblique boundary, 0.26 of a voxel's face by the square
-  // root of the boundary's faces (Kendall 1948).
+  // Three standard deviations of a count on curved or oblique boundary: 0.26 of a voxel's face times the square root
+  // of the number of the boundary's faces (Kendall 1948).
   const double voxel_mm3 = bracket.inside.universe().lattice().voxel_mm3();
   HalfWidth count{3.0 * 0.26 * std::pow(voxel_mm3, 2.0 / 3.0) * std::sqrt(counted.area_crofton13_mm2), {}};
   const bool is_off =
@@ -306,10 +306,10 @@ Operation eval_operation() {
       .verb_takes(field("lets", &Eval::lets, "NAME=FILE: the .octree file to which a name refers.")
                       .repeated()
                       .called("let"))
-      .verb_takes(
-          field("windows", &Eval::windows, "NAME=LOW:HIGH or NAME=TISSUE: which object of a grey octree.")
-              .repeated()
-              .called("window"))
+      .verb_takes(field("windows", &Eval::windows,
+                        "NAME=LOW:HIGH or NAME=TISSUE: the window of an object in a grey octree.")
+                      .repeated()
+                      .called("window"))
       .takes(field("motions", &Eval::motions,
                    "NAME=X,Y,Z[,DEGREES,X,Y,Z[,X,Y,Z]]: a translation in mm after a rotation about an axis "
                    "through "

@@ -67,8 +67,8 @@ void write(const LabelMap& wanted, const AnswerBench& bench, Exported& made) {
   if (!std::filesystem::exists(table))
     voxel::write_whole(table, label_table_text(names));
   else if (!holds_names(table, names))
-    made.findings.push_back("the names of its labels are not written, as " + table.filename().string() +
-                            " is there and has others: choose another name for one of them");
+    made.findings.push_back("the names of its labels are not written, because " + table.filename().string() +
+                            " exists and has other names: rename one of the two files");
   made.written = true;
   made.content = grouped(static_cast<double>(octree.voxel_count()), 0) + " voxels labelled 1";
   if (!wanted.also.empty()) made.content += ", " + std::to_string(octrees.size()) + " labels";

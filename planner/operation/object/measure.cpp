@@ -76,9 +76,9 @@ const Shown* label_window_of(const AnswerBench& bench, const Object& object) {
   return window.samples && window.samples->meaning == voxel::Meaning::Label ? &window : nullptr;
 }
 
-/// Adds what the sum of the samples shows beyond the surface. For a whole window, these are its numbers; for
-/// a part of one, a doubt in proportion to its share of the window's surface, since the position of thin
-/// walls is not known.
+/// Adds what the sum of the samples shows beyond the surface: for a whole window the two-phase numbers; for a part of
+/// a window a doubt in proportion to the part's share of the window's surface, because the places of thin walls are
+/// not known.
 void take_phases(const AnswerBench& bench, const Object& object, Recommended& found) {
   std::vector<const Shown*> windows;
   for (const Shown& window : object.bound.windows)
@@ -168,7 +168,7 @@ Recommended of_mesh_alone(const brep::Solid& mesh) {
   const brep::Size& size = mesh.size();
   const auto exact = [](double value) {
     return verify::Interval{
-        value, rounding * value, {{"points", "1e-6 of it, by rounding", rounding * value}}};
+        value, rounding * value, {{"points", "1e-6 of the value, by rounding", rounding * value}}};
   };
   Recommended found;
   found.intervals.volume_mm3 = exact(size.volume_mm3);
@@ -233,10 +233,10 @@ const Recommended& kept_intervals_of(const AnswerBench& bench, const Object& sti
   return *static_cast<const Recommended*>(kept.get());
 }
 
-/// The recommended volume and area. They are the mesh's where there is one: cuts are exact in it, and parts
-/// share the doubt of the windows of their whole. A motion or mirror changes no size: where the universe
-/// contains both objects, an image of a whole object has that object's values, because the image's own voxels
-/// and points were rounded once more. An object made from another's surface has the doubt of that surface.
+/// The recommended volume and area. They are the mesh's where there is one, because its cuts are exact. Parts share
+/// the doubt of the windows of their whole. A motion or mirror changes no size: where the universe contains both
+/// objects, an image of a whole object has that object's values, because the image's own voxels and points were
+/// rounded once more. An object made from another's surface has the doubt of that surface.
 Recommended intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
   if (object.image && object.image->is_whole)
     return kept_intervals_of(bench, still_of(bench.objects, object));
@@ -251,9 +251,9 @@ Recommended intervals_of(const AnswerBench& bench, const Object& object, const D
       interval.sources.push_back({"operand", formula, half_width, true});
     };
     const double share = found.intervals.area_mm2.value / of.area_mm2.value;
-    add(found.intervals.volume_mm3, "half-width of the operand's volume, by the share of its area",
+    add(found.intervals.volume_mm3, "half-width of the operand's volume, times the share of its area",
         share * of.volume_mm3.half_width);
-    add(found.intervals.area_mm2, "half-width of the operand's area, by the share of it",
+    add(found.intervals.area_mm2, "half-width of the operand's area, times the share of this area",
         share * of.area_mm2.half_width);
   }
   return found;

@@ -141,9 +141,9 @@ FileAnswer measure_open(const brep::Triangles& triangles, const brep::Health& he
           : "volume_mm3: none, as the surface is not closed, oriented and manifold: " +
                 health.findings.front() + "; octotomy repair --solid closes it"};
   if (by_lines_mm3)
-    findings.push_back("volume_lines_mm3: an estimate: " + grouped(*by_lines_mm3, 1) +
-                       " mm\u00b3 along lines through the surface; those through its holes count as the "
-                       "others");
+    findings.push_back(
+        "volume_lines_mm3: an estimate: " + grouped(*by_lines_mm3, 1) +
+        " mm\u00b3 along lines through the surface; lines through its holes count like the others");
   return said({{"kind", "mesh"},
                {"volume_mm3", nullptr},
                {"volume_partial_mm3", nullptr},

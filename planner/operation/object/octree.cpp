@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Writes an octree: the verb that of a scan's window or of all its samples, or one of a file in another form; the
-// step that of an object.
+// Writes an octree. The verb makes it from a scan's window or all its samples, or writes a file's octree in another
+// form; the step writes that of an object.
 #include <algorithm>
 #include <array>
 #include <fstream>
@@ -223,7 +223,8 @@ void check(const Build& asked, const FieldLocation& place) {
 FileAnswer on_files(const Build& asked, const FileBench& bench) {
   asked.as.empty() ? need_octree_extension(asked.out) : need_form_name(asked);
   if (asked.window && asked.grey)
-    throw std::runtime_error("--grey: a tree is --grey or an object by --window, not both");
+    throw std::runtime_error(
+        "--grey: an octree holds all samples (--grey) or an object (--window), not both");
   need_folder_of(asked.out);
   const voxel::OctreeFile file = !asked.from.empty() ? from_representation(asked, bench.timings)
                                  : names_octree(asked.file.name, bench) ? from_octree(bench, asked)

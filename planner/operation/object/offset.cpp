@@ -32,8 +32,8 @@ void check(const Offset& offset, const FieldLocation& place) {
         "0 moves nothing: say how far outward, or inward as a number below 0, or use the object itself");
 }
 
-/// The cell of the distance lattice, whose steps along edges are a quarter of it: small enough for the rounding
-/// of edges by the offset, but not below about 1/100 of the solid's extent.
+/// The cell of the distance lattice. Steps along edges are a quarter of the cell: small enough for the rounding of
+/// edges by the offset, but not below about 1/100 of the solid's extent.
 double cell_for(const brep::Solid& solid, double by_mm) {
   const glm::dvec3 extent = solid.size().high_mm - solid.size().low_mm;
   return std::max(0.5 * std::abs(by_mm), std::max({extent.x, extent.y, extent.z}) / 100.0);
@@ -86,9 +86,8 @@ void voxels(const Offset& offset, const VoxelBench& bench, VoxelSide& made) {
   made.lineage = "distances to where the surface passes between voxels";
 }
 
-/// A level set, the cells with which it was made, and the half-width of its volume: the change of volume by
-/// cells twice as large, three times the error at second order, and the tolerance of flat parts times the
-/// area.
+/// A level set, the cells with which it was made, and the half-width of its volume: the change of volume with cells
+/// twice as large, which is three times the error at second order, plus the tolerance of flat parts times the area.
 struct LevelSet {
   brep::Solid moved;
   brep::OffsetOptions options;
@@ -194,13 +193,11 @@ Operation offset_operation() {
       .takes(field("object", &Offset::object, "The object.").required().positional("solid"))
       .takes(
           field("by_mm", &Offset::by_mm, "The distance outward; below 0 it goes inward. Not 0.").required())
-      .takes(
-          field("cell_mm", &Offset::cell_mm,
-                "About the edge of the mesh's smallest triangles. Default: half of the distance, or a "
-                "100th of the object, whichever is larger, and halved up to three times until the volume is "
-                "known "
-                "to 1 %; a convex object goes inward exactly.")
-              .greater_than(0.0))
+      .takes(field("cell_mm", &Offset::cell_mm,
+                   "Cell size, about the edge of the smallest triangles. Default: half of the distance, or a "
+                   "100th of the object, whichever is larger, and halved up to three times until the volume "
+                   "is known to 1 %; a convex object moves inward exactly, without cells.")
+                 .greater_than(0.0))
       .example(R"({"id": "margin", "do": "offset", "object": "tumour", "by_mm": 5})")
       .on_files(
           "octotomy offset tumour.stl --by 5 -o margin.stl\n"

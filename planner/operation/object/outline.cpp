@@ -123,7 +123,8 @@ Cutter cutter_of(const Outline& outline, const FileBench& bench, const voxel::Vi
   return cutter;
 }
 
-/// The multiples of the distance in the range, so that stacks of several objects lie in common planes.
+/// The planes' positions: those given, or multiples of the distance, so that stacks of several objects lie in common
+/// planes.
 std::vector<double> positions_of(const Outline& outline, const Cutter& cutter) {
   if (!outline.at_mm.empty()) {
     std::vector<double> positions = outline.at_mm;
@@ -230,8 +231,8 @@ Operation outline_operation() {
                  .greater_than(0.0)
                  .to(1000.0)
                  .read_if<Outline>([](const Outline& outline) { return outline.at_mm.empty(); },
-                                   "is of planes that are not named: leave 'at_mm' out"))
-      .takes(field("thin_mm", &Outline::thin_mm, "Takes out points within this of a straight piece.")
+                                   "applies only without named planes: leave 'at_mm' out"))
+      .takes(field("thin_mm", &Outline::thin_mm, "Removes points within this distance of a straight piece.")
                  .from(0.0)
                  .to(1e6))
       .takes(field("path", &Outline::out, "A .json of regions on slices, as masks and tile read it.")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The voxels' order decides. The mesh takes every component that has a place of the voxels' parts which both
-// kernels must have inside, so a part that the mesh separates into several stays whole.
+// The voxels' order of sizes decides. The mesh keeps every component that contains a place of the voxels' chosen
+// parts at which both kernels must be inside. So a part that the mesh divides into several components stays whole.
 #include "planner/operation/object/part_choice.h"
 
 #include <algorithm>

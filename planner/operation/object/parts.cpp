@@ -352,9 +352,10 @@ Operation parts_operation() {
       .takes(field("cut_bridges_mm", &Parts::cut_bridges_mm,
                    "Cut thin necks at these points, LPS: removes everything in a cube about each.")
                  .in_plans_only())
-      .takes(field("bridge_mm", &Parts::bridge_mm, "Edge of the cube about each of these points, mm.")
-                 .greater_than(0.0)
-                 .in_plans_only())
+      .takes(
+          field("bridge_mm", &Parts::bridge_mm, "Edge of the cube about each kept or cut neck's point, mm.")
+              .greater_than(0.0)
+              .in_plans_only())
       .example(R"({"id": "bone", "do": "parts", "object": "skull", "largest": 1})")
       .on_files("octotomy parts skull.stl --largest 1 -o bone.stl")
       .check(check)

@@ -30,7 +30,7 @@ std::vector<CutPlane> ends_of(const voxel::Box& scan, const glm::dvec3& sample_m
 
 /// Whether every voxel's centre within the scan coincides with one of its samples, up to rounding.
 bool on_samples(const voxel::Lattice& scan, const voxel::Lattice& universe);
-/// Whether a scan has samples both below and above a window. The mesh kernel then has layers of it between
+/// Whether a scan has samples both below and above a window. The mesh kernel then has layers of the window between
 /// neighbouring samples, which no voxel at a sample shows.
 bool on_both_sides(const voxel::Scene& scan, double low, double high);
 
@@ -41,8 +41,8 @@ std::vector<CutPlane> planes_of(const voxel::RegionMask& mask);
 /// Adds an operand's walls and bound terms to those of an object made of it.
 void inherit(const Object& operand, Object& made);
 
-/// Does the same for an object that is another one moved or mirrored; walls, planes, windows and samples move
-/// with it. Precondition: the mesh kernel's object is complete, if there is one.
+/// Like inherit(), for an object that is another one moved or mirrored; walls, planes, windows and samples move with
+/// it. Precondition: the mesh kernel's object is complete, if there is one.
 void carry(const std::string& object, const glm::dmat4& moved_from_still, const BoundBench& bench,
            Object& made);
 

@@ -186,8 +186,8 @@ FileAnswer on_files(const Repair& repair, const FileBench& bench) {
   for (const brep::Change& left : repaired.left) answer.findings.push_back(left.step + ": " + left.what);
   add_lost_sheets(made, effect, answer.findings);
   if (!after.solid() && solids.after)
-    answer.findings.push_back("the surface is a solid, but as " + repair.out.extension().string() +
-                              " has it, rounded, it is none: write .ply, .off or .vtp");
+    answer.findings.push_back("the surface is a solid, but rounded for " + repair.out.extension().string() +
+                              " it is none: write .ply, .off or .vtp");
   answer.json = {{"path", repair.out.string()}};
   answer.json.update(told(made, effect, solids));
   answer.json["before"] = to_json(before);
@@ -253,8 +253,8 @@ Operation repair_operation() {
       .takes(field("hull", &Repair::hull,
                    "For a surface made anew: keeps only the outermost shells, so that cavities are filled."))
       .takes(field("wall_mm", &Repair::wall_mm,
-                   "Makes the surface as given, holes and all, a wall of this thickness: for sheets, which "
-                   "enclose nothing.")
+                   "Makes a wall of this thickness of the surface as given, with its holes: for sheets, "
+                   "which enclose nothing.")
                  .greater_than(0.0))
       .takes(
           field("max_volume_share", &Repair::max_volume_share,

@@ -13,7 +13,7 @@
 
 namespace octotomy::planner {
 
-/// What the verb of an operation that changes one surface adds to the operation's own fields.
+/// The fields that an operation on one surface has only as a verb.
 struct ReshapeFile {
   std::filesystem::path mesh, out;
   std::optional<double> voxel_mm;
@@ -24,10 +24,10 @@ struct ReshapeFile {
 using Reshape =
     std::function<brep::Mesh(const brep::Mesh& mesh, Json& details, std::vector<std::string>& findings)>;
 
-/// The verb's run: reads the mesh, changes it and writes it, or for an .octree the voxels inside it; as
-/// `doing` in the timings. A surface that is open stays so in a mesh file, with a finding. Throws
-/// std::runtime_error where the file holds voxels, or the surface is open and an .octree is wanted; as
-/// read_solid() for other defects, and as `reshape`.
+/// Runs the verb: reads the mesh, changes it, and writes it, or for an .octree the voxels inside it. The change is
+/// `doing` in the timings. A surface that is open stays so in a mesh file, with a finding. Throws std::runtime_error
+/// where the file holds voxels, or the surface is open and an .octree is wanted; as read_solid() for other defects,
+/// and as `reshape`.
 FileAnswer reshaped_file(const ReshapeFile& asked, const FileBench& bench, const std::string& doing,
                          const Reshape& reshape);
 

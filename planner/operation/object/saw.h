@@ -15,10 +15,10 @@ namespace octotomy::planner {
 struct Saw {
   ObjectName object;
   std::vector<glm::dvec3> line_mm;  ///< LPS; two points or more
-  std::optional<glm::dvec3>
-      direction;                ///< in which the blade goes in, LPS, of any length; none: of the plane
+  /// The direction in which the blade goes in, LPS, of any length. None: that of the plane.
+  std::optional<glm::dvec3> direction;
   double depth_mm = 100.0;      ///< from the line's point that the blade meets first
-  double kerf_mm = 1.0;         ///< width of what is sawn away, half on either side of the line
+  double kerf_mm = 1.0;         ///< width of the cut, half on either side of the line
   std::filesystem::path plane;  ///< a plane of 3D Slicer in the place of line, direction and depth
 };
 

@@ -54,7 +54,7 @@ struct OwnSamples {
   }
 };
 
-/// The own samples of what was made of objects; none if they differ.
+/// The own samples that all parts have in common; none if they differ.
 template <typename Parts, typename Of>
 OwnSamples in_common(const Parts& parts, const Of& of) {
   OwnSamples common;
@@ -135,8 +135,8 @@ void need_one_meaning(const ScanOf& step, const ScanBench& bench, const voxel::E
   }
 }
 
-// The second reading: places of samples that are drawn at random, decided by the objects' witnesses and by an
-// interpolation of its own. Neither shares code with the voxel kernel.
+// The second reading decides samples drawn at random by the objects' witnesses and by an interpolation of its own.
+// Neither shares code with the voxel kernel.
 
 /// Whether an expression contains a place, and the object whose sample the place has.
 struct Owned {
@@ -292,8 +292,8 @@ MadeScan made(const ScanOf& step, const ScanBench& bench) {
     if (is_other)
       findings.push_back("the samples of '" + name + "' come from " +
                          (own ? "'" + own.scan->scan + "'" : std::string("another scan")) +
-                         " and stand beside those of '" + step.scan.name +
-                         "' as they are: their units and scanners may differ");
+                         " and are put beside those of '" + step.scan.name +
+                         "' unchanged: their units and scanners may differ");
   }
   if (result.filled_samples > 0)
     findings.push_back(std::to_string(result.filled_samples) + " samples lie in objects without samples" +

@@ -502,11 +502,12 @@ Operation segment_operation() {
       .takes(field("window", &Segment::window, "LOW:HIGH or LOW: in the scan's unit, or a tissue.")
                  .for_example("\"bone\"")
                  .in_plans_only())
-      .takes(field("otsu", &Segment::otsu,
-                   "Number of classes of least variance into which the samples are parted; the object is one "
-                   "of them.")
-                 .from(2)
-                 .to(8))
+      .takes(
+          field("otsu", &Segment::otsu,
+                "Number of classes of least variance into which the samples are divided; the object is one "
+                "of them.")
+              .from(2)
+              .to(8))
       .takes(
           field("clusters", &Segment::clusters,
                 "Number of clusters of the samples by density and gradient; the object is one of them. Edges "
@@ -563,9 +564,10 @@ Operation segment_operation() {
       .takes(field("cut_bridges_mm", &Segment::cut_bridges_mm,
                    "Cuts thin necks at these points, LPS: removes everything in a cube about each.")
                  .in_plans_only())
-      .takes(field("bridge_mm", &Segment::bridge_mm, "Edge of the cube about each of these points, mm.")
-                 .greater_than(0.0)
-                 .in_plans_only())
+      .takes(
+          field("bridge_mm", &Segment::bridge_mm, "Edge of the cube about each kept or cut neck's point, mm.")
+              .greater_than(0.0)
+              .in_plans_only())
       .takes(field("close_mm", &Segment::close_mm, "Closes gaps that a ball of that radius does not pass.")
                  .greater_than(0.0))
       .takes(field("fill", &Segment::fill, "Fills cavities."))

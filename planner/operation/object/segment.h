@@ -99,7 +99,7 @@ struct OtsuWindow {
 };
 OtsuWindow otsu_window(const voxel::Scene& scene, int classes, int number);
 
-/// The clusters of the samples' densities and gradients, and the same as text for the answer.
+/// The clusters of the samples' densities and gradients, and the same as JSON for the answer.
 struct Clusters {
   voxel::FeatureClasses classes;
   nlohmann::ordered_json suggestion;

@@ -30,7 +30,7 @@ struct Named {
   std::string name;
   Segmented made;
   std::optional<voxel::Octree> on_samples = std::nullopt;
-  bool is_of_file = false;  ///< the name stands in a file or is a file's
+  bool is_of_file = false;  ///< the name is stated in a file, or is a file's own
   bool is_named = true;     ///< the name is a word, not the two numbers of a window
 };
 

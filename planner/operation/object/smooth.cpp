@@ -97,8 +97,8 @@ Operation smooth_operation() {
                         "Edge of an octree's voxels. Default: a 128th of the answer's extent.")
                       .greater_than(0.0))
       .verb_takes(field("mend", &Smooth::mend,
-                        "A mesh that is no solid is mended first, as repair --solid does; else an open one "
-                        "keeps its borders."))
+                        "Mends a mesh that is no solid first, as repair --solid does. Without it an open "
+                        "mesh keeps its borders."))
       .example(R"({"id": "even", "do": "smooth", "object": "skull", "rounds": 10})")
       .on_files("octotomy smooth skull.stl -o smooth.stl --rounds 10 --json", on_files)
       .object(definition, nullptr, triangles, bound);

@@ -39,7 +39,7 @@ std::vector<brep::Section> sections_of(const voxel::SliceMask& mask) {
   return sections;
 }
 
-/// The tiles' own check sees crossings in the sections at the ends and between first, whose positions nobody drew.
+/// Runs before the tiles' own check, which would name the position of a section that nobody drew.
 void need_uncrossed_slices(const voxel::SliceMask& mask) {
   for (const voxel::SliceMask::Slice& slice : mask.slices) {
     const voxel::CrossingPolygons crossing = voxel::crossing_polygons(slice.polygons_mm, off_plane_mm());

@@ -14,14 +14,14 @@
 // voxel::SliceMask between slices.
 namespace octotomy::planner {
 
-/// The largest distance of the sections that tiles join, mm.
+/// The largest distance between the sections that tiles join, mm.
 constexpr double tile_step_mm() {
   return 1.0;
 }
 
 struct TiledSlices {
   brep::Solid solid;
-  std::size_t sections = 0;  ///< that were tiled, the drawn ones among them
+  std::size_t sections = 0;  ///< tiled sections, the drawn slices among them
 };
 
 /// The surface tiled from the slices and from sections between them (brep::sections_between()), LPS. `cost` as in

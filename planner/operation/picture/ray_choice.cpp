@@ -76,8 +76,8 @@ std::vector<Field> ray_fields() {
   fields.push_back(
       field("decide", &Render::decide,
             "What ends a ray through the samples of one scan or grey octree: range (a sample in the window), "
-            "derivative (samples rise along the ray by steeper_per_mm) or gradient (they change by it in any "
-            "direction). Default: the objects' surfaces.")
+            "derivative (samples rise along the ray by steeper_per_mm) or gradient (samples change by "
+            "steeper_per_mm in any direction). Default: the objects' surfaces.")
           .one_of({"range", "derivative", "gradient"})
           .read_if<Render>([](const Render& render) { return !is_ray_picture(render); },
                            "applies only to pictures of surfaces: choose another 'shading'"));

@@ -9,14 +9,14 @@ namespace octotomy::planner {
 std::vector<std::string> ray_picture_names();
 bool is_ray_picture(const Render& render);
 
-/// Throws std::runtime_error for options that such pictures do not have.
+/// Throws std::runtime_error for options that ray pictures do not have.
 void check_rays(const Render& render);
 
 /// The window of the drawn samples; for a composite picture, the samples from the first visible one on.
 SampleWindow ray_window(const Render& render);
 
-/// Draws such a picture of one object's samples. Throws std::runtime_error where there is not one with
-/// samples.
+/// Draws a ray picture of one object's samples. Throws std::runtime_error unless there is exactly one object, and it
+/// has samples.
 RenderedPicture render_rays(const Render& render, const std::vector<voxel::DrawnObject>& objects,
                             Timings& timings, const std::stop_token& stop);
 

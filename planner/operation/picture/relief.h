@@ -11,7 +11,7 @@ namespace octotomy::planner {
 /// A depth image as a surface over its own plane (thesis, figures 5.9 and 5.10).
 struct Relief {
   std::vector<std::uint8_t> rgb;  ///< of the picture's size, 3 bytes per pixel
-  std::uint64_t corners = 0;      ///< of the grid's corners, those on objects
+  std::uint64_t corners = 0;      ///< corners of the grid that lie on objects
   std::uint64_t levels = 0;       ///< different depths among these
 };
 

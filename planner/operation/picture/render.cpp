@@ -76,7 +76,7 @@ struct Scene {
   std::string coloured_by;  ///< the other one's name
 };
 
-/// The last of `objects` is the other object, where one is requested.
+/// Makes the scene. If a distance is requested, the last of `objects` is the other object.
 Scene scene_of(const Render& render, std::vector<voxel::DrawnObject> objects, Timings& timings) {
   Scene scene{std::move(objects), {}};
   if (!render.colour_by.empty()) {

@@ -82,10 +82,10 @@ std::array<double, Count> numbers_of(const std::string& what, const std::string&
 /// View, size, frame, shading and cuts, without the grey tones of cut faces. Throws std::runtime_error for
 /// fields that cannot be read. Precondition: no ray picture.
 voxel::RenderOptions options_of(const Render& render);
-/// The samples that cut faces show, and what is black and white of them; none if there are no samples. Of a
-/// plan, `made` holds the objects: each place shows the samples of the window that owns it, moved with it. Of
-/// files it is empty: objects without samples of their own show those of the first with samples, where they
-/// lie. Throws std::runtime_error for tones that cannot be read.
+/// The samples that cut faces show, and the sample values that are black and white; none if there are no samples. In
+/// a plan, `made` holds the objects: each place shows the samples of the window that owns the place, moved with it.
+/// For files `made` is empty: objects without samples show those of the first object with samples, at the samples'
+/// own places. Throws std::runtime_error for tones that cannot be read.
 std::optional<voxel::CutTones> cut_tones_of(const Render& render,
                                             const std::vector<voxel::DrawnObject>& objects,
                                             const std::vector<const Object*>& made);

@@ -65,7 +65,7 @@ double finest_mm(const voxel::Lattice& lattice) {
   return std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
 }
 
-/// A mesh's inside, in voxels of a pixel's width where one is stated.
+/// A mesh's inside, in voxels as wide as a pixel if a pixel's width is stated.
 Subject subject_of_mesh(const fs::path& path, const Slice& slice, const FileBench& bench) {
   Subject subject{voxels_of_mesh(path, std::nullopt, slice.pixel_mm, bench), {}, "1"};
   subject.lattice = std::get<voxel::Octree>(subject.samples).universe().lattice();
@@ -526,17 +526,17 @@ Operation slice_operation() {
       .takes(field("height_mm", &Slice::height_mm, "Height of a curved sheet.")
                  .greater_than(0.0)
                  .read_if<Slice>(is_curved, "applies only to curved sheets: add 'curve'"))
-      .takes(field("up", &Slice::up,
-                   "The direction that is up in an oblique or curved picture. Default: towards the head.")
-                 .direction()
-                 .read_if<Slice>(
-                     [](const Slice& slice) { return is_curved(slice) || !slice.oblique.empty(); },
-                     "applies only to oblique and curved pictures: axial, coronal and sagittal ones have "
-                     "theirs"))
+      .takes(
+          field("up", &Slice::up,
+                "The direction that is up in an oblique or curved picture. Default: towards the head.")
+              .direction()
+              .read_if<Slice>([](const Slice& slice) { return is_curved(slice) || !slice.oblique.empty(); },
+                              "applies only to oblique and curved pictures: axial, coronal and sagittal "
+                              "pictures have their own"))
       .takes(field("window", &Slice::window, "Black and white as LOW:HIGH, or a tissue.")
                  .read_if<Slice>(cuts_samples, no_samples))
       .takes(field("level", &Slice::level,
-                   "The same as a centre and a width. Default: 500 and 2000 for Hounsfield units.")
+                   "Black and white as a centre and a width. Default: 500 and 2000 for Hounsfield units.")
                  .from(2)
                  .to(2)
                  .comma_separated()
@@ -567,7 +567,7 @@ Operation slice_operation() {
                  .called("centre")
                  .read_if<Slice>([](const Slice& slice) { return !slice.size.empty(); },
                                  "applies only to pictures of a 'size': add it"))
-      .takes(field("interpolate", &Slice::interpolate, "Between samples.")
+      .takes(field("interpolate", &Slice::interpolate, "How to interpolate between samples.")
                  .one_of({"nearest", "linear", "cubic"})
                  .read_if<Slice>(cuts_samples, no_samples))
       .takes(field("plain", &Slice::plain, "No letters and no scale bar."))

@@ -27,7 +27,8 @@ MadeScan made(const AverageDown& step, const ScanBench& bench) {
 Operation average_down_operation() {
   return Describe<AverageDown>("average_down", "Makes fewer samples, each the mean of several.", Makes::Scan)
       .takes(field("scan", &AverageDown::scan, "The scan.").required())
-      .takes(field("factor", &AverageDown::factor, "Samples that become one: a number, or one for each axis.")
+      .takes(field("factor", &AverageDown::factor,
+                   "Number of samples along an axis that become one: a number, or one for each axis.")
                  .required()
                  .from(1)
                  .to(3))

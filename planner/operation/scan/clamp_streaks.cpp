@@ -39,9 +39,9 @@ Operation clamp_streaks_operation() {
   return Describe<ClampStreaks>("clamp_streaks", "Holds the samples near metal within bounds.", Makes::Scan)
       .takes(field("scan", &ClampStreaks::scan, "The scan.").required())
       .takes(field("metal", &ClampStreaks::metal, "Samples from this value on are metal."))
-      .takes(field("low", &ClampStreaks::low, "Lower samples near metal are raised to this."))
+      .takes(field("low", &ClampStreaks::low, "Samples near metal below this value are raised to it."))
       .takes(field("high", &ClampStreaks::high,
-                   "Higher samples near metal that are not metal are lowered to this."))
+                   "Samples near metal above this value that are not metal are lowered to it."))
       .takes(
           field("reach_mm", &ClampStreaks::reach_mm, "Distance from metal within which samples are clamped.")
               .greater_than(0.0))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The median of the samples about each.
+// Each sample replaced by the median of the samples around it.
 #include "planner/operation/scan/of_axes.h"
 #include "planner/operation/table/operation.h"
 #include "voxel/filter/smooth.h"
@@ -25,7 +25,8 @@ MadeScan made(const Median& step, const ScanBench& bench) {
 }  // namespace
 
 Operation median_operation() {
-  return Describe<Median>("median", "Takes the median of the samples about each.", Makes::Scan)
+  return Describe<Median>("median", "Replaces each sample by the median of the samples around it.",
+                          Makes::Scan)
       .takes(field("scan", &Median::scan, "The scan.").required())
       .takes(field("radius_samples", &Median::radius_samples,
                    "Samples on each side: a number, or one for each axis.")

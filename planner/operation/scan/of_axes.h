@@ -13,7 +13,7 @@ inline glm::ivec3 of_axes(const std::vector<int>& numbers) {
   return numbers.size() == 1 ? glm::ivec3(numbers[0]) : glm::ivec3(numbers[0], numbers[1], numbers[2]);
 }
 
-/// Refuses what is neither.
+/// Refuses any other count of numbers than one or three.
 inline void check_axes(const std::vector<int>& numbers, const FieldLocation& place) {
   if (numbers.size() != 1 && numbers.size() != 3) place.refuse("must be one number, or one for each axis");
 }

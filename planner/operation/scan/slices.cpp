@@ -35,7 +35,7 @@ Operation slices_operation() {
                  .required()
                  .greater_than(0.0))
       .takes(field("kernel", &Slices::kernel,
-                   "The kernel between slices. Default: linear, of label maps nearest.")
+                   "The kernel between slices. Default: linear; for label maps, nearest.")
                  .one_of({"nearest", "linear", "cubic", "lanczos"}))
       .example(R"({"id": "even", "do": "slices", "scan": "ct", "spacing_mm": 1, "kernel": "cubic"})")
       .on_files("slices=MM,KERNEL (nearest, linear, cubic, lanczos)")

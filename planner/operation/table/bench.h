@@ -159,7 +159,7 @@ struct AnswerBench {
   voxel::Progress progress(const std::string& doing) const;
 };
 
-/// The bench of a verb that answers from files by itself, and of a step of this operation, which writes the
+/// The bench of a verb that answers from files by itself, and of the step of the same operation, which writes the
 /// same kind of file from objects.
 struct FileBench {
   Timings& timings;

@@ -119,9 +119,9 @@ struct Field {
   Field a_file() && { return is_input = true, std::move(*this); }
   Field called(std::string as) && { return option = std::move(as), std::move(*this); }
 
-  /// Adds a condition on the whole operation, all of whose fields are then read: where it is not met, the field
-  /// would change nothing, and giving it is refused (need_fields_read()). On the command line objects are
-  /// paths of files, in a plan names.
+  /// Adds a condition on the operation's value, tested after all its fields were read. Where it is not met, the field
+  /// would have no effect, and stating it is refused (need_fields_read()). On the command line objects are paths of
+  /// files, in a plan names.
   template <typename Owner>
   Field read_if(bool (*is_read)(const Owner&), std::string otherwise) && {
     ConditionalSlot conditional{slot, {}};

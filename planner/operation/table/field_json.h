@@ -23,8 +23,8 @@ void read_fields(const std::vector<Field>& fields, const nlohmann::json& object,
 void need_fields_read(const std::vector<Field>& fields, const nlohmann::json& object, const void* owner,
                       const FieldLocation& place);
 
-/// The fields as JSON that read_fields() reads back to the same value. Optional fields that are absent, and
-/// empty lists, are left out, and those that the operation does not read (Field::read_if()).
+/// The fields as JSON that read_fields() reads back to the same value. Leaves out absent optional fields, empty
+/// lists, and fields that the operation does not read (Field::read_if()).
 nlohmann::ordered_json print_fields(const std::vector<Field>& fields, void* owner);
 
 /// The fields as a JSON schema's object (draft 2020-12). `fresh` is an owner with all defaults; a field that
@@ -42,11 +42,11 @@ nlohmann::json json_of_values(const std::vector<Field>& fields, void* fresh,
 
 /// Whether the field holds several words on the command line.
 bool takes_several(const Field& field, void* fresh);
-/// Whether it names objects, which are files on the command line.
+/// Whether the field names objects, which are files on the command line.
 bool names_objects(const Field& field, void* fresh);
-/// Whether it names a scan.
+/// Whether the field names a scan.
 bool names_scan(const Field& field, void* fresh);
-/// Whether it is a flag, which has no word.
+/// Whether the field is a flag, which has no word.
 bool is_flag(const Field& field, void* fresh);
 /// The form of one word in help: "MM", "X,Y,Z", "NAME".
 std::string word_form(const Field& field, void* fresh);

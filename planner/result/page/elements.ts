@@ -5,7 +5,8 @@ import {Attributes, Child, el, put} from "../../browser/page/base/html";
 import {grouped, three_figures} from "../../browser/page/base/numbers";
 import {Counts, Interval, Verdict} from "./result";
 
-/// Cells; cells of a row without a line below it, because wide_row() continues it; or a row that is an element already.
+/// A row: its cells; its cells without a line below, because wide_row() continues the row; or an element that is a
+/// row.
 export type Row = Child[]|{lead: Child[]}|HTMLElement;
 
 /// A table. Columns whose heads begin with "#" hold numbers and are aligned at the right.
@@ -24,7 +25,7 @@ export function table(heads: readonly string[], rows: readonly Row[], above: Chi
 /// A row of one cell over several columns.
 export const wide_row = (columns: number, ...children: Child[]): HTMLElement =>
     el("tr", {}, el("td", {colspan: columns}, children));
-/// A heading and what follows it; nothing where that is empty.
+/// A heading and its contents; nothing if there are no contents.
 export const section = (title: string, ...children: Child[]): Child =>
     children.some((child) => child && !(Array.isArray(child) && !child.length)) ? [el("h2", {}, title), children] : null;
 export const soft = (...children: Child[]): HTMLElement => el("p", {class: "soft small"}, children);

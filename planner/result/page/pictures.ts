@@ -21,7 +21,7 @@ function view_title(view: string): string {
 
 interface Shown {
   before?: string;     // a word in bold before the view's title
-  says: string;        // text before it for readers who cannot see the picture
+  says: string;  // text before the title for readers who cannot see the picture
   outlined?: boolean;  // whether to draw the outlines of mask regions
   letters?: number;    // height of letters in the picture's pixels
   marks_mm?: Vec3[];

@@ -48,7 +48,7 @@ struct SupportedNumber {
   void by_half_width(const std::optional<double>& half_width,
                      const std::optional<std::vector<Doubt>>& sources = {},
                      const std::optional<double>& coverage = {}) {
-    if (!half_width) return gap("no half-width was told");
+    if (!half_width) return gap("no half-width was reported");
     std::vector<std::string> names;
     for (const Doubt& source : sources.value_or(std::vector<Doubt>{}))
       names.push_back(source.name.empty() ? "unnamed" : source.name);
@@ -407,7 +407,7 @@ std::vector<CredibilityFactor> factors_of(const ResultRecord& result) {
       factor(calculation, "discretization error", certificate_evidence(result),
              "no certificate was requested, or no object has one"),
       factor(calculation, "numerical solver error", none,
-             "no solver was checked by itself: residuals of Booleans stand with the objects"),
+             "no solver was checked by itself: the objects have the residuals of their Booleans"),
       factor(calculation, "use error", reader_evidence(result), "no reader has signed the current plan"),
       factor(model, "model form", none,
              "bone is what lies in a window of samples: this run did not test that"),

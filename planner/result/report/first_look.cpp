@@ -120,7 +120,7 @@ Result first_look(const std::filesystem::path& scan, const LookOptions& options)
     Result first = result;
     first.findings.push_back({"certificates", voxel::Verdict::Warn,
                               "not made yet: the mesh kernel is at work, and no number here is checked until "
-                              "this page is written again; load it anew then"});
+                              "this page is written again; reload it then"});
     options.seen(std::move(first));
   }
   const Evaluation first = std::exchange(result.evaluation, {});

@@ -70,7 +70,7 @@ std::string text_of(const VerdictCounts& counts);
 /// Counts of the measurements that have a verdict of their own, such as those of printed parts.
 struct MeasuredVerdicts {
   int pass = 0, warn = 0, fail = 0;
-  std::vector<std::string> failed;  ///< of each FAIL its step, and the finding of it
+  std::vector<std::string> failed;  ///< for each FAIL, its step and its finding
 };
 /// Counts the verdicts in measurements_json(). Measurements without a verdict are not counted.
 MeasuredVerdicts measured_verdicts(const nlohmann::ordered_json& measurements);
