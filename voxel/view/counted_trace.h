@@ -13,7 +13,7 @@
 namespace octotomy::voxel {
 
 /// Node tracing as in the thesis (4.5.2): quadtree rays step from node to node, split into four at Partial
-/// nodes, and find neighbours by walking down from the pivot in their ancestor array. The same map as
+/// nodes, and find neighbours by walking down from the pivot in their ancestor array. Returns the same map as
 /// node_trace(). The neighbour gets a direct visit, the nodes between pivot and neighbour indirect ones; the
 /// quadtree gets recursion level - pivot level - 1 indirect visits (A.3.1.2). Adds visits to `visits` if
 /// given. Precondition: as node_trace().

@@ -9,10 +9,10 @@
 #include "voxel/space/vector_clones.h"
 
 // The search of ray_surface.cpp on vectors of rays:
-// 1 copy the samples about the leaf in fours; 2 interpolate them at the entries; 3 take the voxel's face
-// where the object was cut; 4 probe along the other rays until their sample crosses the threshold; 5
-// interpolate the crossing. All rays execute the same steps; a step that a ray does not need has no effect on
-// it.
+// 1 copy the samples about the leaf in fours (LeafSurface::fours_); 2 interpolate them at the entries; 3 take
+// the voxel's face where the object was cut; 4 probe along the other rays until their sample crosses the
+// threshold; 5 interpolate the crossing. All rays execute the same steps; a step that a ray does not need has
+// no effect on it.
 
 // Vectors are passed between functions of this file alone, all of them inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -24,7 +24,7 @@ constexpr int lanes = 8;
 constexpr int row = LeafSurface::side;
 constexpr int layer = row * row;
 
-/// The sample of voxels beyond the universe. Where it is read, it acts as a voxel that was cut away.
+/// The sample that is read for voxels beyond the universe, which therefore count as cut away.
 constexpr std::int16_t beyond = std::numeric_limits<std::int16_t>::max();
 
 // Vectors of rays. A comparison gives -1 where it holds.
@@ -162,8 +162,8 @@ struct Fours {
     store(cell_of(way, origins, axis, distance_mm, low, high, t[axis]), cells[axis]);
   for (int i = 0; i < lanes; ++i) {
     const glm::ivec3 cell(cells[0][i], cells[1][i], cells[2][i]);
-    // The part of a coordinate in the number of a brick's sample, which counts leaves, then voxels, each by
-    // x + 4y + 16z.
+    // What a coordinate adds to the number of a brick's sample. Samples are numbered by leaves, then by
+    // voxels of a leaf, each in the order x + 4y + 16z.
     const auto along = [](int at) { return ((at >> 2) & 3) * 64 + (at & 3); };
     const int number[3][2] = {{along(cell.x), along(cell.x + 1)},
                               {along(cell.y) << 2, along(cell.y + 1) << 2},
@@ -211,7 +211,7 @@ struct Search {
   Int faces;              ///< rays that meet their voxel's face
   Int crossed;            ///< rays whose surface lies between their last two probes; the entry counts as a
                           ///< probe
-  Float near_mm, far_mm;  ///< from the entry to these two
+  Float near_mm, far_mm;  ///< from the entry to these two probes
   Float near_value, far_value;  ///< there
 };
 
@@ -318,8 +318,8 @@ template <typename Samples>
 
 constexpr std::int32_t nothing = 0, smooth = 1, face = 2;  // what a ray meets
 
-/// Steps 2 to 5 for a batch, each for all vectors of rays before the next, so that the processor need not
-/// wait for one vector to begin with another.
+/// Executes each of steps 2 to 5 for all vectors of a batch before the next step, so that the processor can
+/// overlap the work on several vectors.
 template <typename Samples>
 [[gnu::always_inline]] inline void find_surface(const Way& way, const Samples& samples, const RayBatch& batch,
                                                 float* depth_mm, std::int32_t* kind) {
