@@ -16,7 +16,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// A box of 2^log2[axis] voxels along each axis, number `at[axis]` of its size.
+/// A box of 2^log2[axis] voxels along each axis, at position `at[axis]` in units of its own edge.
 struct HalvedBox {
   glm::ivec3 log2{0};
   glm::ivec3 at{0};
@@ -120,8 +120,8 @@ class LeastBiTree {
 
   int depth_, side_;
   std::vector<std::uint32_t> sums_;
-  std::vector<std::uint32_t> least_;  ///< nodes of the least tree of each box; 0: not searched yet
-  std::vector<std::uint8_t> axes_;    ///< the axis that it is halved along
+  std::vector<std::uint32_t> least_;  ///< number of nodes of each box's least tree; 0: not searched yet
+  std::vector<std::uint8_t> axes_;    ///< the axis along which each box is halved
 };
 
 class BiTreeReader {

@@ -16,8 +16,8 @@ struct SurfaceFace {
 };
 
 /// The boundary's face nearest to a point in voxels, whose integers are voxels' middles, among the faces whose
-/// middles lie within `most` voxels along each axis; of equally near ones the first, by voxel, x fastest, then
-/// by direction. None if there is none.
+/// middles lie within `most` voxels along each axis; among equally near faces the first, by voxel, x fastest,
+/// then by direction. None if no face is that near.
 std::optional<SurfaceFace> nearest_face(const Octree& octree, const glm::dvec3& p_voxel, double most);
 
 /// Whether voxels of the object that share only an edge are joined. The outside is joined the other way.
