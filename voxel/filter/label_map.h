@@ -45,7 +45,7 @@ constexpr int most_label = (1 << 24) - 1;
 std::optional<int> label_of(double sample);
 
 /// The labels of a scene except 0, ascending, with their numbers of samples; a sample in several labels
-/// counts for each (Scene::overlaps). Throws std::invalid_argument if label_of() a sample is none.
+/// counts for each (Scene::overlaps). Throws std::invalid_argument if label_of() returns none for a sample.
 struct Label {
   int number = 0;
   std::uint64_t samples = 0;
@@ -53,9 +53,9 @@ struct Label {
 };
 std::vector<Label> labels(const Scene& scene);
 
-/// The same labels on another lattice on whose positions all samples lie, for a map that was cropped, or
-/// whose axes were reversed or exchanged. None if samples lie between those of the lattice, or labels beyond
-/// it.
+/// The same labels on another lattice, for a map that was cropped, or whose axes were reversed or exchanged.
+/// None if a sample of the scene lies between the lattice's samples, or a sample with a label beyond the
+/// lattice.
 std::optional<Scene> laid_on(const Scene& scene, const Lattice& lattice);
 
 /// The voxels of a universe whose nearest sample has that label; voxels beyond the scan are empty. Parallel
@@ -68,7 +68,7 @@ struct LabelLayer {
   Scene ranks;
 };
 /// The labels of a scene in few layers: each label joins the first layer where it overlaps no other. Throws
-/// as labels(); std::length_error for more than 32767 labels. Memory: two bytes a sample and layer.
+/// as labels(); std::length_error for more than 32767 labels. Memory: two bytes per sample and layer.
 std::vector<LabelLayer> label_layers(const Scene& scene);
 
 }  // namespace octotomy::voxel

@@ -30,7 +30,7 @@ constexpr double silhouette_mm = 10.0;     ///< distance within the core's outli
                                            ///< there is no ear
 constexpr double close_mm = 4.0;           ///< gaps in the skin up to twice this width are closed
 constexpr double foam_limit = -200.0;      ///< HU; with a threshold from here on, soft tissue lies below it
-constexpr double least_core_share = 0.3;   ///< share of the largest part; with less, the object is thin
+constexpr double least_core_share = 0.3;   ///< of the largest part; with a smaller core, the object is thin
                                            ///< throughout
 constexpr double most_front_share = 0.25;  ///< a thick part with a larger share in front is no support
 constexpr double thick_mm = 4.0;           ///< a part is thick if it contains a ball of this radius
@@ -210,8 +210,8 @@ class Parter {
                                                                  }) > least_bone_share);
   }
 
-  /// Computes the coronal middle, half-way between the foremost cell of the core and the rearmost of the core
-  /// and the parts that hang on it and are near, plus half a cell and half of a mask's thickness for safety.
+  /// Computes the coronal middle, half-way between the core's foremost cell and the rearmost cell of the core
+  /// and of near parts that hang on the core, plus half a cell and half of a mask's thickness for safety.
   /// Parts that hang on the core in front may be a nose or a marker: without them the middle lies farther
   /// back, so less is removed.
   void set_middle() {
@@ -237,8 +237,8 @@ class Parter {
   }
 
   /// For each line from the front to the back, the core's rearmost cell if the line lies well within the
-  /// core's outline; otherwise the rearmost cell of all lines within near_mm along the table. Ears lie before
-  /// it.
+  /// core's outline; otherwise the rearmost cell of all lines within near_mm along the table. Ears lie in
+  /// front of that cell.
   std::vector<int> backs() const {
     const int sides = grid_.dims[axes_.side], slices = grid_.dims[axes_.along];
     CellGrid plane = grid_;

@@ -55,8 +55,8 @@ Numbers ascended(const FloatSamples& samples, const glm::ivec3& dims, Flat flat,
         next[at] = static_cast<std::uint32_t>(highest);
       }
   });
-  // Each step ascends in the order of samples, then of indices, so that a path ends. It is shortened as it is
-  // walked.
+  // Each step leads to a higher sample, or to an equal sample of lower index, so every path ends. A path is
+  // shortened while it is followed.
   for (std::size_t at = 0; at < next.size(); ++at) {
     std::uint32_t top = next[at];
     while (next[top] != top) top = next[top];
