@@ -15,7 +15,7 @@ struct ColourPixels {
 };
 
 /// The pixels of a PNG of 8 bits a channel, grey or colour, not interlaced; transparency is dropped. read_images() reads
-/// only grey. Throws Error, Input, without a path, if the PNG is of another kind, damaged, or has a side of more than 8192
+/// only grey. Throws Error (Input) without a path, if the PNG is of another kind, damaged, or has a side of more than 8192
 /// pixels. Memory: twice the pixels. Source: PNG specification, second edition.
 ColourPixels png_pixels(std::string_view png);
 

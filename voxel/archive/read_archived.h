@@ -23,7 +23,7 @@ struct ArchivedObject {
 
 /// Reads an encapsulated PDF, CDA, STL or OBJ, or an uncompressed secondary capture of three 8-bit channels. None if the
 /// file is no DICOM file, or another kind of object, such as images of a scan. Texts are UTF-8 without control characters.
-/// Throws Error, Input, with path and reason, if such an object is damaged, or states more bytes than it has. Memory: twice
+/// Throws Error (Input) with path and reason, if such an object is damaged, or states more bytes than it has. Memory: twice
 /// the file.
 std::optional<ArchivedObject> read_archived(const std::filesystem::path& path);
 

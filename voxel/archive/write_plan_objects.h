@@ -32,7 +32,7 @@ struct PlanObjects {
 ///   pictures of one size. Its pixels are uncompressed.
 /// `source` is the series of the plan's scan: its patient and study are copied, its images listed. None: a study of its own.
 /// Unique identifiers are computed from the content. All files appear together, or none. Returns their names. Throws
-/// InvalidInput if a text is empty or too long; Error, Input or Resource, with path and reason.
+/// InvalidInput if a text is empty or too long; Error (Input or Resource) with path and reason.
 std::vector<std::filesystem::path> write_plan_objects(const PlanObjects& plan,
                                                       const std::filesystem::path& folder,
                                                       const std::optional<DicomSource>& source);

@@ -16,7 +16,7 @@ struct DecodedSlice {
   std::size_t foreign_count = 0;  ///< pixels with bits outside BitsStored that are not copies of the sign
 };
 
-/// Whether two images store the same pixels in the same way. Throws Error, Input, if a file has changed.
+/// Whether two images store the same pixels in the same way. Throws Error (Input) if a file has changed.
 bool same_pixels(const DicomSlice& a, const DicomSlice& b);
 
 /// Decodes a slice and applies its Modality LUT or its rescale, row by row, x fastest. A slope that is absent

@@ -139,10 +139,10 @@ std::variant<std::vector<DicomSlice>, NoSlice> read_dicom_slices(const std::file
 /// The number of bytes in a frame's uncompressed pixels.
 std::size_t frame_bytes(const DicomSlice& slice);
 
-/// The first `count` bytes of a file, or all of them. Throws Error, Input, if they cannot be read.
+/// The first `count` bytes of a file, or all of them. Throws Error (Input) if they cannot be read.
 std::string beginning_of(const std::filesystem::path& path, std::size_t count);
 
-/// The file with its bytes from `at` on inflated. Throws Error, Input, if they are damaged.
+/// The file with its bytes from `at` on inflated. Throws Error (Input) if they are damaged.
 std::string inflated(const std::string& bytes, std::size_t at);
 
 }  // namespace octotomy::voxel

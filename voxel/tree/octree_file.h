@@ -62,7 +62,7 @@ std::vector<std::uint8_t> octree_file_bytes(const OctreeFile& file);
 /// times the bytes, the highest compression of zstd, and an empty tree of the universe.
 OctreeFile octree_file_of_bytes(std::span<const std::uint8_t> bytes, const std::string& source);
 
-/// Writes a file beside `path` and renames it into place. Throws Error, Input or Resource, with path and
+/// Writes a file beside `path` and renames it into place. Throws Error (Input or Resource) with path and
 /// reason.
 void write_octree(const OctreeFile& file, const std::filesystem::path& path);
 /// Throws Error with path and reason, and as octree_file_of_bytes().
