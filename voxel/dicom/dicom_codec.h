@@ -27,13 +27,14 @@ struct CompressedFrame {
 /// to every start of the program. Throws Error (Resource) if that process cannot be started.
 std::optional<std::string> decompress(const CompressedFrame& frame);
 
-/// What the decompressing process states of itself.
+/// Facts that the decompressing process reports about itself.
 struct CodecFacts {
   bool is_confined = false;  ///< whether all of confine() is in force there
   std::vector<std::pair<std::string, std::string>> libraries = {};  ///< names and loaded versions
 };
 
-/// Asks the calling thread's process. Throws Error (Resource) if it cannot be started or does not answer.
+/// Requests the facts from the calling thread's process. Throws Error (Resource) if it cannot be started or
+/// does not answer.
 CodecFacts codec_facts();
 
 }  // namespace octotomy::voxel

@@ -149,7 +149,7 @@ DicomFile::Head DicomFile::take_head() {
   return head;
 }
 
-/// The Extended Offset Table, (7fe0,0001), of eight bytes a frame (DICOM PS3.3, C.7.6.3).
+/// Reads the Extended Offset Table, (7fe0,0001), with eight bytes per frame (DICOM PS3.3, C.7.6.3).
 void DicomFile::take_extended_offsets() {
   const auto found = values_.find(0x7fe00001);
   if (found == values_.end()) return;

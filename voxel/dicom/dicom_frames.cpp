@@ -29,8 +29,8 @@ std::optional<std::vector<std::uint16_t>> numbers_of_frames(const DicomFile& fil
   return numbers;
 }
 
-/// The attribute by which FrameIncrementPointer states that frames follow each other in time; empty if it
-/// does not.
+/// The attribute that FrameIncrementPointer names if the frames follow each other in time; empty if they do
+/// not.
 std::string time_between_frames(const DicomFile& file) {
   const std::vector<std::uint16_t> pointers = file.unsigned_shorts(0x00280009);
   for (std::size_t i = 0; i + 1 < pointers.size(); i += 2) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Turns a header into slices, attribute by attribute. Each attribute that a volume needs can be absent, wrong or
-// elsewhere in its own way.
+// Turns a header into slices, attribute by attribute. Each attribute that a volume needs may be absent, wrong
+// or stored elsewhere, in ways of its own.
 #include "voxel/dicom/dicom_slice.h"
 
 #include <algorithm>

@@ -51,7 +51,7 @@ std::vector<std::pair<std::size_t, std::size_t>> rivals_of(const std::vector<Dic
   return rivals;
 }
 
-/// The attribute in which most of these pairs differ, if at least half of them do.
+/// The attribute in which most of the pairs of rivals differ, if at least half of the pairs do.
 std::optional<std::size_t> parting_trait(const std::vector<DicomSlice>& slices,
                                          const std::vector<std::pair<std::size_t, std::size_t>>& rivals) {
   std::size_t most = 0;
