@@ -25,7 +25,7 @@ std::uint64_t scattered(std::uint64_t n) {
   return n ^ (n >> 31);
 }
 
-/// A number of -1/2..1/2.
+/// Converts bits to a number from -1/2 to 1/2.
 double offset(std::uint64_t bits) {
   return static_cast<double>(bits >> 11) * 0x1.0p-53 - 0.5;
 }
@@ -67,7 +67,7 @@ double shared_entropy(const Sums& s) {
 float CoarseScan::at(const glm::dvec3& p_voxel) const {
   const glm::dvec3 floor = glm::floor(p_voxel);
   const glm::ivec3 last = dims - 1;
-  // A scan of one block along an axis is as wide as the block.
+  // Along an axis with a single block, the scan is as wide as that block.
   std::array<int, 3> first{}, next{};
   glm::vec3 part(0.0f);
   for (int k = 0; k < 3; ++k) {
