@@ -101,7 +101,7 @@ class Search {
     return glm::translate(moved, -middle_mm_);
   }
 
-  /// The largest distance between the two places of a corner of the fixed scan.
+  /// The largest distance between the two positions to which two motions move one corner of the fixed scan.
   double apart_mm(const Parameters& a, const Parameters& b) const {
     double apart = 0.0;
     for (const glm::dvec3& corner : corners_mm_)

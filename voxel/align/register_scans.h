@@ -12,8 +12,8 @@
 
 namespace octotomy::voxel {
 
-/// Correlation: of samples in one unit, or in units that differ by a scale and an offset. MutualInformation: of any
-/// two modalities or contrasts; its value is the entropy correlation coefficient.
+/// Correlation: for samples in one unit, or in units that differ by a scale and an offset. MutualInformation:
+/// for any two modalities or contrasts; its value is the entropy correlation coefficient.
 enum class ScanLikeness { Correlation, MutualInformation };
 
 /// A motion that is at least as good as those before it at its resolution; the first is the start.

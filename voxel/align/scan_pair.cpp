@@ -209,7 +209,7 @@ Likeness ScanPair::likeness(const glm::dmat4& moving_from_fixed) const {
         s.ab += a * b;
         continue;
       }
-      // Shared between the two nearest bins, so that the likeness is continuous.
+      // A point is shared between the two nearest bins, so that the likeness is continuous.
       const float place = (value - moving_.low) * per_value;
       const int bin = std::min(bins - 2, static_cast<int>(place));
       const double beyond = place - static_cast<float>(bin);

@@ -37,7 +37,7 @@ struct Likeness {
   double overlap = 0.0;  ///< share of the smaller scan that the other one covers
 };
 
-/// Two scans at one resolution, compared at points of the fixed one. Pseudorandom offsets, computed from the
+/// Two scans at one resolution, compared at points of the fixed scan. Pseudorandom offsets, computed from the
 /// points' numbers, move the points off the blocks' centres, because points on a grid favour motions by whole
 /// blocks (Pluim, Maintz, Viergever, Interpolation artefacts in mutual information-based image registration,
 /// 2000).
