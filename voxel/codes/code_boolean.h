@@ -11,8 +11,8 @@ namespace octotomy::voxel {
 /// The Booleans of thesis 7.2.
 enum class SetOperation { Intersection, Union, Difference };
 
-// Booleans of two objects in one code, without an octree. Each throws std::invalid_argument if the universes
-// differ. Precondition: both codes pass the checks of octree_of().
+// Booleans of two objects in the same code, without an octree. Each throws std::invalid_argument if the
+// universes differ. Precondition: both codes pass the checks of octree_of().
 
 /// Combines word by word. Cost: the array.
 BinaryArray combined(const BinaryArray& a, const BinaryArray& b, SetOperation operation);

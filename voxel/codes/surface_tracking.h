@@ -20,14 +20,15 @@ struct SurfaceFace {
 /// then by direction. None if no face is that near.
 std::optional<SurfaceFace> nearest_face(const Octree& octree, const glm::dvec3& p_voxel, double most);
 
-/// Whether voxels of the object that share only an edge are joined. The outside is joined the other way.
+/// Whether voxels of the object that share only an edge are joined. Voxels outside are joined in the other
+/// way.
 enum class Joined { ByFaces, ByEdges };
 
 /// A connected part of an object's boundary.
 struct TrackedSurface {
   CuberilleFaces faces;
-  /// Voxels inside of the surface, those of cavities included; negative for the wall of a cavity, which
-  /// encloses what is outside of the object.
+  /// Voxels inside the surface, those of cavities included; negative for the wall of a cavity, which encloses
+  /// voxels outside the object.
   std::int64_t enclosed_voxels = 0;
 };
 
