@@ -252,7 +252,7 @@ std::vector<DicomFile> DicomFile::items(DicomTag sequence) const {
     const std::size_t length = head.is_open() ? marks.left() : head.length;
     found.push_back(DicomFile(marks.bytes_.substr(marks.at_, length), explicit_vr, marks.big_endian_));
     marks.at_ += head.is_open() ? found.back().at_ : length;
-    // An item without a character set of its own has that of the data set around it (PS3.5, 6.1.1).
+    // An item without a character set of its own uses that of the data set around it (PS3.5, 6.1.1).
     if (character_set != values_.end()) found.back().values_.insert(*character_set);
   }
   return found;

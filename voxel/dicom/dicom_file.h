@@ -84,8 +84,9 @@ class DicomFile {
   /// The offset table, basic or extended: where each frame begins, counted from the first fragment's item;
   /// empty if absent.
   const std::vector<std::uint64_t>& frame_offsets() const { return frame_offsets_; }
-  /// The fragments of each of a number of frames: one per frame, else divided by the offset table, else by
-  /// the start-of-image markers. None if none of these fits. Precondition: fragments() has a value.
+  /// The fragments of each frame of a file with `frames` frames: one per frame, else divided by the offset
+  /// table, else by the start-of-image markers. None if none of these fits. Precondition: fragments() has a
+  /// value.
   std::optional<std::vector<std::vector<DicomExtent>>> frame_fragments(std::size_t frames) const;
   /// Whether a fragment begins a frame of JPEG, JPEG-LS or JPEG 2000, which start with a start-of-image
   /// marker.

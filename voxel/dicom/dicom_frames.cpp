@@ -133,7 +133,7 @@ std::optional<NoSlice> place_frames(const DicomFile& file, std::vector<DicomSlic
     const double step_mm =
         named.tag == 0x00180088 ? first.spacing_tag_mm.value_or(0.0) : first.thickness_mm.value_or(0.0);
     if (!how.empty() || step_mm == 0.0 || !(std::abs(step_mm) < 1e6)) continue;
-    // In a time series of one slice, SliceThickness is no distance between slices.
+    // In a time series of a single slice, SliceThickness is not a distance between frames.
     if (!time.empty() && named.tag == 0x00180050)
       return NoSlice{
           "a multi-frame image whose frames follow each other in time (FrameIncrementPointer names " + time +

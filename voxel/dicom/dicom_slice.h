@@ -62,8 +62,8 @@ struct Concatenation {
   int total = 0;    ///< 0: the header does not state it
 };
 
-/// The part of a grey DICOM image's header that a volume needs. The image is a file of one frame or one frame
-/// of several. LPS, millimetres.
+/// The part of a grey DICOM image's header that a volume needs. The image is a file's only frame, or one of
+/// its frames. LPS, millimetres.
 struct DicomSlice {
   std::filesystem::path path;
   std::string
