@@ -20,10 +20,10 @@ Universe universe_on(const Lattice& lattice);
 /// Transfers an object from the voxels of a universe to the samples of a lattice. The object `made` was
 /// chosen, opened, closed or filled from `base`; the two share one universe. `own` is the base computed at
 /// the samples themselves, on universe_on(lattice). If a sample and its nearest voxel are both in the base or
-/// both outside it, the sample is in the object if that voxel is. Otherwise, a sample of the base is in the
-/// object if one of the up to eight voxels around it is, and another sample is if one of them was added to
-/// the base. So a sample at a voxel's centre is in the object exactly if that voxel is, and an unchanged base
-/// keeps exactly its samples. Parallel over blocks.
+/// both outside it, the sample is in the object if that voxel is. Otherwise, the up to eight voxels around
+/// the sample decide: a sample in the base is in the object if one of these voxels is, and a sample outside
+/// the base is in the object if one of them was added to the base. So a sample at a voxel's centre is in the
+/// object exactly if that voxel is, and an unchanged base keeps exactly its samples. Parallel over blocks.
 Octree chosen_samples(const Lattice& lattice, const Octree& own, const Octree& base, const Octree& made);
 
 /// The label map of objects on a lattice: a sample is i + 1 if objects[i] is the first object with a voxel at

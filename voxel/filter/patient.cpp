@@ -346,7 +346,8 @@ class Parter {
     rim_ = with_edge(grid_, others, options_.rim_mm);
   }
 
-  /// Calls `visit` with the cell and the up to 27 cells around each cell behind the middle.
+  /// For each cell behind the middle, calls `visit` with the cell and the up to 27 cells of the box around
+  /// it.
   template <typename Visit>
   void for_each_box_behind(const Visit& visit) const {
     tbb::parallel_for(0, grid_.dims.z, [&](int z) {

@@ -35,9 +35,9 @@ struct ShapeOptions {
 /// object's outline in it, negative inside; between two slices the maps are interpolated linearly, and the
 /// object is the set of distances of at most 0 (Raya and Udupa, IEEE Trans. Medical Imaging 9, 1990;
 /// departure: distances are Euclidean and exact instead of chamfered). At a sampled slice the result is that
-/// slice's own shape. Next to an empty slice it is the nearer slice's shape, the lower one at equal distance.
-/// The result is a label map of 0 and 1 on with_slice_spacing(). Throws as resample_slices(), and
-/// std::invalid_argument if the first two axes are not perpendicular. Parallel over slices. Memory: the
+/// slice's own shape. Next to an empty slice the result is the nearer slice's shape, at equal distance the
+/// lower slice's. The result is a label map of 0 and 1 on with_slice_spacing(). Throws as resample_slices(),
+/// and std::invalid_argument if the first two axes are not perpendicular. Parallel over slices. Memory: the
 /// result, and two slices of floats per thread.
 Scene interpolate_shape(const Scene& scene, const ShapeOptions& options);
 

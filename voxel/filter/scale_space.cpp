@@ -31,8 +31,8 @@ std::vector<double> stack_of(double coarsest_mm, double voxel_mm) {
   return sigmas;
 }
 
-/// Whether a sample without a higher neighbour ascends to an equal one of lower index, so that a flat top is
-/// one maximum, or is a maximum of its own.
+/// The rule for a sample without a higher neighbour. OneMaximum: it ascends to an equal neighbour of lower
+/// index, so that a flat top is one maximum. EachItsOwn: it is a maximum of its own.
 enum class Flat { OneMaximum, EachItsOwn };
 
 /// The maximum to which each sample ascends.

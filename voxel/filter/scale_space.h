@@ -32,10 +32,10 @@ struct ScaleSpace {
 /// maximum of a finer level takes the label of the coarser level at its place, and so do the samples that
 /// ascend to it. So touching objects are separated where brightness falls between them, and noise, which the
 /// coarsest blur removes, makes no objects. A flat top of the coarsest blur is one maximum; on a finer level
-/// each of its samples is a maximum, so that a saturated object does not lead across a neck. Throws
-/// InvalidInput for label maps, a window without numbers, and as gaussian(); Error (Geometry) if no sample is
-/// in the window, or more than 32767 regions are; Stopped. Same bits on any thread count. Memory: 16 bytes
-/// per sample.
+/// each of its samples is a maximum, so that the flat top of a saturated object is not joined across a neck.
+/// Throws InvalidInput for label maps, a window without numbers, and as gaussian(); Error (Geometry) if no
+/// sample is in the window, or more than 32767 regions are; Stopped. Same bits on any thread count. Memory:
+/// 16 bytes per sample.
 ScaleSpace scale_space(const Scene& scene, const ScaleSpaceOptions& options);
 
 }  // namespace octotomy::voxel

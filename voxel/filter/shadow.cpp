@@ -30,7 +30,7 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr int points_an_edge = 5;  ///< of a voxel, and columns of one
+constexpr int points_an_edge = 5;  ///< points along a voxel's edge, and columns per edge
 constexpr int points_a_voxel = points_an_edge * points_an_edge * points_an_edge;
 /// Shares of a cell's longest edge: the largest distance by which a surface of triangles cuts off an edge of
 /// the solid, and the largest outward motion of the triangles' middles (SurfaceCrossings).
