@@ -15,8 +15,8 @@ struct LocalThicknessOptions {
   std::size_t samples =
       20000;  ///< about this many voxels are measured among all, and as many on the surface; at least 64
   /// A wall's ball touches the outside, within a voxel's shortest edge, at two places whose directions from
-  /// its centre enclose at least this, 91..179 degrees. Sides of a wedge of angle a touch balls at 180 - a:
-  /// 150 leaves out its edge unless the sides converge by 30 degrees or less.
+  /// its centre enclose at least this angle, 91..179 degrees. The sides of a wedge of angle a enclose 180 - a
+  /// degrees, so 150 leaves out the wedge's edge unless its sides converge by 30 degrees or less.
   double wall_angle_deg = 150.0;
   Progress progress = {};
 };
@@ -31,9 +31,10 @@ struct ThicknessAtVoxel {
 /// Local thickness over an object's voxels.
 struct VoxelThickness {
   double mean_mm = 0.0, deviation_mm = 0.0, median_mm = 0.0, largest_mm = 0.0;
-  /// The mean is within this of the true value in 99 of 100 cases. The sum of three terms: half a voxel's
-  /// longest edge for each of a ball's two sides, because digitisation displaces parallel walls in the same
-  /// way; a quarter of that edge for the lattice of centres; and 2.6 standard errors of the sampled voxels.
+  /// In 99 of 100 cases the mean deviates from the true value by no more than this. The sum of three terms:
+  /// half a voxel's longest edge for each of a ball's two sides, because digitisation displaces parallel
+  /// walls in the same way; a quarter of that edge for the lattice of centres; and 2.6 standard errors of the
+  /// sampled voxels.
   double mean_half_width_mm = 0.0;
   std::vector<ThicknessAtVoxel> surface;
   std::optional<std::size_t> thinnest_wall;  ///< in `surface`; none if no sampled voxel belongs to a wall

@@ -72,8 +72,8 @@ std::array<double, 13> summed_shares(const Lattice& lattice) {
   return share;
 }
 
-// Caches the shares of the last lattice, because all objects of a plan have the same one: computing the
-// shares takes longer than counting a small object.
+// Caches the shares of the last lattice, because all objects of a plan have the same lattice and computing
+// the shares takes longer than counting a small object.
 std::array<double, 13> shares(const Lattice& lattice) {
   static std::mutex mutex;
   static glm::dmat3 known(0.0);
