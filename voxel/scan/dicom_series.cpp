@@ -621,7 +621,7 @@ class SeriesAssembler {
     audit_identifiers(stack);
   }
 
-  /// Images of different files under one identifier. The frames of one file share theirs.
+  /// Reports images of different files with the same SOP Instance UID. Frames of one file share theirs.
   void audit_identifiers(const DicomStack& stack) {
     std::map<std::string, std::filesystem::path> file_of;
     std::vector<std::string> shared;

@@ -29,7 +29,7 @@ struct DicomStack {
   }
 };
 
-/// Reads the headers below a path, chooses the series that the options ask for, and keeps the slices that
+/// Reads the headers below a path, chooses the series that the options request, and keeps the slices that
 /// form a stack. The audit lists the files that were left out, and why, under these checks: stray_files,
 /// unusable_images, damaged_files, series, localizers, patient, patient_issuer (if stated), study, modality,
 /// frame_of_reference, size, orientation, stacks, pixel_spacing, duplicates; then the lines of audit_stack().

@@ -78,8 +78,8 @@ class SeriesReader {
     audit_steps();
     if (scene_.modality == "CT") {
       AirLevel air = air_level_of_ct(scene_);
-      // Not Hounsfield units if the header declares another unit, or an unspecified one and the air does not
-      // contradict it.
+      // Not Hounsfield units if the header declares another unit, or if it leaves the unit unspecified (US)
+      // and the air does not confirm Hounsfield units.
       const std::string& unit = stack.first().rescale_type;
       const bool is_other = !unit.empty() && unit != "HU" && unit != "HU_MOD" && unit != "US";
       if (is_other ||

@@ -128,7 +128,7 @@ std::string packed_pixels(Segments segments, const Extent& extent, const Progres
   return pixels;
 }
 
-/// Keeps one of the planes at each height, which every object of a label map shares.
+/// Keeps one plane at each height, because all objects of a label map share its frame.
 void share_planes(Extent& extent) {
   std::vector<Plane>& planes = extent.planes;
   std::sort(planes.begin(), planes.end(), [](const Plane& a, const Plane& b) { return a.z < b.z; });
