@@ -33,7 +33,7 @@ class ExpressionBlocks {
     Cover cover;           ///< of its children; at height 2 ask_words() decides more of them
     // At height 2 only:
     std::array<std::uint64_t, 64> words;  ///< of the wanted leaves that `cover` leaves undecided
-    // One entry an operand:
+    // One entry per operand:
     std::vector<Operation> operations;
     std::vector<Cover> covers;
     std::vector<std::array<std::uint64_t, 64>> operand_words;

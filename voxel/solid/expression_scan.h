@@ -35,8 +35,8 @@ struct ExpressionScan {
 /// operand is interpolated once, trilinearly between that operand's own samples. Padding of the frame stays
 /// where the expression contains nothing. Lattice, type and meaning of the samples and the patient's
 /// identity are the frame's. `of_frame` is a grey octree that keeps the frame (GreyOctree::with_scan());
-/// the expression's windows are of this or of others with samples in the same steps; windows in other steps,
-/// such as those of offset(), limit the voxels but give no samples.
+/// the expression's windows belong to this octree or to others with samples in the same steps; windows in
+/// other steps, such as those of offset(), limit the voxels but give no samples.
 ///
 /// Throws Error (Input) if the frame has more than 1,024 samples a side or reaches out of the octree's
 /// universe, if the samples cannot have the value of `hole` or `filled`, or if no value is left for holes;

@@ -136,7 +136,8 @@ class SourceWalk {
   std::vector<Source> found_;
   std::vector<glm::dmat4> motions_{glm::dmat4(1.0)};  // products, from outermost
   std::vector<glm::dmat4> around_;                    // the factors
-  std::vector<TermPointer> next_{nullptr};  // for each term not yet visited, as for_each_term() has them
+  std::vector<TermPointer> next_{nullptr};  // Open::alternative of each term not yet visited, in the order of
+                                            // for_each_term()'s stack
   std::vector<Open> open_;
   bool positive_ = true;
 };
@@ -153,7 +154,7 @@ bool same_terms(const Expression::Term& one, const Expression::Term& other) {
   if (a->kind != Expression::Kind::Leaf || b->kind != Expression::Kind::Leaf) return false;
   const auto* window = std::get_if<Window>(&*a->leaf);
   const auto* against = std::get_if<Window>(&*b->leaf);
-  // Grey octrees are immutable and shared: one storage holds one universe.
+  // Grey octrees are immutable and shared, so the address of the universe identifies the samples.
   return window != nullptr && against != nullptr && window->low == against->low &&
          window->high == against->high && &window->grey.universe() == &against->grey.universe();
 }

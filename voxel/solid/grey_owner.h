@@ -37,8 +37,8 @@ Expression with_samples(const Expression& voxels, const Expression& samples);
 /// For a term made by with_samples(), the term of its `voxels`; otherwise the term itself.
 const Expression::Term& before_samples(const Expression::Term& term);
 
-/// The windows of an expression that give samples to what they contain: those under an even number of
-/// complements and right sides of a minus. Throws as for_each_term().
+/// The windows of an expression that give samples to the voxels that they contain: windows under an even
+/// number of complements and right sides of a minus. Throws as for_each_term().
 std::vector<Window> positive_windows(const Expression& expression);
 
 /// Computes samples of expressions at single positions, without building a scan. The owner of a voxel is the
@@ -60,7 +60,7 @@ class GreyOwners {
   const Universe& universe() const;
   /// All windows in their order.
   std::vector<Window> windows() const;
-  /// Whether both certainly give the same results: one universe, the same voxels and the same terms in
+  /// Whether both certainly return the same samples: one universe, the same voxels and the same terms in
   /// memory. Windows and their motions that were created separately are compared by value.
   bool is_same(const GreyOwners& other) const;
 
