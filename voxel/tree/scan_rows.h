@@ -75,7 +75,7 @@ class ScanRows {
   struct {
     std::vector<std::int32_t> low, high;
     std::vector<double> share;
-  } in_row_;  ///< the places along x, one array per member
+  } in_row_;  ///< along_[0] as one array per member
 };
 
 }  // namespace octotomy::voxel
