@@ -10,7 +10,7 @@
 namespace octotomy::voxel {
 
 /// Draws the objects back to front along an axis (thesis 4.4.3.1, A.2): visits every node once and paints
-/// Full nodes over those behind. The same map as node_trace(). Adds visits to `visits` if given.
+/// Full nodes over those behind. Returns the same map as node_trace(). Adds visits to `visits` if given.
 /// Precondition: all objects are of one universe, and `axes` is a result of its axis_view(). Cost: one visit
 /// per node and one write each time a column is painted.
 ColumnMap back_to_front(const std::vector<DrawnObject>& objects, const AxisView& axes,

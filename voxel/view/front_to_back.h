@@ -10,8 +10,8 @@
 namespace octotomy::voxel {
 
 /// Draws the objects front to back along an axis (thesis 4.4.3.2, A.2): walks octree and quadtree together
-/// and skips nodes that project onto covered quadtree nodes. The same map as node_trace(). Adds visits to
-/// `visits` if given. Precondition: all objects are of one universe, and `axes` is a result of its
+/// and skips nodes that project onto covered quadtree nodes. Returns the same map as node_trace(). Adds
+/// visits to `visits` if given. Precondition: all objects are of one universe, and `axes` is a result of its
 /// axis_view().
 ColumnMap front_to_back(const std::vector<DrawnObject>& objects, const AxisView& axes,
                         Visits* visits = nullptr);

@@ -75,7 +75,7 @@ struct Leaf {
   Int first[3];                   ///< voxel of the first four
   Int low_cell[3], high_cell[3];  ///< range of cells whose fours are in memory
   std::int32_t corner = 0;        ///< number of the leaf's first voxel in the mirrored frame
-  std::int32_t stride[3];         ///< from there to the next voxel along an axis
+  std::int32_t stride[3];         ///< from a voxel to the next one along an axis
 };
 
 /// The samples of a moved object, among which its rays run.
@@ -90,13 +90,13 @@ struct Origins {
   Int first[3];
 };
 
-/// Two samples that are neighbours along x, of each ray.
+/// For each ray, two samples that are neighbours along x.
 struct Pairs {
   Int pairs;
   [[gnu::always_inline]] Float left() const { return __builtin_convertvector((pairs << 16) >> 16, Float); }
   [[gnu::always_inline]] Float right() const { return __builtin_convertvector(pairs >> 16, Float); }
 };
-/// Two pairs that are neighbours along y, of each ray.
+/// For each ray, two pairs that are neighbours along y.
 struct Fours {
   Pairs near, far;
 };
@@ -122,7 +122,8 @@ struct Fours {
   return mix(left, right, t[0]);
 }
 
-/// The cell, along an axis, of positions at a distance from the entry, and their place in it.
+/// The cell, along an axis, of positions at a distance from the entry, and the positions' places in their
+/// cells.
 [[gnu::always_inline]] inline Int cell_of(const Way& way, const Origins& origins, int axis,
                                           const Float& distance_mm, const Int& low, const Int& high,
                                           Float& t) {
@@ -212,7 +213,7 @@ struct Search {
   Int crossed;            ///< rays whose surface lies between their last two probes; the entry counts as a
                           ///< probe
   Float near_mm, far_mm;  ///< from the entry to these two probes
-  Float near_value, far_value;  ///< there
+  Float near_value, far_value;  ///< samples at these two probes
 };
 
 /// Steps 2 and 3 for the rays of a leaf from number `from` on.
@@ -388,9 +389,9 @@ void write_fours(const RowOfPairs& near, const RowOfPairs& far, std::uint64_t* f
   }
 }
 
-/// Writes the fours of a cube of `row` voxels a side, those from `from` up to, not including, `until` along y
-/// and z, with the rows of samples that `row_at` returns for y and z. The last row along y has no next one
-/// and is paired with itself.
+/// Writes the fours of a cube of `row` voxels a side whose y and z are from `from` up to, not including,
+/// `until`. `row_at` returns the row of samples for y and z. The last row along y has no next one and is
+/// paired with itself.
 template <typename RowAt>
 void write_cube(const glm::ivec3& from, const glm::ivec3& until, const RowAt& row_at, std::uint64_t* fours) {
   for (int z = from.z; z < until.z; ++z) {
@@ -405,8 +406,8 @@ void write_cube(const glm::ivec3& from, const glm::ivec3& until, const RowAt& ro
   }
 }
 
-/// Writes the fours of a cube, as write_cube(). Its first voxel lies one to three behind a leaf's first along
-/// each axis. Precondition: the three leaves along each axis lie within the universe.
+/// Writes the fours of a cube, as write_cube(). The cube's first voxel lies one to three voxels behind a
+/// leaf's first along each axis. Precondition: the three leaves along each axis lie within the universe.
 void write_leaves(const GreyOctree& grey, const glm::ivec3& first, const glm::ivec3& from,
                   const glm::ivec3& until, std::uint64_t* fours) {
   const glm::ivec3 first_brick = first >> 4;

@@ -40,7 +40,7 @@ constexpr int tile_side = 64;
 constexpr int max_height = Universe::max_depth / 2;
 
 /// Transforms a mask of children from number x + 4y + 16z to p + 4q + 16r by exchanging z with the coordinate
-/// along `look_axis`. Its own inverse.
+/// along `look_axis`. This transformation is its own inverse.
 constexpr std::uint64_t traced(std::uint64_t word, int look_axis) {
   if (look_axis == 0) return exchange_index_bits<1, 5>(exchange_index_bits<0, 4>(word));
   if (look_axis == 1) return exchange_index_bits<3, 5>(exchange_index_bits<2, 4>(word));
@@ -103,7 +103,7 @@ UnbuiltObjects unbuilt_of(const std::vector<DrawnObject>& objects) {
 /// An object's part of the current block. A block of height 1 is a leaf's word.
 struct Part {
   BlockRef block;             ///< unset if `entered` is set
-  std::uint64_t full = 0;     ///< in the traced frame; of a leaf, its voxels
+  std::uint64_t full = 0;     ///< Full children in the traced frame; of a leaf, its voxels
   std::uint64_t partial = 0;  ///< in the traced frame
   std::int16_t object = 0;
   EnteredBlock* entered = nullptr;  ///< of an object that is not built

@@ -20,8 +20,8 @@ constexpr double water_per_mm = 0.0206;
 constexpr double steps_per_voxel = 2.0;
 constexpr int leaf_edge = 4;
 
-/// Trilinear samples. Reads the bricks that a cell's corners lie in; keeps those of the last brick and the
-/// corners of the last cell, as a ray takes several steps in either.
+/// Trilinear samples. Reads the bricks in which a cell's corners lie. Keeps the bricks of the last block and
+/// the corners of the last cell, because a ray takes several steps in either.
 class CellSamples {
  public:
   explicit CellSamples(const GreyOctree& grey)

@@ -43,8 +43,8 @@ struct DensityColour {
   glm::vec3 colour{1.0f};  ///< sRGB, 0..1
 };
 
-/// Samples that colour surfaces: those of the first voxel that a ray meets behind the surface and that a
-/// window owns.
+/// Samples that colour surfaces. A pixel has the sample of the first voxel on its ray behind the surface that
+/// a window owns.
 struct Densities {
   CutTones tones;                      ///< Shading::Density only
   std::vector<DensityColour> colours;  ///< the first range that holds the sample; none: the object's colour
