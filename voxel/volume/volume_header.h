@@ -45,7 +45,7 @@ struct SampleFiles {
   std::uintmax_t file_at = 0;    ///< offset of the samples, or of their encoded stream, in each file
   std::uintmax_t line_skip = 0;  ///< lines to skip from there on
   std::uintmax_t byte_skip = 0;  ///< bytes to skip next, counted after decoding
-  bool at_end = false;           ///< the samples are the last bytes of each file instead
+  bool at_end = false;           ///< instead, the samples are the last bytes of each file
 };
 
 /// The statements of a volume file's header.
