@@ -96,7 +96,7 @@ std::size_t append_text(const std::vector<MaskedNode>& nodes, std::size_t number
   return next;
 }
 
-/// Reads nodes, and keeps where each stands in the text.
+/// Reads nodes, and keeps the position of each in the text.
 class MaskedReader {
  public:
   MaskedReader(int depth, std::string_view text) : depth_(depth), cursor_("masked octree", text) {}
