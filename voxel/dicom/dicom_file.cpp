@@ -119,8 +119,8 @@ void DicomFile::leave_meta() {
   transfer_syntax_ = text(transfer_syntax_tag);
   const bool is_implicit = transfer_syntax_ == "1.2.840.10008.1.2";
   const bool is_deflated = transfer_syntax_ == "1.2.840.10008.1.2.1.99" && !inflated_;
-  // Some tools change the stated syntax but not the attributes. The coding of the attributes is therefore
-  // read from the attributes.
+  // Some tools change the stated syntax but not the attributes. The attributes' coding is therefore
+  // determined from the attributes themselves.
   explicit_ = left() >= 8 && !is_deflated ? spells_vr(bytes_.substr(at_)) : !is_implicit;
   contradicts_syntax_ = explicit_ == is_implicit;
   if (transfer_syntax_ == "1.2.840.10008.1.2.2") big_endian_ = true;

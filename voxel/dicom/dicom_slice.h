@@ -125,7 +125,7 @@ struct NoSlice {
   std::string reason;
   Kind kind = Kind::Stray;
   bool is_directory = false;    ///< a DICOMDIR, which lists the images beside it
-  std::string series_uid = {};  ///< of the file, if it states one
+  std::string series_uid = {};  ///< of the file, if the file states one
 };
 
 /// Reads the header of a file and checks that its attributes and pixels end within it. Returns one slice, or
