@@ -498,7 +498,7 @@ class Finder {
   const ExtrusionOptions& options_;
   Extrusion& found_;
   glm::vec2 lies_off_{1.0F};        ///< in columns
-  std::vector<glm::ivec2> shifts_;  ///< of the columns, for each slice
+  std::vector<glm::ivec2> shifts_;  ///< shift of the columns in each slice
   int calm_ = 0;                    ///< number of slices averaged before and behind
   std::vector<Column> columns_;
 };

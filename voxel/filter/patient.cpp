@@ -23,15 +23,15 @@ namespace octotomy::voxel {
 namespace {
 
 constexpr double cell_mm = 2.0;
-constexpr double above_air = 40.0;         ///< HU of a cell's mean, whose noise is a fraction of this
+constexpr double above_air = 40.0;         ///< HU; for the mean of a cell, whose noise is a fraction of this
 constexpr double contact_mm = 3.0;         ///< length of the stump that a cut-off part leaves on the core
 constexpr double mask_mm = 4.0;            ///< largest thickness of a mask on the face
 constexpr double silhouette_mm = 10.0;     ///< distance within the core's outline, seen from behind, at which
                                            ///< there is no ear
 constexpr double close_mm = 4.0;           ///< gaps in the skin up to twice this width are closed
 constexpr double foam_limit = -200.0;      ///< HU; with a threshold from here on, soft tissue lies below it
-constexpr double least_core_share = 0.3;   ///< of the largest part; with a smaller core, the object is thin
-                                           ///< throughout
+constexpr double least_core_share = 0.3;   ///< least share of the largest part in the core; with less, the
+                                           ///< object is thin throughout
 constexpr double most_front_share = 0.25;  ///< a thick part with a larger share in front is no support
 constexpr double thick_mm = 4.0;           ///< a part is thick if it contains a ball of this radius
 constexpr double least_bone_share = 0.01;  ///< of a limb's samples; an arm has about a tenth

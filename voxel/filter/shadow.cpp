@@ -97,7 +97,8 @@ class FirstDepths {
       return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     };
     const double whole = area(p[0], p[1], p[2]);
-    constexpr double edge_on = 1e-12, on_edge = 1e-9;  // of a column's area; shares of the triangle
+    constexpr double edge_on = 1e-12, on_edge = 1e-9;  // edge_on: in areas of a column; on_edge: in shares of
+                                                       // the triangle and in columns
     if (std::abs(whole) < edge_on) return;
     const glm::dvec2 low = glm::min(glm::min(glm::dvec2(p[0]), glm::dvec2(p[1])), glm::dvec2(p[2])),
                      high = glm::max(glm::max(glm::dvec2(p[0]), glm::dvec2(p[1])), glm::dvec2(p[2]));

@@ -148,7 +148,7 @@ void SurfaceCrossings::add_chords(const glm::ivec3& low, int normal, std::vector
   const std::vector<std::size_t> ends = of_square(low, normal);
   if (ends.size() == 2) chords.emplace_back(ends[0], ends[1]);
   if (ends.size() != 4) return;
-  // The first two lie on edges from the lowest corner, the last two on edges from the highest.
+  // The first two crossings lie on edges from the lowest corner, the last two on edges from the highest.
   const bool is_low_inside = octree_.contains(low);
   chords.emplace_back(ends[0], ends[is_low_inside ? 1 : 3]);
   chords.emplace_back(ends[2], ends[is_low_inside ? 3 : 1]);
