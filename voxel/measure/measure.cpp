@@ -19,12 +19,12 @@
 
 // Area by the Crofton formula: the area of a boundary is four times the mean, over all directions, of the
 // number of entries of parallel lines times the area per line. Here 13 directions, those to a voxel's 26
-// neighbours, represent all. Along each, the lines run through the lattice's points: crossings are pairs of
-// neighbours with one inside, and the area per line is the voxel's volume divided by the step's length.
-// Source: Ohser and Muecklich, Statistical Analysis of Microstructures, 2000, section 4.2; weights as in
-// Lang, Ohser and Hilfer, J. Microscopy 203, 2001. Departure: a direction's weight is the share of the sphere
-// nearest to it, computed for the lattice's own spacing on a fine grid of directions, so that anisotropic
-// voxels have no bias either.
+// neighbours, represent all. Along each direction, the lines run through the lattice's points: crossings are
+// pairs of neighbours with one inside, and the area per line is the voxel's volume divided by the step's
+// length. Source: Ohser and Muecklich, Statistical Analysis of Microstructures, 2000, section 4.2; weights as
+// in Lang, Ohser and Hilfer, J. Microscopy 203, 2001. Departure: a direction's weight is the share of the
+// sphere nearest to it, computed for the lattice's own spacing on a fine grid of directions, so that
+// anisotropic voxels have no bias either.
 
 namespace octotomy::voxel {
 namespace {
