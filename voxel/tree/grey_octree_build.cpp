@@ -191,7 +191,7 @@ class GreyOctreeBuild::Work {
   std::vector<std::pair<int, int>> layers_;  // layers not begun, the next one last: number of slices that the
                                              // layer reads, and its z
   std::atomic<std::size_t> brick_count_ = 0;
-  tbb::isolated_task_group tasks_;  // the last member: the others outlive them
+  tbb::isolated_task_group tasks_;  // the last member, so that the others outlive the tasks
 };
 
 // A row of blocks along x. Its bricks are contiguous, in a range reserved for the row.
