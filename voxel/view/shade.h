@@ -26,7 +26,7 @@ struct Paint {
   /// Lit: replaces the object's colour under the lights. Tone: the pixel has this colour without lights.
   enum class Kind : std::uint8_t { None, Lit, Tone };
   std::vector<Kind> kinds;         ///< one per pixel, or empty for no paint
-  std::vector<glm::vec3> colours;  ///< sRGB 0..1, one for each of kinds
+  std::vector<glm::vec3> colours;  ///< sRGB 0..1, one for each entry of `kinds`
 };
 
 /// Colours, scale, style and lights for shading a depth image.
