@@ -6,10 +6,10 @@
 // 1961. Departures: several starts, and a verdict. The thesis's own proposal, the first Fourier coefficients of the
 // two objects, determines no rotation.
 //
-//   1 All starts are searched at 8 mm with long steps; the best of them with short ones.
-//   2 Motions that end together count as one. The best and its best rival are compared.
-//   3 The best is followed to the finest resolution. Each resolution begins with steps of its own size.
-//   4 Motions a little aside show whether the answer is a peak.
+//   1 All starts are searched at 8 mm with long steps, then the best of them with short steps.
+//   2 Searches that end at the same motion count as one. The best motion and its best rival are compared.
+//   3 The best motion is refined to the finest resolution. Each resolution begins with steps of its own size.
+//   4 Motions slightly away from the answer show whether it is a peak of the likeness.
 #include "voxel/align/register_scans.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ constexpr std::size_t most_refined = 6;
 /// Likeness that scans of unrelated bodies reach, because any two heads are roundish. An answer with less
 /// likeness is meaningless.
 constexpr double least_correlation = 0.4, least_entropy = 0.05;
-/// A rival this near the best one could be the true motion.
+/// A rival with at least this share of the best likeness could be the true motion.
 constexpr double rival_share = 0.95;
 
 /// A rotation vector in radians about the fixed scan's middle, then a translation in mm: fixed to moving.
@@ -90,7 +90,7 @@ class Search {
   struct Found {
     Parameters at{};
     double likeness = 0.0;
-    std::vector<ScanFitStep> trail = {};  ///< from the start on, if steps are watched
+    std::vector<ScanFitStep> trail = {};  ///< all steps from the start on, if `watch` is set
   };
 
   glm::dmat4 motion(const Parameters& at) const {
@@ -101,7 +101,7 @@ class Search {
     return glm::translate(moved, -middle_mm_);
   }
 
-  /// The largest distance between the two places of a corner of the fixed scan.
+  /// The largest distance between the two positions to which two motions move one corner of the fixed scan.
   double apart_mm(const Parameters& a, const Parameters& b) const {
     double apart = 0.0;
     for (const glm::dvec3& corner : corners_mm_)

@@ -12,8 +12,8 @@
 
 namespace octotomy::voxel {
 
-/// Correlation: of samples in one unit, or in units that differ by a scale and an offset. MutualInformation: of any
-/// two modalities or contrasts; its value is the entropy correlation coefficient.
+/// Correlation: for samples in one unit, or in units that differ by a scale and an offset. MutualInformation:
+/// for any two modalities or contrasts; its value is the entropy correlation coefficient.
 enum class ScanLikeness { Correlation, MutualInformation };
 
 /// A motion that is at least as good as those before it at its resolution; the first is the start.
@@ -40,14 +40,14 @@ struct ScanFit {
   double likeness = 0.0;              ///< at the finest resolution
   double overlap = 0.0;               ///< share of the smaller scan that the other covers
   std::size_t starts = 0;             ///< motions from which the search began
-  std::size_t refined = 0;            ///< the best of them, which were followed further
-  std::size_t agreeing = 0;           ///< the number of these that ended at the same motion
+  std::size_t refined = 0;            ///< number of best starts that were followed further
+  std::size_t agreeing = 0;           ///< number of refined starts that ended at the answer
   std::optional<double> rival;        ///< likeness of the best other motion, at `rival_mm`
-  double likeness_there = 0.0;        ///< of the answer at that resolution
+  double likeness_there = 0.0;        ///< likeness of the answer at `rival_mm`
   double rival_mm = 8.0;
   double least_drop = 0.0;  ///< smallest loss of likeness by a motion of `probe_mm` at the scans' edge
   double probe_mm = 4.0;
-  std::size_t motions = 0;  ///< that were compared
+  std::size_t motions = 0;  ///< number of motions that were compared
   Verdict verdict = Verdict::Pass;
   std::vector<std::string> findings;  ///< reasons for a verdict that is no PASS
 };

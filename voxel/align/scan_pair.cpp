@@ -25,7 +25,7 @@ std::uint64_t scattered(std::uint64_t n) {
   return n ^ (n >> 31);
 }
 
-/// A number of -1/2..1/2.
+/// Converts bits to a number from -1/2 to 1/2.
 double offset(std::uint64_t bits) {
   return static_cast<double>(bits >> 11) * 0x1.0p-53 - 0.5;
 }
@@ -67,7 +67,7 @@ double shared_entropy(const Sums& s) {
 float CoarseScan::at(const glm::dvec3& p_voxel) const {
   const glm::dvec3 floor = glm::floor(p_voxel);
   const glm::ivec3 last = dims - 1;
-  // A scan of one block along an axis is as wide as the block.
+  // Along an axis with a single block, the scan is as wide as that block.
   std::array<int, 3> first{}, next{};
   glm::vec3 part(0.0f);
   for (int k = 0; k < 3; ++k) {
@@ -209,7 +209,7 @@ Likeness ScanPair::likeness(const glm::dmat4& moving_from_fixed) const {
         s.ab += a * b;
         continue;
       }
-      // Shared between the two nearest bins, so that the likeness is continuous.
+      // A point is shared between the two nearest bins, so that the likeness is continuous.
       const float place = (value - moving_.low) * per_value;
       const int bin = std::min(bins - 2, static_cast<int>(place));
       const double beyond = place - static_cast<float>(bin);

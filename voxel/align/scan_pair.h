@@ -17,8 +17,7 @@ struct CoarseScan {
   glm::dmat4 voxel_from_lps{1.0};
   glm::dmat4 lps_from_voxel{1.0};
   double measured_mm3 = 0.0;
-  float low = 0.0f, high = 1.0f;  ///< the range of the values without outliers: without the lowest and the
-                                  ///< highest 1/200 of them
+  float low = 0.0f, high = 1.0f;  ///< the range of the values without the lowest and the highest 1/200
 
   std::size_t index(int x, int y, int z) const {
     return static_cast<std::size_t>(x) +
@@ -30,7 +29,7 @@ struct CoarseScan {
 };
 CoarseScan coarse_scan(const Scene& scene, double resolution_mm);
 
-/// The mean of the places of a scan's blocks, LPS, weighted by their values above the lowest.
+/// The mean position of a scan's blocks, LPS. A block's weight is its value minus the lowest value.
 glm::dvec3 centre_of_mass_mm(const CoarseScan& scan);
 
 struct Likeness {
@@ -38,9 +37,10 @@ struct Likeness {
   double overlap = 0.0;  ///< share of the smaller scan that the other one covers
 };
 
-/// Two scans at one resolution, compared at points of the fixed one. The points lie off the blocks' centres by
-/// amounts that follow from their numbers, because points on a grid favour motions by whole blocks (Pluim, Maintz,
-/// Viergever, Interpolation artefacts in mutual information-based image registration, 2000).
+/// Two scans at one resolution, compared at points of the fixed scan. Pseudorandom offsets, computed from the
+/// points' numbers, move the points off the blocks' centres, because points on a grid favour motions by whole
+/// blocks (Pluim, Maintz, Viergever, Interpolation artefacts in mutual information-based image registration,
+/// 2000).
 class ScanPair {
  public:
   ScanPair(const Scene& moving, const Scene& fixed, double resolution_mm, std::size_t most_points,

@@ -14,7 +14,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// The index of a voxel of the lattice along one axis, and the length of it that a voxel of the octree
+/// The index of a voxel of the lattice along one axis, and the length within it that a voxel of the octree
 /// covers.
 struct Covered {
   int at = 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Every outline has an edge above one of its pixels. From each such edge that no outline holds yet, the walk
-// keeps the pixels on its right: it turns right at the end of its pixel, goes straight along the next one, and
-// turns left where a pixel stands in its way.
+// Every outline has an edge above one of its pixels. From each such edge that belongs to no outline yet, a
+// walk follows the edges with set pixels on its right. At a corner it turns right if the right pixel ahead is
+// unset, turns left if both pixels ahead are set, and else goes straight.
 #include "voxel/archive/pixel_outlines.h"
 
 namespace octotomy::voxel {
@@ -23,9 +23,9 @@ class Pixels {
   const SliceBits& slice_;
 };
 
-/// The right one of the two pixels at a corner, ahead of a walk in this direction.
+/// Of the two pixels ahead of a walk that arrives at a corner in this direction, the right one.
 glm::ivec2 right_ahead(const glm::ivec2& corner, const glm::ivec2& way) {
-  // Along +x that is the pixel with the corner's own numbers; the other directions follow by quarter turns.
+  // For a walk along +x it has the corner's own indices; the other directions follow by quarter turns.
   return corner + glm::ivec2((way.x - way.y - 1) / 2, (way.x + way.y - 1) / 2);
 }
 glm::ivec2 left_ahead(const glm::ivec2& corner, const glm::ivec2& way) {

@@ -16,8 +16,8 @@ using PixelOutline = std::vector<glm::ivec2>;
 
 /// The boundaries of a slice's set pixels. The areas of all outlines add up to the number of pixels, and by
 /// the even-odd rule a pixel's centre is inside exactly if the pixel is set. Pixels that touch by a corner
-/// only have outlines of their own. In the order of their first pixel, x fastest. Cost: one pass over the
-/// slice.
+/// only have outlines of their own. Outlines are in the order of their first pixel, x fastest. Cost: one pass
+/// over the slice.
 std::vector<PixelOutline> pixel_outlines(const SliceBits& slice);
 
 /// Twice the signed area, in pixels.

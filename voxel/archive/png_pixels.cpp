@@ -23,7 +23,7 @@ std::uint32_t big_endian(std::string_view bytes) {
   return value;
 }
 
-/// The one of left, above and above left that is nearest to the plane through the three (filter type 4).
+/// Of the left, upper and upper left neighbour, the value nearest to left + above - corner (filter type 4).
 int paeth(int left, int above, int corner) {
   const int from_left = std::abs(above - corner), from_above = std::abs(left - corner),
             from_corner = std::abs(left + above - 2 * corner);

@@ -14,9 +14,10 @@ struct ColourPixels {
   std::vector<std::uint8_t> rgb;
 };
 
-/// The pixels of a PNG of 8 bits a channel, grey or colour, not interlaced; transparency is dropped. read_images() reads
-/// only grey. Throws Error, Input, without a path, if the PNG is of another kind, damaged, or has a side of more than 8192
-/// pixels. Memory: twice the pixels. Source: PNG specification, second edition.
+/// The pixels of a PNG with 8 bits per channel, grey or colour, not interlaced; transparency is dropped.
+/// read_images() reads only grey. Throws Error (Input) without a path, if the PNG is of another kind,
+/// damaged, or has a side of more than 8192 pixels. Memory: twice the pixels. Source: PNG specification,
+/// second edition.
 ColourPixels png_pixels(std::string_view png);
 
 }  // namespace octotomy::voxel

@@ -12,7 +12,7 @@ namespace octotomy::voxel {
 /// A document or a picture in colour, as an archive keeps it.
 struct ArchivedObject {
   std::string class_uid;
-  std::string kind;        ///< as "encapsulated CDA"
+  std::string kind;        ///< such as "encapsulated CDA"
   std::string media_type;  ///< of a document
   std::string title;       ///< of a document; a picture's comment
   std::string patient_name, patient_id, study_uid, series_uid;
@@ -21,10 +21,10 @@ struct ArchivedObject {
   std::optional<ColourPixels> picture = std::nullopt;
 };
 
-/// Reads an encapsulated PDF, CDA, STL or OBJ, or an uncompressed secondary capture of three 8-bit channels. None if the
-/// file is no DICOM file, or another kind of object, such as images of a scan. Texts are UTF-8 without control characters.
-/// Throws Error, Input, with path and reason, if such an object is damaged, or states more bytes than it has. Memory: twice
-/// the file.
+/// Reads an encapsulated PDF, CDA, STL or OBJ, or an uncompressed secondary capture of three 8-bit channels.
+/// None if the file is no DICOM file, or another kind of object, such as images of a scan. Texts are UTF-8
+/// without control characters. Throws Error (Input) with path and reason, if such an object is damaged, or
+/// states more bytes than it has. Memory: twice the file.
 std::optional<ArchivedObject> read_archived(const std::filesystem::path& path);
 
 }  // namespace octotomy::voxel

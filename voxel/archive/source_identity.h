@@ -12,8 +12,9 @@ namespace octotomy::voxel {
 
 /// Whose identity a written DICOM object has.
 enum class IdentityChoice {
-  Keep,  ///< patient and study of the source
-  Remove,  ///< none: the source's, de-identified by the Basic Application Level Confidentiality Profile of PS3.15
+  Keep,    ///< patient and study of the source
+  Remove,  ///< those of the source, de-identified by the Basic Application Level Confidentiality Profile of
+           ///< PS3.15
   New      ///< a patient without a name, in a study of its own
 };
 /// keep, remove, new.

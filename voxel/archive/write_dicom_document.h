@@ -25,7 +25,7 @@ struct DicomDocumentOptions {
 /// because readers assume that; its measurement unit is stated as millimetres. A PDF is stated to show the
 /// patient's identity, because reports do. Identifiers are computed from the content. Written to a temporary
 /// file and renamed into place. Throws std::invalid_argument if `bytes` is empty or a text is too long;
-/// Error, Geometry, if there are more than DICOM's 4 GB; Error, Input or Resource, with path and reason.
+/// Error (Geometry) if `bytes` exceeds DICOM's 4 GB; Error (Input or Resource) with path and reason.
 void write_dicom_document(const std::string& bytes, DocumentFormat format, const std::filesystem::path& path,
                           const DicomDocumentOptions& options = {});
 

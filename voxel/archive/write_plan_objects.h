@@ -13,26 +13,29 @@ namespace octotomy::voxel {
 
 /// A picture of a plan, without any name in its pixels.
 struct PlanPicture {
-  std::string label;  ///< what it shows: at most 64 characters
+  std::string label;  ///< describes the view, at most 64 characters
   ColourPixels pixels;
 };
 
 /// A plan for an archive.
 struct PlanObjects {
   std::string title;       ///< 1 to 64 characters
-  std::string document;    ///< HL7 CDA, XML, that carries the plan
+  std::string document;    ///< HL7 CDA (XML) with the plan in it
   std::string identifier;  ///< of the document: the UID in its <id>
   std::vector<PlanPicture> pictures;
 };
 
-/// Writes a plan as DICOM objects of one study: `plan.dcm`, and its pictures as `picture_001.dcm`, ..., one series each.
-/// - The plan is Encapsulated CDA Storage (PS3.3, A.45.2). The standard also encapsulates PDF, STL, OBJ and MTL, but only
-///   the body of a CDA may be of any media type (HL7 CDA R2, nonXMLBody). Any reader of XML can unpack it.
-/// - A picture is Secondary Capture Image Storage (A.8.1), which every viewer shows; the multi-frame class would need
-///   pictures of one size. Its pixels are uncompressed.
-/// `source` is the series of the plan's scan: its patient and study are copied, its images listed. None: a study of its own.
-/// Unique identifiers are computed from the content. All files appear together, or none. Returns their names. Throws
-/// InvalidInput if a text is empty or too long; Error, Input or Resource, with path and reason.
+/// Writes a plan as DICOM objects of one study: `plan.dcm`, and its pictures as `picture_001.dcm`, ..., one
+/// series each.
+/// - The plan is Encapsulated CDA Storage (PS3.3, A.45.2). The standard also encapsulates PDF, STL, OBJ and
+///   MTL, but only the body of a CDA may be of any media type (HL7 CDA R2, nonXMLBody). Any XML reader can
+///   unpack a CDA.
+/// - A picture is Secondary Capture Image Storage (A.8.1), which every viewer shows, with uncompressed
+///   pixels. The multi-frame class would need pictures of one size.
+/// `source` is the series of the plan's scan: its patient and study are copied, its images listed. None: a
+/// study of its own. Unique identifiers are computed from the content. All files appear together, or none.
+/// Returns their names. Throws InvalidInput if a text is empty or too long; Error (Input or Resource) with
+/// path and reason.
 std::vector<std::filesystem::path> write_plan_objects(const PlanObjects& plan,
                                                       const std::filesystem::path& folder,
                                                       const std::optional<DicomSource>& source);

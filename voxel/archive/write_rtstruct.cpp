@@ -99,8 +99,8 @@ std::vector<ContourPlane> planes_of_images(const Universe& universe, const Dicom
   return planes;
 }
 
-/// Coordinates to a ten thousandth of a millimetre. Contours run half an edge beside the voxels' centres, so
-/// for finer edges all digits of a decimal string are used.
+/// Coordinates to a ten thousandth of a millimetre. Contours lie half a voxel's edge beside the voxels'
+/// centres, so for fine voxels all digits of a decimal string are used.
 std::string coordinates(const glm::dvec3& p_mm, bool is_fine) {
   if (is_fine) return dicom_decimals(p_mm);
   std::string text;

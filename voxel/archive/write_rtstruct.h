@@ -47,8 +47,8 @@ struct ContouredObject {
 /// from the content; patient and study are those of the source, as in write_dicom_seg(). Coded with implicit
 /// VR, because contours may be longer than explicit VR allows. Written to a temporary file and renamed into
 /// place. Throws std::invalid_argument if there is no object, an object is empty, universes differ, a text is
-/// too long, or planes of voxels are not parallel to the images; Error, Geometry, if an object lies on none
-/// of the images; Error, Input or Resource, with path and reason; Stopped. Cost: the planes' pixels. Memory:
+/// too long, or planes of voxels are not parallel to the images; Error (Geometry) if an object lies on none
+/// of the images; Error (Input or Resource) with path and reason; Stopped. Cost: the planes' pixels. Memory:
 /// the file.
 std::vector<ContouredObject> write_rtstruct(std::span<const DicomSegment> objects,
                                             const std::filesystem::path& path,

@@ -16,7 +16,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// A box of 2^log2[axis] voxels along each axis, number `at[axis]` of its size.
+/// A box of 2^log2[axis] voxels along each axis, at position `at[axis]` in units of its own edge.
 struct HalvedBox {
   glm::ivec3 log2{0};
   glm::ivec3 at{0};
@@ -43,7 +43,7 @@ class LeastBiTree {
         for (int x = 0; x < side_; ++x)
           sums_[entry({x + 1, y + 1, z + 1})] = (slice.row(y)[x / 64] >> (x % 64)) & 1;
     });
-    // Sums of all voxels up to each corner, one axis after the other.
+    // Sums all voxels up to each corner, one axis after the other.
     for (int axis = 0; axis < 3; ++axis)
       for (int z = 1; z <= side_; ++z)
         for (int y = 1; y <= side_; ++y)
@@ -120,8 +120,8 @@ class LeastBiTree {
 
   int depth_, side_;
   std::vector<std::uint32_t> sums_;
-  std::vector<std::uint32_t> least_;  ///< nodes of the least tree of each box; 0: not searched yet
-  std::vector<std::uint8_t> axes_;    ///< the axis that it is halved along
+  std::vector<std::uint32_t> least_;  ///< number of nodes of each box's least tree; 0: not searched yet
+  std::vector<std::uint8_t> axes_;    ///< the axis along which each box is halved
 };
 
 class BiTreeReader {

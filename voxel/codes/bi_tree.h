@@ -13,7 +13,7 @@ namespace octotomy::voxel {
 /// chosen so that the whole tree has the fewest nodes. Nodes in preorder: E, F, or the axis x, y or z, which
 /// the nodes of the low and the high half follow.
 struct BiTree {
-  /// Above this depth the search holds more than a gigabyte.
+  /// Above this depth the search takes more than a gigabyte.
   static constexpr int max_depth = 7;
 
   Universe universe;
@@ -23,8 +23,8 @@ struct BiTree {
 /// The least bi-tree; among equal axes, the first. Throws std::length_error for universes deeper than
 /// max_depth. Cost: every box of halved edges is searched once, (2^(depth + 1) - 1)^3 of them, 6 bytes each.
 BiTree bi_tree(const Octree& octree);
-/// Throws std::invalid_argument with the position of the node that is missing, too many, halves an edge of
-/// one voxel, or has two halves that are both Full or both Empty.
+/// Throws std::invalid_argument with the position of a node that is missing or too many, that halves an edge
+/// of one voxel, or whose halves are both Full or both Empty.
 Octree octree_of(const BiTree& tree);
 
 /// The nodes as one word, for example `zxEFE`.

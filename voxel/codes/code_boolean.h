@@ -11,12 +11,12 @@ namespace octotomy::voxel {
 /// The Booleans of thesis 7.2.
 enum class SetOperation { Intersection, Union, Difference };
 
-// Booleans of two objects in one code, without an octree. Each throws std::invalid_argument if the universes
-// differ. Precondition: both codes pass the checks of octree_of().
+// Booleans of two objects in the same code, without an octree. Each throws std::invalid_argument if the
+// universes differ. Precondition: both codes pass the checks of octree_of().
 
-/// Word by word. Cost: the array.
+/// Combines word by word. Cost: the array.
 BinaryArray combined(const BinaryArray& a, const BinaryArray& b, SetOperation operation);
-/// Row by row; null rows and slices are not opened where the operation allows it.
+/// Combines row by row, and skips null rows and slices where the operation allows it.
 MarginalIndex combined(const MarginalIndex& a, const MarginalIndex& b, SetOperation operation);
 /// Merges the two lists. Cost: their lengths.
 RunLength combined(const RunLength& a, const RunLength& b, SetOperation operation);

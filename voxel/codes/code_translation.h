@@ -8,8 +8,8 @@
 
 namespace octotomy::voxel {
 
-// Translations by whole voxels of an object in its code, without an octree (thesis 7.4.1, 7.4.2). What leaves
-// the universe is lost. Precondition: the code passes the checks of octree_of().
+// Translations by whole voxels of an object in its code, without an octree (thesis 7.4.1, 7.4.2). Voxels that
+// leave the universe are lost. Precondition: the code passes the checks of octree_of().
 
 /// Adds the step to every face. Throws std::invalid_argument if a face leaves the universe: its list would
 /// not show the faces where the object is cut off.
@@ -18,7 +18,7 @@ CuberilleFaces translated(const CuberilleFaces& faces, const glm::ivec3& by);
 MarginalIndex translated(const MarginalIndex& index, const glm::ivec3& by);
 /// Moves the slices' and rows' pointers, and adds the step along x to the segments' ends.
 SegmentIndex translated(const SegmentIndex& index, const glm::ivec3& by);
-/// Codes the runs again row by row, because a run contains no row.
+/// Codes the runs again row by row, because a run may continue across the end of a row.
 RunLength translated(const RunLength& code, const glm::ivec3& by);
 
 }  // namespace octotomy::voxel

@@ -18,8 +18,8 @@ struct GreyRun {
   bool operator==(const GreyRun&) const = default;
 };
 
-/// The run length code of samples (thesis 3.2.3): maximal runs of equal values, x fastest. Of a binary array
-/// these are the runs of zeros and ones alternately. No voxel can be read without its predecessors.
+/// The run length code of samples (thesis 3.2.3): maximal runs of equal values, x fastest. For a binary
+/// array, runs of zeros and of ones alternate. No voxel can be read without its predecessors.
 using GreyRuns = std::vector<GreyRun>;
 
 /// Cost: one pass.

@@ -41,7 +41,7 @@ class LinearSource {
   }
   void close(bool homogeneous) const {
     if (homogeneous)
-      refuse(next_ - 1, "is the last of eight full children, which have to be one code of their parent");
+      refuse(next_ - 1, "is the last of eight full children: write their parent's code instead");
   }
   [[noreturn]] void refuse(std::size_t index, const std::string& why) const {
     throw InvalidInput("linear octree, code " + std::to_string(index + 1) + ", " + to_string(codes_[index]) +

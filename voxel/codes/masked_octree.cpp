@@ -8,7 +8,7 @@
 #include "voxel/tree/level_tally.h"
 #include "voxel/tree/logical_build.h"
 
-// The masks are found in one walk that carries, with each node, the six nodes of its size beside it. A
+// The masks are found in one walk that carries, with each node, its six face neighbours of the same size. A
 // homogeneous node stands for its virtual children, so a neighbour of the same size always exists.
 
 namespace octotomy::voxel {
@@ -96,7 +96,7 @@ std::size_t append_text(const std::vector<MaskedNode>& nodes, std::size_t number
   return next;
 }
 
-/// Reads nodes, and keeps where each stands in the text.
+/// Reads nodes, and keeps the position of each in the text.
 class MaskedReader {
  public:
   MaskedReader(int depth, std::string_view text) : depth_(depth), cursor_("masked octree", text) {}
@@ -227,7 +227,7 @@ MaskedOctree parse_masked_octree(const Universe& universe, std::string_view text
     if (i >= right.nodes.size() || masked.nodes[i].status != right.nodes[i].status)
       reader.refuse_at(positions[i], "eight equal children must be stored as one node");
     if (masked.nodes[i].covered != right.nodes[i].covered)
-      reader.refuse_at(positions[i], std::string("the faces of this node are ") +
+      reader.refuse_at(positions[i], std::string("the covered faces of this node are ") +
                                          hex_digits[right.nodes[i].covered >> 4] +
                                          hex_digits[right.nodes[i].covered & 15] + " by the nodes beside it");
   }

@@ -18,8 +18,8 @@ constexpr FaceSet face_bit(Direction direction) {
   return static_cast<FaceSet>(1 << static_cast<int>(direction));
 }
 
-/// A node of the masked binary octree. A face is covered if the voxels behind it, across the face and one
-/// deep, are all in the object; beyond the universe there are none.
+/// A node of the masked binary octree. A face is covered if the layer of voxels in front of it, outside the
+/// node, lies wholly in the object. Voxels beyond the universe are not in the object.
 struct MaskedNode {
   Status status = Status::Empty;
   FaceSet covered = 0;
@@ -28,14 +28,14 @@ struct MaskedNode {
 
 /// The masked binary octree (thesis 3.3.1): each node stores which of its faces are hidden. A Boolean
 /// intersection of two objects has the intersection of their face sets. A union covers at least the union of
-/// them. The complement's faces do not follow from the object's, which is why the thesis gave this code up
-/// (9.1).
+/// their face sets. The complement's faces do not follow from the object's, which is why the thesis gave this
+/// code up (9.1).
 struct MaskedOctree {
   Universe universe;
   std::vector<MaskedNode> nodes;  ///< in preorder, the root first
 };
 
-/// Cost: a walk of the nodes, and for each face of a node the Partial nodes behind it.
+/// Cost: a walk of the nodes, and for each face of a node the Partial nodes in front of the face.
 MaskedOctree masked_octree(const Octree& octree);
 /// The octree that a masked octree was made from. Precondition: made by masked_octree().
 Octree octree_of(const MaskedOctree& masked);
@@ -65,7 +65,7 @@ MaskedDrawing draw_back_to_front(const MaskedOctree& masked, FaceSet seen, bool 
 /// 5.2: W E S N D U UW UE US UN DW DE DS DN SW SE NW NE, the first the highest; east is x+, north y+, up z+.
 /// Voxels outside the universe count as Empty.
 std::uint32_t neighbour_code(const Octree& octree, const glm::ivec3& voxel);
-/// The eight of them that a face's normal depends on (table 5.2).
+/// The bits of neighbour_code() for the eight voxels on which a face's normal depends (table 5.2).
 std::uint32_t neighbour_mask(Direction face);
 
 }  // namespace octotomy::voxel

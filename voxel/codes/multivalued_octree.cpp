@@ -15,8 +15,8 @@ class MultivaluedWalk {
   explicit MultivaluedWalk(std::vector<std::uint8_t>& nodes) : nodes_(nodes) {}
 
   void walk(const std::vector<LogicalNode>& at) {
-    // The first object that is not Empty decides if it is Full. If it is Partial, a child is its own and
-    // another is not, so the node is never homogeneous.
+    // The first object that is not Empty here decides the node: if it is Full, all voxels have its number; if
+    // it is Partial, some voxels have its number and others have not, so the node is not homogeneous.
     const auto first = std::find_if(at.begin(), at.end(),
                                     [](const LogicalNode& node) { return node.status() != Status::Empty; });
     if (first == at.end()) return nodes_.push_back(0);

@@ -10,8 +10,8 @@
 
 namespace octotomy::voxel {
 
-/// An octree of several objects in one (thesis 3.2.1, 3.3): each voxel has the number of its object, 0 for
-/// none. A node is homogeneous if all its voxels have one number.
+/// Several objects in one octree (thesis 3.2.1, 3.3): each voxel has the number of its object, 0 for none. A
+/// node is homogeneous if all its voxels have one number.
 struct MultivaluedOctree {
   static constexpr std::uint8_t partial = 255;  ///< marks a node whose eight children follow
 
@@ -19,12 +19,12 @@ struct MultivaluedOctree {
   std::vector<std::uint8_t> nodes;  ///< in preorder: an object's number, or `partial`
 };
 
-/// Objects 1, 2, ... in the order given; a voxel of several belongs to the first. Throws
-/// std::invalid_argument if there are no objects or more than 254, or if their universes differ. Cost: a walk
-/// of all objects together.
+/// Objects have the numbers 1, 2, ... in the order given; a voxel of several objects belongs to the first of
+/// them. Throws std::invalid_argument if there are no objects or more than 254, or if their universes differ.
+/// Cost: a walk of all objects together.
 MultivaluedOctree multivalued_octree(const std::vector<Octree>& objects);
-/// The voxels of one number. Throws std::invalid_argument that names the node which is missing, too many, a
-/// Partial voxel, or Partial with eight children of one number.
+/// The voxels with the given number. Throws std::invalid_argument that names a node that is missing or too
+/// many, a voxel that is Partial, or a Partial node whose eight children have one number.
 Octree object_of(const MultivaluedOctree& tree, int number);
 
 /// Numbers separated by spaces, and P(...) for Partial nodes: `P(0 0 1 2 0 0 P(1 1 0 0 0 0 0 0) 0)`.

@@ -45,7 +45,7 @@ class DynamicRow {
   explicit DynamicRow(int side) : open_{{0, side - 1}} {}
 
   bool is_painted() const { return open_.empty(); }
-  /// Calls `paint(x)` for the unpainted part of first..last and takes it off.
+  /// Calls `paint(x)` for each unpainted x in first..last and marks it as painted.
   template <typename Paint>
   void take(int first, int last, const Paint& paint) {
     std::vector<std::pair<int, int>> left;

@@ -24,7 +24,7 @@ struct Projection {
 };
 
 // Each code is drawn by the algorithm that the thesis describes for it. The observer stands beyond the
-// universe in the direction `from`. All give the same columns.
+// universe in the direction `from`. All return the same columns.
 
 /// Face lists (4.4.1.2.2): only the list that faces the observer, into a depth buffer.
 Projection projection(const CuberilleFaces& faces, Direction from);

@@ -7,11 +7,11 @@ namespace octotomy::voxel {
 
 /// How a Partial node becomes one voxel (thesis 3.3.2, after Srihari).
 struct Reduction {
-  /// Children: of the eight children, each reduced before by the same rule. Voxels: of all voxels of the
-  /// node.
+  /// The parts of the node that are counted. Children: its eight children, each first reduced by the same
+  /// rule. Voxels: all its voxels.
   enum class Of { Children, Voxels };
   Of of = Of::Children;
-  double share = 0.5;  ///< the voxel is Full if more than this share is Full; 0..1
+  double share = 0.5;  ///< the new voxel is Full if more than this share of the parts is Full; 0..1
 };
 
 /// The octree at a lower resolution: its universe has `levels` levels fewer and voxels 2^levels times as

@@ -23,7 +23,7 @@ class SliceStack {
   /// from below, or `from_z` if the sample there is not below it; none if all samples are below. Both heights
   /// lie in the stack.
   std::optional<double> first_at_least(int x, int y, double threshold, double from_z, double to_z) const;
-  /// Bytes of the slices, for comparison with those of `slice_count` interpolated slices.
+  /// Bytes of the stored slices and, for comparison, of `slice_count` interpolated slices.
   std::uint64_t bytes() const;
   std::uint64_t bytes_interpolated(int slice_count) const;
 

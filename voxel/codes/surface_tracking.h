@@ -16,18 +16,19 @@ struct SurfaceFace {
 };
 
 /// The boundary's face nearest to a point in voxels, whose integers are voxels' middles, among the faces whose
-/// middles lie within `most` voxels along each axis; of equally near ones the first, by voxel, x fastest, then
-/// by direction. None if there is none.
+/// middles lie within `most` voxels along each axis; among equally near faces the first, by voxel, x fastest,
+/// then by direction. None if no face is that near.
 std::optional<SurfaceFace> nearest_face(const Octree& octree, const glm::dvec3& p_voxel, double most);
 
-/// Whether voxels of the object that share only an edge are joined. The outside is joined the other way.
+/// Whether voxels of the object that share only an edge are joined. Voxels outside are joined in the other
+/// way.
 enum class Joined { ByFaces, ByEdges };
 
 /// A connected part of an object's boundary.
 struct TrackedSurface {
   CuberilleFaces faces;
-  /// Voxels inside of the surface, those of cavities included; negative for the wall of a cavity, which
-  /// encloses what is outside of the object.
+  /// Voxels inside the surface, those of cavities included; negative for the wall of a cavity, which encloses
+  /// voxels outside the object.
   std::int64_t enclosed_voxels = 0;
 };
 

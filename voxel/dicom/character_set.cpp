@@ -9,7 +9,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// The names that iconv has for DICOM's sets. Each key is the common end of a set's names with and without
+/// The names of DICOM's character sets in iconv. Each key is the common end of a set's names with and without
 /// code extensions: "ISO_IR 100" and "ISO 2022 IR 100".
 constexpr std::array<std::pair<std::string_view, const char*>, 18> encodings{{
     {"IR 6", "ASCII"},

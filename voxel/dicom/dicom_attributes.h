@@ -75,8 +75,8 @@ class DicomAttributes {
 DicomAttributes dicom_code(const char* value, const char* scheme, const char* meaning);
 
 /// Writes a file of one instance (PS3.10, 7.1); its class and identifier are the attributes (0008,0016) and
-/// (0008,0018), its transfer syntax follows from their coding. Error messages refer to the file as `name`.
-/// Throws Error, Resource.
+/// (0008,0018), and the attributes' coding determines its transfer syntax. Error messages refer to the file
+/// as `name`. Throws Error (Resource).
 void write_dicom_file(const std::filesystem::path& path, const std::filesystem::path& name,
                       const DicomAttributes& attributes);
 

@@ -20,7 +20,8 @@ namespace octotomy::voxel {
 
 namespace {
 
-/// The decoding process, connected by a socket. It ends when this object is destroyed or the program ends.
+/// The decoding process, connected by a socket. The process ends when this object is destroyed or the program
+/// ends.
 class CodecProcess {
  public:
   CodecProcess() {

@@ -61,7 +61,7 @@ gdcm::Image image_of(const FrameHead& head, const std::string& syntax,
   return image;
 }
 
-/// Empty if the frame cannot be decompressed.
+/// The frame's pixels; empty if it cannot be decompressed.
 std::string decompress(const FrameHead& head, const std::string& syntax,
                        const std::vector<std::string>& parts) {
   if (gdcm::TransferSyntax::GetTSType(syntax.c_str()) == gdcm::TransferSyntax::TS_END) return {};
@@ -74,7 +74,8 @@ std::string decompress(const FrameHead& head, const std::string& syntax,
   }
 }
 
-/// A version from a codec that GDCM links. Debian's GDCM links both; others carry their own copies inside.
+/// The version of a codec library, by its function that returns it; empty if GDCM does not link the library.
+/// Debian's GDCM links OpenJPEG and CharLS; other builds of GDCM contain copies.
 std::string version_by(const char* function) {
   using Version = const char* (*)();
   const auto version = reinterpret_cast<Version>(dlsym(RTLD_DEFAULT, function));
@@ -122,7 +123,7 @@ int main(int count, char** arguments) {
   if (count != 2 || setenv("TMPDIR", arguments[1], 1) != 0) return 1;
   bool is_confined = false;
 #ifndef OCTOTOMY_SANITIZED  // a sanitizer traces the process
-  // If the system lacks these features, only the limits above and the separate address space protect the
+  // If the system lacks seccomp or Landlock, only the limits above and the separate address space protect the
   // user.
   is_confined = octotomy::voxel::confine(arguments[1]);
 #endif

@@ -11,11 +11,11 @@
 
 // The messages between decompress() and its process over a socket. A request is a FrameHead, the transfer
 // syntax, and for each fragment its length as std::uint64_t and its bytes. The answer is the length of the
-// pixels as std::uint64_t, zero on failure, and the pixels. A head without columns asks for the process's own
-// facts. The answer to it is the length of a text and the text: "confined" or "not confined", then for each
-// library a line of its name, a space and its version. The only argument of the process is an empty
-// folder for its temporary files. The program removes this folder, or the process does if the program has
-// ended. Both ends are built together, so the format has no version.
+// pixels as std::uint64_t, zero on failure, and the pixels. A head without columns requests the process's own
+// facts. The answer is the length of a text and the text: "confined" or "not confined", then for each library
+// a line of its name, a space and its version. The only argument of the process is an empty folder for its
+// temporary files. The program removes this folder, or the process does if the program has ended. Both ends
+// are built together, so the format has no version.
 
 namespace octotomy::voxel {
 

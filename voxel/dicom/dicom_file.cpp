@@ -119,8 +119,8 @@ void DicomFile::leave_meta() {
   transfer_syntax_ = text(transfer_syntax_tag);
   const bool is_implicit = transfer_syntax_ == "1.2.840.10008.1.2";
   const bool is_deflated = transfer_syntax_ == "1.2.840.10008.1.2.1.99" && !inflated_;
-  // Some tools change the stated syntax but not the attributes. The coding of the attributes is therefore
-  // read from the attributes.
+  // Some tools change the stated syntax but not the attributes. The attributes' coding is therefore
+  // determined from the attributes themselves.
   explicit_ = left() >= 8 && !is_deflated ? spells_vr(bytes_.substr(at_)) : !is_implicit;
   contradicts_syntax_ = explicit_ == is_implicit;
   if (transfer_syntax_ == "1.2.840.10008.1.2.2") big_endian_ = true;
@@ -149,7 +149,7 @@ DicomFile::Head DicomFile::take_head() {
   return head;
 }
 
-/// The Extended Offset Table, (7fe0,0001), of eight bytes a frame (DICOM PS3.3, C.7.6.3).
+/// Reads the Extended Offset Table, (7fe0,0001), with eight bytes per frame (DICOM PS3.3, C.7.6.3).
 void DicomFile::take_extended_offsets() {
   const auto found = values_.find(0x7fe00001);
   if (found == values_.end()) return;
@@ -252,7 +252,7 @@ std::vector<DicomFile> DicomFile::items(DicomTag sequence) const {
     const std::size_t length = head.is_open() ? marks.left() : head.length;
     found.push_back(DicomFile(marks.bytes_.substr(marks.at_, length), explicit_vr, marks.big_endian_));
     marks.at_ += head.is_open() ? found.back().at_ : length;
-    // An item without a character set of its own has that of the data set around it (PS3.5, 6.1.1).
+    // An item without a character set of its own uses that of the data set around it (PS3.5, 6.1.1).
     if (character_set != values_.end()) found.back().values_.insert(*character_set);
   }
   return found;

@@ -40,7 +40,7 @@ class DicomFile {
 
   /// `bytes` must outlive the object. They are the whole file of `file_bytes`, or its beginning up to the
   /// pixels or beyond. Throws Deflated for deflated attributes unless `inflated` is set, which means that
-  /// they have been inflated. Throws NeedsMore. Throws Error, Input, with the reason and without a path, if
+  /// they have been inflated. Throws NeedsMore. Throws Error (Input) with the reason and without a path, if
   /// an attribute ends beyond the file.
   DicomFile(std::string_view bytes, std::size_t file_bytes, bool inflated = false);
 
@@ -61,7 +61,7 @@ class DicomFile {
   std::optional<std::vector<double>> decimals(DicomTag tag) const;
   std::optional<double> decimal(DicomTag tag) const;
   /// The items of a sequence, with their own attributes and the character set around them; empty if the
-  /// sequence is absent. The file's bytes must outlive them. Throws Error, Input, if an item is damaged.
+  /// sequence is absent. The file's bytes must outlive them. Throws Error (Input) if an item is damaged.
   std::vector<DicomFile> items(DicomTag sequence) const;
 
   /// Whether a decimal string has a comma where the point belongs.
@@ -84,8 +84,9 @@ class DicomFile {
   /// The offset table, basic or extended: where each frame begins, counted from the first fragment's item;
   /// empty if absent.
   const std::vector<std::uint64_t>& frame_offsets() const { return frame_offsets_; }
-  /// The fragments of each of a number of frames: one per frame, else divided by the offset table, else by
-  /// the start-of-image markers. None if none of these fits. Precondition: fragments() has a value.
+  /// The fragments of each frame of a file with `frames` frames: one per frame, else divided by the offset
+  /// table, else by the start-of-image markers. None if none of these fits. Precondition: fragments() has a
+  /// value.
   std::optional<std::vector<std::vector<DicomExtent>>> frame_fragments(std::size_t frames) const;
   /// Whether a fragment begins a frame of JPEG, JPEG-LS or JPEG 2000, which start with a start-of-image
   /// marker.
@@ -134,7 +135,7 @@ class DicomFile {
 };
 
 /// The bytes of a whole DICOM file with deflated attributes inflated, for DicomFile's `inflated`. Throws as
-/// DicomFile does, and Error, Input, without a path, if the deflated bytes are damaged.
+/// DicomFile does, and Error (Input) without a path, if the deflated bytes are damaged.
 std::string whole_dicom(std::string bytes);
 
 }  // namespace octotomy::voxel

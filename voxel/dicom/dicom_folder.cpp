@@ -18,8 +18,8 @@ bool is_file(const fs::directory_entry& entry) {
   return entry.is_regular_file(ignored) || (entry.is_symlink(ignored) && !entry.exists(ignored));
 }
 
-/// Whether a name is that of a folder of staged files, which are not yet renamed into place, or that of the
-/// list of a result's files.
+/// Whether a path names a folder of staged files, which are not yet renamed into place, or the list of a
+/// result's files.
 bool is_of_octotomy(const fs::path& path) {
   const std::string name = path.filename().string();
   return name.starts_with('.') && name.find(".octotomy-") != std::string::npos;

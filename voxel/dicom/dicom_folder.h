@@ -14,7 +14,7 @@ struct FolderFiles {
 
 bool is_folder(const std::filesystem::path& path);
 
-/// The files of a folder and its subfolders; if the path names a file, that file. Throws Error, Input, if the
+/// The files of a folder and its subfolders; if the path names a file, that file. Throws Error (Input) if the
 /// folder cannot be listed.
 FolderFiles files_of(const std::filesystem::path& path);
 

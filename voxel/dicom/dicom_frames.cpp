@@ -29,8 +29,8 @@ std::optional<std::vector<std::uint16_t>> numbers_of_frames(const DicomFile& fil
   return numbers;
 }
 
-/// The attribute by which FrameIncrementPointer states that frames follow each other in time; empty if it
-/// does not.
+/// The attribute that FrameIncrementPointer names if the frames follow each other in time; empty if they do
+/// not.
 std::string time_between_frames(const DicomFile& file) {
   const std::vector<std::uint16_t> pointers = file.unsigned_shorts(0x00280009);
   for (std::size_t i = 0; i + 1 < pointers.size(); i += 2) {
@@ -133,7 +133,7 @@ std::optional<NoSlice> place_frames(const DicomFile& file, std::vector<DicomSlic
     const double step_mm =
         named.tag == 0x00180088 ? first.spacing_tag_mm.value_or(0.0) : first.thickness_mm.value_or(0.0);
     if (!how.empty() || step_mm == 0.0 || !(std::abs(step_mm) < 1e6)) continue;
-    // In a time series of one slice, SliceThickness is no distance between slices.
+    // In a time series of a single slice, SliceThickness is not a distance between frames.
     if (!time.empty() && named.tag == 0x00180050)
       return NoSlice{
           "a multi-frame image whose frames follow each other in time (FrameIncrementPointer names " + time +

@@ -13,7 +13,7 @@ namespace octotomy::voxel {
 
 bool is_nuclear(const std::string& class_uid);
 
-/// The reason if a nuclear medicine image has no reconstructed slices; none if it has.
+/// The reason why a nuclear medicine image has no reconstructed slices; none if it has them.
 std::optional<NoSlice> not_reconstructed(const DicomFile& file, std::size_t frames);
 
 /// For each frame of a nuclear medicine image, the item of its detector, which holds its position; empty if

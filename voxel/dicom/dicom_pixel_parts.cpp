@@ -92,7 +92,7 @@ DicomPixels pixels_of(const DicomFile& file) {
   pixels.transfer_syntax = file.transfer_syntax();
   pixels.allocated = file.unsigned_short(0x00280100).value_or(16);
   const auto stored = file.unsigned_short(0x00280101), high = file.unsigned_short(0x00280102);
-  // If one of the two is absent, it follows from the other, because values end at the lowest bit.
+  // If BitsStored or HighBit is absent, it follows from the other one, because values end at the lowest bit.
   pixels.stored = stored ? *stored : high ? *high + 1u : pixels.allocated;
   pixels.high = high ? *high : pixels.stored - 1;
   const auto representation = file.unsigned_short(0x00280103);

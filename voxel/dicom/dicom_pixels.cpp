@@ -160,7 +160,8 @@ DecodedSlice rescale_shorts(const DicomSlice& slice, int intercept, std::span<st
     for (std::int16_t& sample : samples) {
       const auto word = static_cast<Word>(sample);
       const int stored = static_cast<Word>(static_cast<Word>(word << shift) >> drop);
-      // Bits outside of the stored ones are plain if they are all zero or copies of the sign above them.
+      // Bits outside the stored ones are plain if all are zero, or if the bits above the stored ones are
+      // copies of the sign.
       const bool is_plain = (static_cast<std::uint16_t>(sample) & outside) == 0;
       foreign += !is_plain && static_cast<Word>(stored << (drop - shift)) != word;
       const int value = stored + intercept;

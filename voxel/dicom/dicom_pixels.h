@@ -16,12 +16,12 @@ struct DecodedSlice {
   std::size_t foreign_count = 0;  ///< pixels with bits outside BitsStored that are not copies of the sign
 };
 
-/// Whether two images store the same pixels in the same way. Throws Error, Input, if a file has changed.
+/// Whether two images store the same pixels in the same way. Throws Error (Input) if a file has changed.
 bool same_pixels(const DicomSlice& a, const DicomSlice& b);
 
 /// Decodes a slice and applies its Modality LUT or its rescale, row by row, x fastest. A slope that is absent
 /// or 0 is read as 1, an absent intercept as 0. Padded pixels become `padding_mark`; then a measured value at
-/// or below the mark does not fit. Precondition: `samples` has a place for every pixel. Throws Error, Input,
+/// or below the mark does not fit. Precondition: `samples` has a place for every pixel. Throws Error (Input)
 /// with path and reason if the pixels cannot be decoded.
 DecodedSlice read_dicom_samples(const DicomSlice& slice, std::span<std::int16_t> samples,
                                 std::optional<std::int16_t> padding_mark = std::nullopt);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Turns a header into slices, attribute by attribute. Each attribute that a volume needs can be absent, wrong or
-// elsewhere in its own way.
+// Turns a header into slices, attribute by attribute. Each attribute that a volume needs may be absent, wrong
+// or stored elsewhere, in ways of its own.
 #include "voxel/dicom/dicom_slice.h"
 
 #include <algorithm>
@@ -66,8 +66,8 @@ class Attributes {
     if (tag == 0x00209128)  // VR UL
       return word() ? std::to_string(*word()) : std::string();
     const std::string found = text(tag);
-    // VR FL is a binary float, which some writers store as a decimal string. The bytes of a float such as 0
-    // are not digits.
+    // VR FL is a binary float, which some writers store as a decimal string. The bytes of a float, such as
+    // those of 0, are not digits.
     if ((tag == 0x00209241 || tag == 0x00209245) && word() &&
         (found.empty() || found.find_first_not_of("0123456789.+- ") != std::string::npos))
       return print("%g", static_cast<double>(std::bit_cast<float>(*word())));

@@ -62,8 +62,8 @@ struct Concatenation {
   int total = 0;    ///< 0: the header does not state it
 };
 
-/// The part of a grey DICOM image's header that a volume needs. The image is a file of one frame or one frame
-/// of several. LPS, millimetres.
+/// The part of a grey DICOM image's header that a volume needs. The image is a file's only frame, or one of
+/// its frames. LPS, millimetres.
 struct DicomSlice {
   std::filesystem::path path;
   std::string
@@ -125,12 +125,12 @@ struct NoSlice {
   std::string reason;
   Kind kind = Kind::Stray;
   bool is_directory = false;    ///< a DICOMDIR, which lists the images beside it
-  std::string series_uid = {};  ///< of the file, if it states one
+  std::string series_uid = {};  ///< of the file, if the file states one
 };
 
 /// Reads the header of a file and checks that its attributes and pixels end within it. Returns one slice, or
 /// one for each frame of an enhanced CT or MR. Never throws on a file's contents. Memory: the file's
-/// attributes, or the whole file if it is compressed. Numbers with a decimal comma are read. An image is
+/// attributes, or the whole file if it is deflated. Numbers with a decimal comma are read. An image is
 /// unusable if it has a position beyond 1e9 mm, a spacing outside 1e-6 to 1e6 mm, a direction longer than a
 /// unit vector, rescaled values beyond single precision, a number that cannot be read, or a transfer syntax
 /// that this program cannot decode.
@@ -139,10 +139,10 @@ std::variant<std::vector<DicomSlice>, NoSlice> read_dicom_slices(const std::file
 /// The number of bytes in a frame's uncompressed pixels.
 std::size_t frame_bytes(const DicomSlice& slice);
 
-/// The first `count` bytes of a file, or all of them. Throws Error, Input, if they cannot be read.
+/// The first `count` bytes of a file, or all of them. Throws Error (Input) if they cannot be read.
 std::string beginning_of(const std::filesystem::path& path, std::size_t count);
 
-/// The file with its bytes from `at` on inflated. Throws Error, Input, if they are damaged.
+/// The file with its bytes from `at` on inflated. Throws Error (Input) if they are damaged.
 std::string inflated(const std::string& bytes, std::size_t at);
 
 }  // namespace octotomy::voxel

@@ -51,7 +51,7 @@ std::vector<std::pair<std::size_t, std::size_t>> rivals_of(const std::vector<Dic
   return rivals;
 }
 
-/// The attribute in which most of these pairs differ, if at least half of them do.
+/// The attribute in which most of the pairs of rivals differ, if at least half of the pairs do.
 std::optional<std::size_t> parting_trait(const std::vector<DicomSlice>& slices,
                                          const std::vector<std::pair<std::size_t, std::size_t>>& rivals) {
   std::size_t most = 0;
@@ -85,7 +85,8 @@ std::vector<std::vector<DicomSlice>> parted_by_order(std::vector<DicomSlice> sli
   std::stable_sort(slices.begin(), slices.end(), [&](const DicomSlice& a, const DicomSlice& b) {
     return glm::dot(a.first_mm, normal) < glm::dot(b.first_mm, normal);
   });
-  std::vector<std::pair<std::size_t, std::size_t>> places;  // first image of each, and one beyond its last
+  std::vector<std::pair<std::size_t, std::size_t>> places;  // for each place, its first image and one past
+                                                            // its last
   for (std::size_t i = 0; i < slices.size(); ++i)
     if (i > 0 && glm::dot(slices[i].first_mm - slices[i - 1].first_mm, normal) < same_place_mm())
       places.back().second = i + 1;
@@ -168,7 +169,7 @@ class Words {
       plane_differs_ |= std::string(plane_of(slice)) != plane_of(first);
       size_differs_ |= slice.size_px != first.size_px;
     }
-    // The largest difference of a spacing is to the least or the largest one.
+    // A spacing differs most from the least or from the largest spacing.
     for (int axis = 0; axis < 2; ++axis) {
       const auto [least, largest] =
           std::minmax_element(parts.begin(), parts.end(), [&](const auto& a, const auto& b) {

@@ -17,8 +17,8 @@ enum class TraitRole {
   Uniformity,  ///< images that differ stay together; the audit lists the minority
 };
 
-/// A DICOM attribute that is equal in all images of a stack. Its value is that of the first of these tags
-/// that a file has.
+/// A DICOM attribute that is equal in all images of a stack. Its value comes from the first of `tags` that a
+/// file has.
 struct DicomTrait {
   const char* check;  ///< name of its line in the audit
   const char* words;  ///< its name in messages

@@ -18,7 +18,8 @@ Identity identity_of(const DicomFile& file);
 /// Studies and frames of reference differ if the two sides have no UID in common.
 struct IdentityComparison {
   std::vector<std::string> differing;  ///< "patient 'A17' and 'B23'", the first side's value first
-  std::vector<std::string> unstated;   ///< "patient", "study", "frame of reference": one side has none
+  std::vector<std::string> unstated;   ///< "patient", "study" or "frame of reference", if one side states
+                                       ///< none
 };
 IdentityComparison compared(const Identity& a, const Identity& b);
 

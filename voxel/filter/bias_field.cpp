@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1. Of the scan only every few samples are taken: the field changes over centimetres. They are not averaged,
-//    which would mix tissues and blur the histogram that N4 sharpens.
-// 2. ITK's N4 fits the logarithm of the field to those above the threshold.
+// 1. The scan is thinned to one sample in every few, because the field changes over centimetres. Samples are
+//    not averaged, which would mix tissues and blur the histogram that N4 sharpens.
+// 2. ITK's N4 fits the logarithm of the field to the thinned samples above the threshold.
 // 3. The spline of the last level is evaluated at the scan's own samples, slice by slice in parallel.
 #include "voxel/filter/bias_field.h"
 
@@ -77,7 +77,8 @@ class OneThread {
   itk::ThreadIdType before_;
 };
 
-// The logarithm of the field as a uniform cubic B-spline over the thinned scan. A position is in its samples.
+// The logarithm of the field as a uniform cubic B-spline. Positions are indices of the thinned scan's
+// samples.
 class Spline {
  public:
   Spline(const N4::BiasFieldControlPointLatticeType& lattice, const glm::ivec3& dims) {

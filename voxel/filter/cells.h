@@ -37,7 +37,7 @@ Cells eroded(const CellGrid& grid, const Cells& set, double radius_mm);
 /// Dilates by `edge_mm` plus half a cell along each axis, and by at least one cell.
 Cells with_edge(const CellGrid& grid, const Cells& set, double edge_mm);
 
-/// The cells whose squared distance is larger than that of the radius.
+/// The cells whose squared distance is larger than the square of the radius.
 Cells deeper(const std::vector<float>& square_mm2, double radius_mm);
 
 /// Parts joined by faces, in the order of their first cells.

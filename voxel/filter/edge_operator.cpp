@@ -48,7 +48,8 @@ glm::dvec3 index_gradient(const Field<Held>& field, int x, int y, int z) {
   return sum / (2.0 * (1.0 + 4.0 * of_edge + 4.0 * of_corner));
 }
 
-// Prewitt's derivatives: the mean of the nine samples ahead less that of the nine behind, two voxels apart.
+// Prewitt's derivatives: the mean of the nine samples ahead minus the mean of the nine samples behind, two
+// voxels apart.
 template <typename Held>
 glm::dvec3 plane_gradient(const Field<Held>& field, int x, int y, int z) {
   glm::dvec3 sum(0.0);
@@ -58,8 +59,8 @@ glm::dvec3 plane_gradient(const Field<Held>& field, int x, int y, int z) {
   return sum / 18.0;
 }
 
-// Roberts's derivatives in the cell of samples x..x + 1, y..y + 1, z..z + 1. The products of the six diagonals
-// with themselves sum to four times the unit matrix.
+// Roberts's derivatives in the cell of samples x..x + 1, y..y + 1, z..z + 1. The outer products of the six
+// diagonals with themselves sum to four times the unit matrix.
 template <typename Held>
 glm::dvec3 diagonal_gradient(const Field<Held>& field, int x, int y, int z) {
   const double here = field(x, y, z);

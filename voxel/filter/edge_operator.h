@@ -23,24 +23,24 @@ Scene marr_hildreth(const Scene& scene, double sigma_mm, const Progress& progres
 
 /// The length of the gradient, in sample units per millimetre, by Roberts's operator in three dimensions: the
 /// differences along the six diagonals of the three faces of a cell that meet at its first sample, fitted by
-/// least squares. Exact for linear fields on any lattice. An edge is one cell wide, narrower than by the other
-/// operators, and noise is smoothed least. Values belong to the cells' middles: the result's lattice lies half
-/// a voxel farther along each axis. Source: Roberts 1965, in three dimensions after Liu, Computer Graphics and
-/// Image Processing 6, 1977. Departure: the fit, in place of the largest difference. Memory: the result, in
-/// float.
+/// least squares. Exact for linear fields on any lattice. Of all these operators, it makes the narrowest
+/// edges, one cell wide, and smooths noise least. Values belong to the cells' middles: the result's lattice
+/// lies half a voxel farther along each axis. Source: Roberts 1965, in three dimensions after Liu, Computer
+/// Graphics and Image Processing 6, 1977. Departure: the fit, in place of the largest difference. Memory: the
+/// result, in float.
 Scene roberts(const Scene& scene, const Progress& progress = {});
 
-/// The length of the gradient, in sample units per millimetre, of the plane of least squares through the 27
-/// samples about each: Prewitt's operator in three dimensions (Morgenthaler and Rosenfeld, IEEE PAMI 3, 1981).
-/// Exact for linear fields on any lattice. Memory: the result, in float.
+/// The length of the gradient, in sample units per millimetre, of the linear function fitted by least squares
+/// to the 27 samples around each sample: Prewitt's operator in three dimensions (Morgenthaler and Rosenfeld,
+/// IEEE PAMI 3, 1981). Exact for linear fields on any lattice. Memory: the result, in float.
 Scene prewitt(const Scene& scene, const Progress& progress = {});
 
-/// The scene smoothed by the wider of two Gaussians, less that by the narrower, divided by half the difference
-/// of their variances: in sample units per square millimetre, as marr_hildreth(), which it approximates with
-/// the same sign; exact for quadratic fields, sheared lattices included. `ratio` is that of the wider standard
-/// deviation to `sigma_mm`; 1.6 is the best approximation (Marr and Hildreth 1980). Throws
-/// std::invalid_argument unless the ratio is finite and above 1, and as gaussian() for either. Memory: three
-/// float copies.
+/// The scene smoothed by the wider of two Gaussians minus the scene smoothed by the narrower, divided by half
+/// the difference of their variances. Approximates marr_hildreth() in the same unit and with the same sign;
+/// exact for quadratic fields, sheared lattices included. `sigma_mm` is the narrower standard deviation and
+/// `ratio` the wider one divided by it; 1.6 is the best approximation (Marr and Hildreth 1980). Throws
+/// std::invalid_argument unless the ratio is finite and above 1, and as gaussian() for both widths. Memory:
+/// three float copies.
 Scene difference_of_gaussians(const Scene& scene, double sigma_mm, double ratio = 1.6,
                               const Progress& progress = {});
 

@@ -1,5 +1,5 @@
 // Steps:
-// 1 estimate the table's inclination to the lattice: the slope at which edges of a coarse copy line up best.
+// 1 Estimate the table's inclination to the lattice: the slope at which edges of a coarse copy line up best.
 // 2 Compute the median of each column along the table, over all slices and then over shorter windows.
 // 3 A column is extruded where its samples are material and stay near the medians of its neighbourhood.
 // 4 Join extruded columns to parts; a part that is compact, narrow, enclosed, or thick without air around it
@@ -20,13 +20,14 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr double above_air = 50.0;       ///< HU; above the noise of air, below the lightest foam
-constexpr double least_width_mm = 40.0;  ///< narrower parts are straps, tubes or arms
-constexpr double limb_mm = 10.0;         ///< radius of discs that fit into a child's arm
-constexpr double limb_edge_mm = 2.5;     ///< width of a limb's blurred edge
-constexpr double least_length = 2.5;  ///< of a board or couch, in its thicknesses; a head has 1.6, an arm 1.3
-constexpr double fringe_mm = 8.0;     ///< a body's outline beyond the discs that fit into it
-constexpr double least_window_mm = 60.0;  ///< a head's outline changes over less
+constexpr double above_air = 50.0;        ///< HU; above the noise of air, below the lightest foam
+constexpr double least_width_mm = 40.0;   ///< narrower parts are straps, tubes or arms
+constexpr double limb_mm = 10.0;          ///< radius of discs that fit into a child's arm
+constexpr double limb_edge_mm = 2.5;      ///< width of a limb's blurred edge
+constexpr double least_length = 2.5;      ///< of a board or couch, as a multiple of its thickness; a head has
+                                          ///< 1.6, an arm 1.3
+constexpr double fringe_mm = 8.0;         ///< a body's outline beyond the discs that fit into it
+constexpr double least_window_mm = 60.0;  ///< a head's outline changes within less
 constexpr int slices_per_median = 48;
 constexpr double lies_off_mm = 0.75;  ///< largest deviation of a part from its columns
 constexpr double calm_mm = 4.0;       ///< samples are averaged over this length along the table, against
@@ -127,7 +128,8 @@ class Slope {
     return static_cast<float>(sum / (factor_[0] * factor_[1] * factor_[2]));
   }
 
-  /// The sum of the cubes of the edges' means along a line that shifts by `cells` from end to end.
+  /// Averages the edges along each line that shifts by `cells` from end to end, and sums the cubes of the
+  /// means.
   double score(std::size_t axis, double cells) const {
     const int width = size_[axis], others = size_[1 - axis], slices = size_[2];
     double total = 0.0;
@@ -329,8 +331,8 @@ class Finder {
     return column;
   }
 
-  /// The range allowed for a column's samples: its median and, with `is_wide`, values between it and the
-  /// neighbours' medians in proportion to the allowed deviation of a part.
+  /// The range allowed for a column's samples: its median, with `is_wide` extended towards each neighbour's
+  /// median by the share lies_off_ of their difference, and a margin for noise.
   std::pair<float, float> allowed(const glm::ivec2& p, bool is_wide) const {
     const Column& own = columns_[view_.column(p.x, p.y)];
     float low = own.median, high = own.median;
@@ -496,7 +498,7 @@ class Finder {
   const ExtrusionOptions& options_;
   Extrusion& found_;
   glm::vec2 lies_off_{1.0F};        ///< in columns
-  std::vector<glm::ivec2> shifts_;  ///< of the columns, for each slice
+  std::vector<glm::ivec2> shifts_;  ///< shift of the columns in each slice
   int calm_ = 0;                    ///< number of slices averaged before and behind
   std::vector<Column> columns_;
 };

@@ -34,7 +34,7 @@ struct Extrusion {
   std::vector<std::uint8_t> marks;  ///< 1 for each sample of an extruded part, in the scene's order
   glm::dvec2 slope{0.0};   ///< shift of the parts per millimetre along the table: to the side, to the back
   int parts = 0;           ///< number of cross-sections found
-  double solid_mm3 = 0.0;  ///< of marked samples from the threshold on
+  double solid_mm3 = 0.0;  ///< volume of marked samples at or above the threshold
 };
 
 /// Finds parts whose samples keep their values over at least 60 mm, or a third of the scan, along the

@@ -59,8 +59,8 @@ std::size_t nearest_of(const std::vector<Cluster>& clusters, const glm::dvec2& p
   return nearest;
 }
 
-/// Iterates the means until no bin changes its cluster. The sum of squares falls with every change, so that it
-/// ends; a bound on the rounds guards against rounding.
+/// Iterates the means until no bin changes its cluster. The sum of squares falls with every change, so the
+/// iteration ends; the bound on rounds guards against rounding errors.
 void settle(std::vector<Bin>& all, std::size_t count, const Progress& progress) {
   for (int round = 0; round < 10000; ++round) {
     progress.at(0.0);
@@ -94,7 +94,7 @@ int bin_of(double value, const Histogram& along) {
   return static_cast<int>(std::floor(std::clamp((value - along.low) / along.width(), 0.0, bins - 1.0) + 0.5));
 }
 
-/// The number of samples of each density, fastest, and gradient.
+/// The number of samples in each pair of bins; the density's bin runs fastest, then the gradient's.
 std::vector<std::uint64_t> joint_histogram(const Scene& scene, const Scene& gradient,
                                            const Histogram& densities, const Histogram& gradients) {
   std::vector<std::uint64_t> counts(static_cast<std::size_t>(bins) * bins, 0);

@@ -18,13 +18,13 @@ struct FeatureCentre {
   double share = 0.0;  ///< of the scan's measured samples, 0 to 1
 };
 
-/// The classes, by density from the lowest, and the scale that makes the two features comparable: both are
-/// divided by their standard deviation.
+/// The classes, by density from the lowest, and the scales that make the two features comparable: each
+/// feature is divided by its standard deviation.
 struct FeatureClasses {
   std::vector<FeatureCentre> centres;
   double density_scale = 1.0, gradient_scale = 1.0;
 
-  /// The number of the centre nearest to a sample; of several the first.
+  /// The number of the centre nearest to a sample; the first of equally near centres.
   std::size_t nearest(double density, double gradient) const;
 };
 
@@ -35,11 +35,11 @@ Scene gradient_length(const Scene& scene, const Progress& progress = {});
 
 /// K-means clusters of the samples' densities and gradients, on a histogram of 256 by 256 bins between the
 /// features' 0.1st and 99.9th percentiles, which also limit the weight of outliers. Starts with one cluster,
-/// and splits the one of greatest variance at its middle, across the feature in which it varies most, until
-/// there are enough; after each split the means are iterated until no bin changes its cluster. Edges are
-/// classes of their own, one or two by their height: three tissues need five. Throws InvalidInput
-/// unless there are 2 to 8 classes, and as gradient_length(); Error, Geometry, if all samples or all
-/// gradients are equal, or fewer clusters exist; Stopped. Same bits on any thread count.
+/// and splits the cluster of greatest variance at its middle, across the feature in which it varies most,
+/// until there are `classes` clusters. After each split the means are iterated until no bin changes its
+/// cluster. Edges are classes of their own, one or two by their height: three tissues need five. Throws
+/// InvalidInput unless there are 2 to 8 classes, and as gradient_length(); Error (Geometry) if all samples or
+/// all gradients are equal, or fewer clusters exist; Stopped. Same bits on any thread count.
 FeatureClasses feature_classes(const Scene& scene, int classes, const Progress& progress = {});
 
 /// The class of each sample, from 1, as a label map; padding is 0. Throws as gradient_length().

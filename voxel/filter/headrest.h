@@ -22,7 +22,7 @@ struct HeadrestRemoval {
   /// removed sample equals. restore() undoes the removal with them.
   GreyOctree removed;
   Octree solid;              ///< the removed voxels of at least the threshold
-  std::uint64_t parts = 0;   ///< of `solid`, joined by faces
+  std::uint64_t parts = 0;   ///< number of parts of `solid`, joined by faces
   std::uint64_t voxels = 0;  ///< all removed voxels, rim and foam included
   double solid_mm3 = 0.0;
   double foam_mm3 = 0.0;     ///< removed below the threshold: foam, cloth, blurred edges

@@ -22,7 +22,7 @@ struct Histogram {
 
 /// The histogram of the measured samples from the 0.1st to the 99.9th percentile, so that metal does not
 /// stretch the bins; over the whole range if these percentiles are equal. Percentiles of float samples are
-/// computed from a million of them. Throws std::invalid_argument for fewer than two bins; Error, Geometry, if
+/// computed from a million of them. Throws std::invalid_argument for fewer than two bins; Error (Geometry) if
 /// all samples are equal. Cost: two passes over the samples.
 Histogram histogram(const Scene& scene, int bins = 256);
 

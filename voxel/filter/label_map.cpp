@@ -44,7 +44,7 @@ Octree chosen_samples(const Lattice& lattice, const Octree& own, const Octree& b
   const glm::dmat4 voxel_from_index = glm::inverse(made.universe().lps_from_voxel) * lattice.lps_from_voxel;
   // Whether a voxel around the sample is in `made` and, with `only_added`, not in the base.
   const auto is_near = [&](const glm::dvec3& p_voxel, bool only_added) {
-    constexpr double rounding = 0x1p-20;  // a sample this near a voxel's centre is that centre
+    constexpr double rounding = 0x1p-20;  // a sample this near a voxel's centre counts as lying there
     const glm::ivec3 low(glm::floor(p_voxel + rounding)), high(glm::ceil(p_voxel - rounding));
     for (int z = low.z; z <= high.z; ++z)
       for (int y = low.y; y <= high.y; ++y)

@@ -20,10 +20,10 @@ Universe universe_on(const Lattice& lattice);
 /// Transfers an object from the voxels of a universe to the samples of a lattice. The object `made` was
 /// chosen, opened, closed or filled from `base`; the two share one universe. `own` is the base computed at
 /// the samples themselves, on universe_on(lattice). If a sample and its nearest voxel are both in the base or
-/// both outside it, the sample is in the object if that voxel is. Otherwise, a sample of the base is in the
-/// object if one of the up to eight voxels around it is, and another sample is if one of them was added to
-/// the base. So a sample at a voxel's centre is in the object exactly if that voxel is, and an unchanged base
-/// keeps exactly its samples. Parallel over blocks.
+/// both outside it, the sample is in the object if that voxel is. Otherwise, the up to eight voxels around
+/// the sample decide: a sample in the base is in the object if one of these voxels is, and a sample outside
+/// the base is in the object if one of them was added to the base. So a sample at a voxel's centre is in the
+/// object exactly if that voxel is, and an unchanged base keeps exactly its samples. Parallel over blocks.
 Octree chosen_samples(const Lattice& lattice, const Octree& own, const Octree& base, const Octree& made);
 
 /// The label map of objects on a lattice: a sample is i + 1 if objects[i] is the first object with a voxel at
@@ -45,7 +45,7 @@ constexpr int most_label = (1 << 24) - 1;
 std::optional<int> label_of(double sample);
 
 /// The labels of a scene except 0, ascending, with their numbers of samples; a sample in several labels
-/// counts for each (Scene::overlaps). Throws std::invalid_argument if label_of() a sample is none.
+/// counts for each (Scene::overlaps). Throws std::invalid_argument if label_of() returns none for a sample.
 struct Label {
   int number = 0;
   std::uint64_t samples = 0;
@@ -53,9 +53,9 @@ struct Label {
 };
 std::vector<Label> labels(const Scene& scene);
 
-/// The same labels on another lattice on whose positions all samples lie, for a map that was cropped, or
-/// whose axes were reversed or exchanged. None if samples lie between those of the lattice, or labels beyond
-/// it.
+/// The same labels on another lattice, for a map that was cropped, or whose axes were reversed or exchanged.
+/// None if a sample of the scene lies between the lattice's samples, or a sample with a label beyond the
+/// lattice.
 std::optional<Scene> laid_on(const Scene& scene, const Lattice& lattice);
 
 /// The voxels of a universe whose nearest sample has that label; voxels beyond the scan are empty. Parallel
@@ -68,7 +68,7 @@ struct LabelLayer {
   Scene ranks;
 };
 /// The labels of a scene in few layers: each label joins the first layer where it overlaps no other. Throws
-/// as labels(); std::length_error for more than 32767 labels. Memory: two bytes a sample and layer.
+/// as labels(); std::length_error for more than 32767 labels. Memory: two bytes per sample and layer.
 std::vector<LabelLayer> label_layers(const Scene& scene);
 
 }  // namespace octotomy::voxel

@@ -48,7 +48,8 @@ class Slice {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   }
 
-  /// For each sample, the column of the nearest measured sample in its row, the lower one of two.
+  /// For each sample, the column of the nearest measured sample in its row; of two equally near, the lower
+  /// one.
   std::vector<int> nearest_in_rows() const {
     std::vector<int> nearest(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), none);
     for (int y = 0; y < height_; ++y) {
@@ -117,8 +118,8 @@ void fill(Samples<Sample>& samples, const Lattice& lattice, double padding) {
   });
 }
 
-/// A padding below all samples: the old one if it is lower. For int16 there may be none below the least
-/// sample, but means and medians stay above the old one.
+/// A padding value below all samples: the old padding if it is below them. For int16 there may be no value
+/// below the least sample, but means and medians stay above the old padding.
 template <typename Sample>
 Sample mark_below(const Samples<Sample>& made, double padding) {
   const auto least = static_cast<double>(*std::min_element(made.begin(), made.end()));

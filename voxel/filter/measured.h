@@ -8,11 +8,12 @@
 // Filtering of scans that have padding.
 namespace octotomy::voxel {
 
-/// Applies a filter that keeps the lattice to a scene with padding. `filter` gets a copy without padding:
-/// each padded sample is replaced by the nearest measured one of its slice; a slice without measured samples
-/// repeats the nearest slice that has some, the lower one of two. The result is padded where the scene is,
-/// with a padding below all samples that the filter returned. A scene without padding is passed to the filter
-/// unchanged. Parallel over slices, same bits on any thread count. Memory: a copy of the samples.
+/// Applies a filter that keeps the lattice to a scene with padding. `filter` receives a copy without padding:
+/// each padded sample is replaced by the nearest measured sample of its slice. A slice without measured
+/// samples repeats the nearest slice that has some; of two equally near, the lower one. The result is padded
+/// where the scene is, with a padding below all samples that the filter returned. A scene without padding is
+/// passed to the filter unchanged. Parallel over slices, same bits on any thread count. Memory: a copy of the
+/// samples.
 Scene on_measured(const Scene& scene, const std::function<Scene(const Scene&)>& filter);
 
 }  // namespace octotomy::voxel

@@ -18,7 +18,7 @@ Octree erode(const Octree& octree, double radius_mm);
 /// Erosion, then dilation: the voxels that a ball inside the octree covers. A subset of the octree.
 Octree open(const Octree& octree, double radius_mm);
 /// Dilation, then erosion: the voxels that no ball outside the octree covers. A superset of the octree. Exact
-/// at the universe's faces too, because the dilation may leave the universe. Throws Error, Resource, if its
+/// at the universe's faces too, because the dilation may leave the universe. Throws Error (Resource) if its
 /// distance map does not fit into free_memory().
 Octree close(const Octree& octree, double radius_mm);
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // 1 Find where the solid's surface crosses the edges between neighbouring voxels' centres, by halving.
-// 2 Add the middles of chords and of rings of crossings, which lie on the surface but for its bending within
-//   a cell: half as far from each other as the crossings are.
+// 2 Add the middles of chords and of rings of crossings. They deviate from the surface only by its curvature
+//   within a cell, and halve the distance between points.
 // 3 Put those points into a k-d tree (Bentley 1975).
-// 4 Signed distances change by at most the distance between points, so a block whose middle is farther from
-//   the offset surface than its corners are from its middle has one value. The others are halved down to
-//   voxels.
+// 4 Signed distances change by at most the distance between points. So a block has one value if its middle is
+//   farther from the offset surface than from the block's corners. Other blocks are halved down to voxels.
 // The octree alone decides on which side of the surface a voxel's centre lies: between two centres that
 // differ there is always a crossing, so that sign and distance agree.
 #include "voxel/filter/offset.h"
@@ -30,11 +29,11 @@
 namespace octotomy::voxel {
 namespace {
 
-/// Samples far from the offset surface; more than ten voxels' diagonals.
+/// The largest sample, in steps, for places far from the offset surface: more than ten voxels' diagonals.
 constexpr double most_steps = 30000.0;
 
-/// The nearest of many points: halved at the middle one along the longer side of their box, so that a range
-/// of the list is a node and its middle the point that divides it.
+/// Finds the nearest of many points in a k-d tree. A node is a range of the list. The point in the middle of
+/// the range divides it across the longest side of the points' box.
 class NearestPoint {
  public:
   explicit NearestPoint(std::vector<glm::dvec3> points)
@@ -94,7 +93,7 @@ class NearestPoint {
   }
 
   std::vector<glm::dvec3> points_;
-  std::vector<std::uint8_t> axes_;  ///< by the middle of a node
+  std::vector<std::uint8_t> axes_;  ///< axis across which a node is divided, by the index of its middle point
 };
 
 /// The depth of voxels' centres below the offset surface.
@@ -113,9 +112,9 @@ class Depths {
 
   double step_mm() const { return step_mm_; }
 
-  /// The depth of all voxels of a block where it is farther from 0 than it can change within the block, and
-  /// by more than two voxels, so that no cell about a voxel holds a crossing of the offset surface. Otherwise
-  /// 0.
+  /// The depth for all voxels of a block if no cell about one of them can hold a crossing of the offset
+  /// surface: the depth in the middle exceeds its change within the block by more than two voxels' diagonals.
+  /// Otherwise 0.
   double of_block(const glm::ivec3& first, int side) const {
     const double depth_mm = at(glm::dvec3(first) + 0.5 * (side - 1), first + side / 2);
     return std::abs(depth_mm) > (0.5 * side + 2.0) * diagonal_mm_ ? depth_mm : 0.0;

@@ -23,15 +23,15 @@ namespace octotomy::voxel {
 namespace {
 
 constexpr double cell_mm = 2.0;
-constexpr double above_air = 40.0;         ///< HU of a cell's mean, whose noise is a fraction of this
+constexpr double above_air = 40.0;         ///< HU; for the mean of a cell, whose noise is a fraction of this
 constexpr double contact_mm = 3.0;         ///< length of the stump that a cut-off part leaves on the core
 constexpr double mask_mm = 4.0;            ///< largest thickness of a mask on the face
 constexpr double silhouette_mm = 10.0;     ///< distance within the core's outline, seen from behind, at which
                                            ///< there is no ear
 constexpr double close_mm = 4.0;           ///< gaps in the skin up to twice this width are closed
 constexpr double foam_limit = -200.0;      ///< HU; with a threshold from here on, soft tissue lies below it
-constexpr double least_core_share = 0.3;   ///< share of the largest part; with less, the object is thin
-                                           ///< throughout
+constexpr double least_core_share = 0.3;   ///< least share of the largest part in the core; with less, the
+                                           ///< object is thin throughout
 constexpr double most_front_share = 0.25;  ///< a thick part with a larger share in front is no support
 constexpr double thick_mm = 4.0;           ///< a part is thick if it contains a ball of this radius
 constexpr double least_bone_share = 0.01;  ///< of a limb's samples; an arm has about a tenth
@@ -210,8 +210,8 @@ class Parter {
                                                                  }) > least_bone_share);
   }
 
-  /// Computes the coronal middle, half-way between the foremost cell of the core and the rearmost of the core
-  /// and the parts that hang on it and are near, plus half a cell and half of a mask's thickness for safety.
+  /// Computes the coronal middle, half-way between the core's foremost cell and the rearmost cell of the core
+  /// and of near parts that hang on the core, plus half a cell and half of a mask's thickness for safety.
   /// Parts that hang on the core in front may be a nose or a marker: without them the middle lies farther
   /// back, so less is removed.
   void set_middle() {
@@ -237,8 +237,8 @@ class Parter {
   }
 
   /// For each line from the front to the back, the core's rearmost cell if the line lies well within the
-  /// core's outline; otherwise the rearmost cell of all lines within near_mm along the table. Ears lie before
-  /// it.
+  /// core's outline; otherwise the rearmost cell of all lines within near_mm along the table. Ears lie in
+  /// front of that cell.
   std::vector<int> backs() const {
     const int sides = grid_.dims[axes_.side], slices = grid_.dims[axes_.along];
     CellGrid plane = grid_;
@@ -346,7 +346,8 @@ class Parter {
     rim_ = with_edge(grid_, others, options_.rim_mm);
   }
 
-  /// Calls `visit` with the cell and the up to 27 cells around each cell behind the middle.
+  /// For each cell behind the middle, calls `visit` with the cell and the up to 27 cells of the box around
+  /// it.
   template <typename Visit>
   void for_each_box_behind(const Visit& visit) const {
     tbb::parallel_for(0, grid_.dims.z, [&](int z) {

@@ -13,12 +13,13 @@ namespace octotomy::voxel {
 struct PatientOptions {
   double threshold = -300.0;  ///< samples of at least this value are solid
   double detach_mm = 6.0;     ///< links thinner than a ball of this radius are cut
-  /// Parts wholly within this distance of the patient are not supports, such as an ear that was cut off, bone
-  /// fragments or teeth. Raised to detach_mm plus four millimetres, to include the patient's surface that the
-  /// ball does not reach.
+  /// Parts wholly within this distance of the patient, such as a cut-off ear, bone fragments or teeth, are
+  /// not supports. Raised to detach_mm plus four millimetres, to include the patient's surface that the ball
+  /// does not reach.
   double near_mm = 25.0;
   double board_mm =
-      40.0;  ///< above 0: the thickest solid board; with air around it, half of a couch's thickness
+      40.0;  ///< above 0: largest thickness of a solid board; with air around it, a couch may be twice as
+             ///< thick
   double rim_mm = 2.0;              ///< width of the patient's blurred edge, which is never a support's
   std::vector<glm::dvec3> keep_mm;  ///< LPS points of parts that are no support, such as a dry skull's jaw
   Progress progress{};
@@ -44,7 +45,7 @@ struct PatientParts {
   glm::dvec2 table_slope{0.0};      ///< shift of the table per millimetre along it: to the side and to the
                                     ///< back
   double front_mm3 = 0.0;           ///< doubtful samples in front of the middle
-  double behind_mm3 = 0.0;          ///< doubtful samples behind it
+  double behind_mm3 = 0.0;          ///< doubtful samples behind the middle
   double extruded_front_mm3 = 0.0;  ///< the part of front_mm3 that belongs to a board or cradle
 };
 
@@ -54,7 +55,7 @@ struct PatientParts {
 /// such as a dry skull. Another part that is as thick as a body and contains bone is doubtful, because it may
 /// be a limb. Everything that the skin or bone encloses slice by slice belongs to the patient. Foam is sought
 /// only in Hounsfield units and below the threshold. LPS frame of the scene. Throws std::invalid_argument if
-/// samples are not int16 or an option is out of its range; Error, Geometry, if nothing is solid; Stopped.
+/// samples are not int16 or an option is out of its range; Error (Geometry) if nothing is solid; Stopped.
 /// Same bits on any thread count. Cost: linear; memory: three bytes per sample and 25 per cell of two
 /// millimetres.
 PatientParts patient_parts(const Scene& scene, const PatientOptions& options = {});

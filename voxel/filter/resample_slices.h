@@ -20,7 +20,7 @@ Lattice with_slice_spacing(const Lattice& lattice, double spacing_mm);
 /// The scene on with_slice_spacing(). int16 stays int16, rounded to the nearest, halves upwards, and clamped
 /// to its range. A sample that would depend on padding is padding. Does not smooth before a wider spacing;
 /// average_down() does. Throws std::invalid_argument as with_slice_spacing(), and for a label map unless the
-/// kernel is Nearest; Error, Resource, as need_memory(); Stopped. Parallel, same bits on any thread count.
+/// kernel is Nearest; Error (Resource) as need_memory(); Stopped. Parallel, same bits on any thread count.
 /// Memory: the result.
 Scene resample_slices(const Scene& scene, double spacing_mm, SliceKernel kernel,
                       const Progress& progress = {});
@@ -35,10 +35,10 @@ struct ShapeOptions {
 /// object's outline in it, negative inside; between two slices the maps are interpolated linearly, and the
 /// object is the set of distances of at most 0 (Raya and Udupa, IEEE Trans. Medical Imaging 9, 1990;
 /// departure: distances are Euclidean and exact instead of chamfered). At a sampled slice the result is that
-/// slice. Next to an empty slice it is the nearer slice's shape, the lower one at equal distance. The result
-/// is a label map of 0 and 1 on with_slice_spacing(). Throws as resample_slices(), and std::invalid_argument
-/// if the first two axes are not perpendicular. Parallel over slices. Memory: the result, and two slices of
-/// floats per thread.
+/// slice's own shape. Next to an empty slice the result is the nearer slice's shape, at equal distance the
+/// lower slice's. The result is a label map of 0 and 1 on with_slice_spacing(). Throws as resample_slices(),
+/// and std::invalid_argument if the first two axes are not perpendicular. Parallel over slices. Memory: the
+/// result, and two slices of floats per thread.
 Scene interpolate_shape(const Scene& scene, const ShapeOptions& options);
 
 }  // namespace octotomy::voxel

@@ -31,8 +31,8 @@ std::vector<double> stack_of(double coarsest_mm, double voxel_mm) {
   return sigmas;
 }
 
-/// Whether a sample without a higher neighbour ascends to an equal one of lower index, so that a flat top is
-/// one maximum, or is a maximum of its own.
+/// The rule for a sample without a higher neighbour. OneMaximum: it ascends to an equal neighbour of lower
+/// index, so that a flat top is one maximum. EachItsOwn: it is a maximum of its own.
 enum class Flat { OneMaximum, EachItsOwn };
 
 /// The maximum to which each sample ascends.
@@ -55,8 +55,8 @@ Numbers ascended(const FloatSamples& samples, const glm::ivec3& dims, Flat flat,
         next[at] = static_cast<std::uint32_t>(highest);
       }
   });
-  // Each step ascends in the order of samples, then of indices, so that a path ends. It is shortened as it is
-  // walked.
+  // Each step leads to a higher sample, or to an equal sample of lower index, so every path ends. A path is
+  // shortened while it is followed.
   for (std::size_t at = 0; at < next.size(); ++at) {
     std::uint32_t top = next[at];
     while (next[top] != top) top = next[top];

@@ -10,7 +10,7 @@
 namespace octotomy::voxel {
 
 struct ScaleSpaceOptions {
-  double sigma_mm = 4.0;  ///< of the coarsest blur; objects nearer than about this become one
+  double sigma_mm = 4.0;  ///< of the coarsest blur; objects that are about this close or closer become one
   double low = 0.0;  ///< the window, in sample units, both bounds included: samples outside have no label
   double high = 0.0;
   bool is_dark = false;  ///< follows minima, for objects that are darker than their surroundings
@@ -21,21 +21,21 @@ struct ScaleSpaceOptions {
 struct ScaleSpace {
   Scene labels;
   std::vector<double> sigmas_mm;    ///< of the stack, from the coarsest to the finest; 0 is the scan itself
-  std::vector<std::size_t> maxima;  ///< of each of them
-  std::vector<std::uint64_t> samples;  ///< of each label, from the largest
+  std::vector<std::size_t> maxima;  ///< number of maxima at each of these widths
+  std::vector<std::uint64_t> samples;  ///< number of samples of each label, from the largest
 };
 
 /// Follows the maxima of a scan through scale space (thesis 2.3.4; Pizer et al., Information Processing in
 /// Medical Imaging, 1986). The stack holds blurs by Gaussians whose widths fall by the square root of two from
 /// the coarsest to about a voxel, then the scan. At each level samples ascend to a maximum, each to the
 /// highest of its 26 neighbours. Each maximum of the coarsest blur is a label; from there to the scan, each
-/// maximum of a finer level takes the label of the coarser level at its place, and its samples take it, too.
-/// So touching objects are separated where brightness falls between them, and noise, which the coarsest blur
-/// removes, makes no objects. A flat top of the coarsest blur is one maximum; on a finer level each of its
-/// samples is a maximum, so that a saturated object does not lead across a neck. Throws InvalidInput
-/// for label maps, a window without numbers, and as gaussian(); Error, Geometry, if no sample is in the
-/// window, or more than 32767 regions are; Stopped. Same bits on any thread count. Memory: 16 bytes per
-/// sample.
+/// maximum of a finer level takes the label of the coarser level at its place, and so do the samples that
+/// ascend to it. So touching objects are separated where brightness falls between them, and noise, which the
+/// coarsest blur removes, makes no objects. A flat top of the coarsest blur is one maximum; on a finer level
+/// each of its samples is a maximum, so that the flat top of a saturated object is not joined across a neck.
+/// Throws InvalidInput for label maps, a window without numbers, and as gaussian(); Error (Geometry) if no
+/// sample is in the window, or more than 32767 regions are; Stopped. Same bits on any thread count. Memory:
+/// 16 bytes per sample.
 ScaleSpace scale_space(const Scene& scene, const ScaleSpaceOptions& options);
 
 }  // namespace octotomy::voxel

@@ -9,7 +9,7 @@
 namespace octotomy::voxel {
 
 struct SeatingOptions {
-  glm::dvec3 direction{0.0, 1.0, 0.0};  ///< unit, LPS: in which the part moves to its place
+  glm::dvec3 direction{0.0, 1.0, 0.0};  ///< unit, LPS: the way in which the part moves to its place
   Progress progress = {};
 };
 
@@ -25,9 +25,10 @@ struct Seating {
 };
 
 /// A part is moved from outside along a direction to its place. The space that it passes through is its
-/// shadow() against that direction, within the universe. The depth of the object's voxels in it is good to a
-/// voxel's diagonal: half of it from each digitised surface. Throws as shadow(). Parallel; same bits on any
-/// thread count. Cost: shadow() of the part, and a distance map over the voxels that both have.
+/// shadow() against that direction, within the universe. The depth of the object's voxels in this space is
+/// accurate to a voxel's diagonal, half for each of the two digitised surfaces. Throws as shadow(). Parallel;
+/// same bits on any thread count. Cost: shadow() of the part, and a distance map over the voxels that the
+/// object shares with this space.
 Seating seating(const Octree& part, const Expression& part_solid, const Octree& object,
                 const SeatingOptions& options);
 

@@ -2,10 +2,10 @@
 //
 // 1 Find where the object's surface crosses the edges between voxels' centres, and its triangles.
 // 2 In each column along the direction keep the least depth of all triangles.
-// 3 Those triangles may still cut sharp edges off. At an outline all that lies behind would be lost with them, so
-//   columns just beside an outline look for the object itself at the depths of the outline.
-// 4 Blocks whose columns all begin before them, or all behind them, have one value. In the other blocks 5^3
-//   points of each voxel are counted: an odd number, so that no share is exactly a half.
+// 3 The triangles may still cut off sharp edges. At an outline, everything behind a cut-off edge would be
+//   lost, so columns just beside an outline search for the object itself at the outline's depths.
+// 4 A block has one value if all its columns begin in front of the block, or all behind it. In the other
+//   blocks 5^3 points of each voxel are counted: an odd number, so that no share is exactly a half.
 #include "voxel/filter/shadow.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr int points_an_edge = 5;  ///< of a voxel, and columns of one
+constexpr int points_an_edge = 5;  ///< points along a voxel's edge, and columns per edge
 constexpr int points_a_voxel = points_an_edge * points_an_edge * points_an_edge;
 /// Shares of a cell's longest edge: the largest distance by which a surface of triangles cuts off an edge of
 /// the solid, and the largest outward motion of the triangles' middles (SurfaceCrossings).
@@ -38,7 +38,8 @@ constexpr double cut_off = 0.59, moved_out = 0.75;
 /// for from `look_before` in front of the depth to `look_behind` behind it, in steps of `look_step`. At an
 /// edge of 90 degrees half a step is lost.
 constexpr float look_before = 0.75F, look_behind = 4.0F, look_step = 0.0625F;
-constexpr int tile_side = 16;  ///< a range of depths is stored for each square of so many columns a side
+constexpr int tile_side = 16;  ///< a range of depths is stored for each square of this number of columns a
+                               ///< side
 constexpr float no_surface = std::numeric_limits<float>::infinity();
 
 /// Depth is the coordinate along the direction; x and y lie across it.
@@ -56,8 +57,8 @@ struct ColumnFrame {
 /// The first surface in each of the columns.
 class FirstDepths {
  public:
-  /// Columns pass through the points at which a voxel's share is counted where the direction is an axis of
-  /// the voxels.
+  /// If the direction is an axis of the voxels, columns pass through the points at which a voxel's share is
+  /// counted.
   FirstDepths(const Universe& universe, const ColumnFrame& frame, const std::vector<glm::dvec3>& points_voxel)
       : frame_(frame), lattice_(universe.lattice()) {
     const glm::dvec3 spacing_mm = lattice_.spacing_mm();
@@ -95,7 +96,8 @@ class FirstDepths {
       return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     };
     const double whole = area(p[0], p[1], p[2]);
-    constexpr double edge_on = 1e-12, on_edge = 1e-9;  // of a column's area; shares of the triangle
+    constexpr double edge_on = 1e-12, on_edge = 1e-9;  // edge_on: in areas of a column; on_edge: in shares of
+                                                       // the triangle and in columns
     if (std::abs(whole) < edge_on) return;
     const glm::dvec2 low = glm::min(glm::min(glm::dvec2(p[0]), glm::dvec2(p[1])), glm::dvec2(p[2])),
                      high = glm::max(glm::max(glm::dvec2(p[0]), glm::dvec2(p[1])), glm::dvec2(p[2]));
@@ -227,7 +229,8 @@ class FirstDepths {
   ColumnFrame frame_;
   Lattice lattice_;
   double pitch_mm_ = 1.0;
-  int beside_outline_ = 0;  ///< columns within which an outline may have been cut off
+  int beside_outline_ = 0;  ///< number of columns beside an outline in which the surface may have been cut
+                            ///< off
   double far_end_mm_ = -std::numeric_limits<double>::infinity();
   glm::dvec2 origin_{0.0};
   glm::ivec2 dims_{0}, tiles_{0};
@@ -252,8 +255,8 @@ class ShadowShares {
           points_[number++] = steps_ * ((glm::dvec3(x, y, z) + 0.5) / double{points_an_edge} - 0.5);
   }
 
-  /// The points of a voxel in the shadow minus those outside it, if this is the same for all voxels of a
-  /// block; 0 if it may differ between them.
+  /// The number of a voxel's points in the shadow minus the number outside it, if the same for all voxels of
+  /// a block; 0 if the difference may vary within the block.
   std::int16_t of_block(const glm::ivec3& first, int side) const {
     const glm::dvec3 middle = origin_ + steps_ * (glm::dvec3(first) + 0.5 * (side - 1));
     const glm::dvec3 reach = 0.5 * side * (glm::abs(steps_[0]) + glm::abs(steps_[1]) + glm::abs(steps_[2]));
@@ -277,7 +280,7 @@ class ShadowShares {
   const FirstDepths& depths_;
   double end_mm_;
   glm::dvec3 origin_{0.0};
-  glm::dmat3 steps_{1.0};  ///< of voxels, in the columns' frame
+  glm::dmat3 steps_{1.0};  ///< from voxel to voxel, in the columns' frame
   std::array<glm::dvec3, points_a_voxel> points_;
 };
 

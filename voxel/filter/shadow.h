@@ -20,7 +20,7 @@ struct Shadow {
   /// Samples are the share of a voxel in the shadow less one half, so that the window can be combined, moved
   /// and sampled between voxels.
   Window window;
-  double far_end_mm = 0.0;  ///< the largest p . direction of the object's surface as voxels have it
+  double far_end_mm = 0.0;  ///< the largest p . direction of the object's surface, computed from its voxels
 };
 
 /// The points of an object and all points behind it as seen along a direction, up to a plane across that
@@ -28,11 +28,11 @@ struct Shadow {
 /// object's voxels, and `solid` decides where its surface crosses the lines between neighbouring voxels'
 /// centres. The object ends at the universe's border, and so does the shadow.
 ///
-/// Columns along the direction, a fifth of the smallest voxel edge apart, each begin at the first crossing
-/// of a surface through those crossings (SurfaceCrossings); beside an outline, where that surface cuts
-/// edges off, at the solid itself. A voxel's share is counted at 5^3 points of it, each in the nearest
-/// column: the shadow's side walls lie at random up to 0.15 of a voxel edge off, and not on the mean. Walls
-/// thinner than half a voxel along the direction have no voxels.
+/// Columns run along the direction, a fifth of the smallest voxel edge apart. A column begins where it first
+/// meets a surface through those crossings (SurfaceCrossings). Beside an outline, where that surface cuts
+/// edges off, it begins at the solid itself. A voxel's share is counted at 5^3 points in the voxel, each in
+/// the nearest column. So the shadow's side walls deviate at random by up to 0.15 of a voxel edge, and on
+/// average by nothing. Walls thinner than half a voxel along the direction have no voxels.
 ///
 /// Throws std::invalid_argument if the direction is not a unit vector, the end is not finite or the octree
 /// is empty; Stopped. Parallel; same bits on any thread count. Cost: the crossings, and for each voxel of
@@ -45,9 +45,9 @@ Shadow shadow(const Octree& octree, const Expression& solid, const ShadowOptions
 double far_end_mm(const Octree& octree, const Expression& solid, const glm::dvec3& direction);
 
 /// The volume that shadow() adds to the object along each of some unit directions, up to the object's far end:
-/// the columns' lengths less the object's voxels. Good to the columns' noise and to half a voxel edge of the
-/// object's far end. Throws as shadow(). Parallel; same bits on any thread count. Cost: the crossings once, and
-/// the columns of each direction.
+/// the columns' lengths less the object's voxels. Accurate to the columns' noise and to half a voxel edge at
+/// the object's far end. Throws as shadow(). Parallel; same bits on any thread count. Cost: the crossings
+/// once, and the columns of each direction.
 std::vector<double> filled_mm3(const Octree& octree, const Expression& solid,
                                const std::vector<glm::dvec3>& directions, const Progress& progress = {});
 

@@ -16,12 +16,12 @@ namespace octotomy::voxel {
 /// upwards the object is on its left: outer boundaries have a positive area, holes a negative one.
 using SliceContour = std::vector<glm::dvec2>;
 
-/// The boundaries of the samples of slice `k` of at least the threshold. A contour has one point, linearly
-/// interpolated, for every pair of neighbouring samples on either side of the threshold. Samples that touch
-/// by a corner only are not connected (the thesis's 1-connectivity). Beyond the slice everything is outside:
-/// there points lie half a voxel beyond the border samples' centres, on the voxels' edges. Contours are in
-/// the order of their first points, x fastest. Throws std::invalid_argument if there is no slice k or the
-/// threshold is not finite. Cost: one pass over the slice, one bit per sample.
+/// The boundaries of the samples of slice `k` that are at least the threshold. A contour has one point,
+/// linearly interpolated, for every pair of neighbouring samples on different sides of the threshold. Samples
+/// that touch by a corner only are not connected (the thesis's 1-connectivity). Beyond the slice everything
+/// is outside: there points lie half a voxel beyond the border samples' centres, on the voxels' edges.
+/// Contours are in the order of their first points, x fastest. Throws std::invalid_argument if there is no
+/// slice k or the threshold is not finite. Cost: one pass over the slice, one bit per sample.
 std::vector<SliceContour> slice_contours(const Scene& scene, int k, double threshold);
 
 /// The contour with fewer points by Douglas and Peucker (Canadian Cartographer 10, 1973): no dropped point is
@@ -36,7 +36,7 @@ struct ContourOptions {
 };
 /// The contours of every slice as regions that can be edited (thesis 6.2.1.3). Throws std::invalid_argument
 /// if the slices lean by more than a tenth of a degree from a plane across one of the patient's axes, and as
-/// slice_contours(); Error, Geometry, if there is no contour; Stopped.
+/// slice_contours(); Error (Geometry) if there is no contour; Stopped.
 SliceMask contour_regions(const Scene& scene, const ContourOptions& options);
 
 /// The name of the view that contour_regions() draws in: "inferior", "anterior" or "right".

@@ -15,10 +15,10 @@ namespace octotomy::voxel {
 /// 16. Memory: the result. Cost: the samples times the neighbourhood.
 Scene median(const Scene& scene, const glm::ivec3& radius, const Progress& progress = {});
 
-/// Convolution with a Gaussian of that standard deviation in millimetres for any spacing. The weights are
-/// Lindeberg's discrete Gaussian, whose variance is exact on samples (IEEE PAMI 12, 1990), cut off at a sum
-/// of 0.999. Throws std::invalid_argument if sigma is not positive and finite, or is more than 32 samples.
-/// Memory: two float copies.
+/// Convolution with a Gaussian of standard deviation `sigma_mm`, for any spacing. The weights are Lindeberg's
+/// discrete Gaussian, whose variance is exact on samples (IEEE PAMI 12, 1990), cut off at a sum of 0.999.
+/// Throws std::invalid_argument if sigma is not positive and finite, or is more than 32 samples. Memory: two
+/// float copies.
 Scene gaussian(const Scene& scene, double sigma_mm, const Progress& progress = {});
 
 struct DiffusionOptions {

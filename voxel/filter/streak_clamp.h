@@ -22,7 +22,7 @@ struct StreakClamp {
   std::uint64_t metal = 0;    ///< samples
   std::uint64_t raised = 0;   ///< samples that were below `low`
   std::uint64_t lowered = 0;  ///< samples that were above `high`
-  int slices = 0;             ///< that hold metal
+  int slices = 0;             ///< slices that hold metal
 };
 /// Clamps samples near metal, slice by slice (index z), to the range of tissue, so that streaks neither
 /// stretch windows nor shift interpolated surfaces. Streaks between the bounds stay, and padding. Throws

@@ -19,7 +19,7 @@ glm::ivec3 axis_step(int axis) {
   return step;
 }
 
-/// A number for a pair of a voxel, in the universe or beside it, and an axis, or 3 for no axis.
+/// A number that identifies a voxel, in the universe or beside it, together with an axis; 3 means no axis.
 std::uint64_t key_of(const glm::ivec3& voxel, int axis) {
   constexpr int bits = 20;
   const glm::u64vec3 from(voxel + 2);
@@ -143,12 +143,12 @@ std::vector<std::size_t> SurfaceCrossings::of_square(const glm::ivec3& low, int 
   return found;
 }
 
-/// Where a square's corners differ diagonally, the chords part its two inner corners.
+/// Where a square's corners differ diagonally, the chords separate its two corners inside the solid.
 void SurfaceCrossings::add_chords(const glm::ivec3& low, int normal, std::vector<Chord>& chords) const {
   const std::vector<std::size_t> ends = of_square(low, normal);
   if (ends.size() == 2) chords.emplace_back(ends[0], ends[1]);
   if (ends.size() != 4) return;
-  // The first two lie on edges from the lowest corner, the last two on edges from the highest.
+  // The first two crossings lie on edges from the lowest corner, the last two on edges from the highest.
   const bool is_low_inside = octree_.contains(low);
   chords.emplace_back(ends[0], ends[is_low_inside ? 1 : 3]);
   chords.emplace_back(ends[2], ends[is_low_inside ? 3 : 1]);

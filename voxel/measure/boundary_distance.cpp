@@ -21,7 +21,7 @@ glm::dvec4 squares_mm2(double p, int first, int voxels, double spacing_mm) {
   return apart_mm * apart_mm;
 }
 
-/// Searches the voxel nearest to a point on the other side of the boundary, inside or outside. The path there
+/// Searches for the nearest voxel on the other side of the boundary than a point. The shortest path to it
 /// ends on the boundary.
 struct Search {
   glm::dvec3 p;  ///< in voxels

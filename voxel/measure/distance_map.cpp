@@ -161,8 +161,8 @@ DistanceMap cropped(DistanceMap map, const VoxelRange& wanted) {
 DistanceMap map_of(const Octree& octree, bool complement, const VoxelRange& wanted) {
   DistanceMap map{wanted, {}};
   if (wanted.is_empty()) return map;
-  // The map must cover every voxel that can be the nearest: for the set its own range, for the complement a
-  // shell around that range, because the shell is nearer than any voxel farther out.
+  // The map must cover every voxel that can be the nearest: for the set, the set's range; for the complement,
+  // also a shell around this range, because the shell is nearer than any voxel farther out.
   const VoxelRange set = grown(range_of(octree), 1);
   if (!set.is_empty()) map.range = {glm::min(wanted.low, set.low), glm::max(wanted.high, set.high)};
   map.square_mm2.resize(voxels_of(map.range));

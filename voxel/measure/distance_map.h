@@ -52,9 +52,9 @@ Octree octree_where(const Universe& universe, const DistanceMap& map,
                     const std::function<bool(double square_mm2)>& wanted);
 
 /// Signed distances in millimetres from the object's surface, negative inside, over the range, x fastest. The
-/// surface lies midway between the centres of voxels inside and outside: outside, a voxel's value is its
-/// distance to the nearest voxel inside, minus half the least spacing; inside, minus that of the nearest
-/// voxel outside, plus half the least spacing. Voxels beyond the universe are outside.
+/// surface lies midway between the centres of voxels inside and outside: a voxel outside has the value d - h
+/// and a voxel inside -(d - h), where d is the distance to the nearest voxel on the other side and h half the
+/// least spacing. Voxels beyond the universe are outside.
 std::vector<float> signed_distances_mm(const Octree& octree, const VoxelRange& range);
 
 }  // namespace octotomy::voxel

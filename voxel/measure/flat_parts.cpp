@@ -1,6 +1,6 @@
 // 1 Sort the faces by plane, then row by row, as 64-bit numbers.
 // 2 Join faces beside each other in a row, and in neighbouring rows (union-find).
-// 3 Sum the parts that are larger than a curved surface's.
+// 3 Sum the parts that are larger than a curved surface's can be.
 #include "voxel/measure/flat_parts.h"
 
 #include <algorithm>
@@ -43,7 +43,7 @@ glm::dvec3 flat_parts_mm2(const Octree& octree) {
   tbb::parallel_sort(faces.begin(), faces.end());
   std::vector<std::size_t> part(faces.size());
   std::iota(part.begin(), part.end(), std::size_t{0});
-  std::size_t row_before = 0;  // first face not before the position of face i in the row before
+  std::size_t row_before = 0;  // first face that is not before the neighbour of face i in the preceding row
   for (std::size_t i = 0; i < faces.size(); ++i) {
     // Faces in the first column or row have no neighbour before them: the preceding number belongs to another
     // row or plane.

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 compute the distance to places outside from voxels' centres and from half-way between them; 2 build a
 // pyramid of the largest distances of blocks of 2^3, 4^3 ...; 3 for each sampled voxel, find the largest ball
-// that holds it: blocks are passed over that have no larger distance than the best so far, or lie farther
-// than their largest; 4 correct each ball's radius by the lattice planes that it touches, and list where it
-// touches. Places are counted in steps of the finer lattice, from the lowest corner of the object's extent.
+// that holds the voxel, and skip blocks whose largest distance is no larger than the best so far, or smaller
+// than the way to the block; 4 correct each ball's radius by the lattice planes that it touches, and list
+// where it touches. Places are counted in steps of the finer lattice, from the lowest corner of the object's
+// extent.
 #include "voxel/measure/local_thickness.h"
 
 #include <algorithm>
@@ -47,7 +48,8 @@ class Pyramid {
     const glm::ivec3 dims = finer * (range.dims() - 1) + 1;
     DistanceMap map{{glm::ivec3(0), dims - 1}, {}};
     map.square_mm2.assign(count_of(dims), 0.0F);
-    // Outside is what no voxel of the object touches: a place half-way between voxels touches several.
+    // A place is outside if no voxel of the object touches it. A place half-way between voxels touches
+    // several voxels.
     tbb::parallel_for(0, dims.z, [&](int z) {
       for (int voxel_z = z / finer; voxel_z * finer <= z + finer - 1 && voxel_z < range.dims().z; ++voxel_z)
         for (int y = 0; y < range.dims().y; ++y)
@@ -195,7 +197,7 @@ LatticeBall ball_about(const glm::ivec3& centre, const Pyramid& pyramid, double 
     for (int y = -most_y; y <= most_y; ++y) {
       const double across = (step_mm.z * z) * (step_mm.z * z) + (step_mm.y * y) * (step_mm.y * y);
       const int high = static_cast<int>(std::sqrt(std::max(0.0, shell * shell - across)) / step_mm.x);
-      // Nothing lies nearer than the distance: rows are entered at its sphere.
+      // No place outside is nearer than `distance`, so rows are entered at the sphere of this radius.
       const int low =
           static_cast<int>(std::sqrt(std::max(0.0, distance * distance * (1.0 - 1e-6) - across)) / step_mm.x);
       for (int x = -high; x <= -low; ++x) add({x, y, z});
@@ -265,8 +267,9 @@ class Balls {
     return balls;
   }
 
-  /// The voxel of the thinnest wall, and its ball. Balls are examined in order of their distances, of which
-  /// a radius is at most half a voxel short. Blocks are fixed, for any number of threads.
+  /// The voxel of the thinnest wall, and its ball. Balls are examined in ascending order of their distances;
+  /// a radius is at most half a voxel less than the distance. The blocks of balls do not depend on the number
+  /// of threads.
   std::optional<std::pair<std::size_t, LatticeBall>> thinnest(const std::vector<glm::ivec3>& voxels) const {
     std::vector<Run> runs = runs_about(voxels, 0.0);
     const auto distance = [&](const Run& run) { return pyramid_.distance_mm(run.centre); };
@@ -293,7 +296,7 @@ class Balls {
   }
 
  private:
-  /// The voxels whose largest ball has one centre, in their order.
+  /// Voxels whose largest balls have the same centre, in the voxels' order.
   struct Run {
     glm::ivec3 centre{0};
     std::vector<std::size_t> voxels;

@@ -13,10 +13,10 @@ namespace octotomy::voxel {
 
 struct LocalThicknessOptions {
   std::size_t samples =
-      20000;  ///< about how many voxels are measured, of all and of the surface; at least 64
+      20000;  ///< about this many voxels are measured among all, and as many on the surface; at least 64
   /// A wall's ball touches the outside, within a voxel's shortest edge, at two places whose directions from
-  /// its centre enclose at least this, 91..179 degrees. Sides of a wedge of angle a touch balls at 180 - a:
-  /// 150 leaves out its edge unless the sides converge by 30 degrees or less.
+  /// its centre enclose at least this angle, 91..179 degrees. The sides of a wedge of angle a enclose 180 - a
+  /// degrees, so 150 leaves out the wedge's edge unless its sides converge by 30 degrees or less.
   double wall_angle_deg = 150.0;
   Progress progress = {};
 };
@@ -28,31 +28,32 @@ struct ThicknessAtVoxel {
   bool is_wall = false;  ///< by the rule of LocalThicknessOptions::wall_angle_deg
 };
 
-/// Over an object's voxels.
+/// Local thickness over an object's voxels.
 struct VoxelThickness {
   double mean_mm = 0.0, deviation_mm = 0.0, median_mm = 0.0, largest_mm = 0.0;
-  /// The mean is within this of the true value in 99 of 100 cases. The sum of three terms: half a voxel's
-  /// longest edge for each of a ball's two sides, because digitisation displaces parallel walls in the same
-  /// way; a quarter of that edge for the lattice of centres; and 2.6 standard errors of the sampled voxels.
+  /// In 99 of 100 cases the mean deviates from the true value by no more than this. The sum of three terms:
+  /// half a voxel's longest edge for each of a ball's two sides, because digitisation displaces parallel
+  /// walls in the same way; a quarter of that edge for the lattice of centres; and 2.6 standard errors of the
+  /// sampled voxels.
   double mean_half_width_mm = 0.0;
   std::vector<ThicknessAtVoxel> surface;
   std::optional<std::size_t> thinnest_wall;  ///< in `surface`; none if no sampled voxel belongs to a wall
 };
 
 /// Local thickness of an octree's voxels: the diameter of the largest ball inside that holds a voxel's
-/// centre. Centres of balls are voxels' centres and the points half-way between them; where that takes more
-/// than 2^26 points, voxels' centres alone. A ball reaches to the nearest of those places that no voxel of
-/// the object touches, less half the distance of the lattice planes that are parallel there: a flat wall
-/// along the lattice is measured to its voxels' faces, an oblique or round one to where the outside begins.
-/// Voxels beyond the universe are outside. All zero for an empty octree. Throws std::invalid_argument if the
-/// universe's axes are not perpendicular or an option is out of its range, std::length_error above 2^28
-/// voxels in the object's extent; Stopped. The same bits on any number of threads. Cost: linear in the
+/// centre. Centres of balls are voxels' centres and the points half-way between them; if these are more than
+/// 2^26 points, voxels' centres alone. A ball's radius is the distance to the nearest of those places that no
+/// voxel of the object touches, less half the distance between lattice planes across that direction: a flat
+/// wall along the lattice is measured to its voxels' faces, an oblique or round one to where the outside
+/// begins. Voxels beyond the universe are outside. All zero for an empty octree. Throws std::invalid_argument
+/// if the universe's axes are not perpendicular or an option is out of its range, std::length_error above
+/// 2^28 voxels in the object's extent; Stopped. The same bits on any number of threads. Cost: linear in the
 /// extent, 5 bytes for each centre, and about log n a sample; parallel. Source: Hildebrand and Ruegsegger,
 /// Journal of Microscopy 185, 1997; distances as distance_map(). Departure: a pyramid of largest distances is
 /// searched at sampled voxels, where the source paints a ball at each point of the distance ridge.
 VoxelThickness local_thickness(const Octree& octree, const LocalThicknessOptions& options = {});
 
-/// The thinnest wall alone, the same as local_thickness() has it; none if no sampled voxel belongs to a wall.
+/// The thinnest wall alone, as local_thickness() reports it; none if no sampled voxel belongs to a wall.
 /// Throws as local_thickness(). Cost: lower, because the sides of most balls are not searched.
 std::optional<ThicknessAtVoxel> thinnest_wall(const Octree& octree,
                                               const LocalThicknessOptions& options = {});

@@ -19,12 +19,12 @@
 
 // Area by the Crofton formula: the area of a boundary is four times the mean, over all directions, of the
 // number of entries of parallel lines times the area per line. Here 13 directions, those to a voxel's 26
-// neighbours, represent all. Along each, the lines run through the lattice's points: crossings are pairs of
-// neighbours with one inside, and the area per line is the voxel's volume divided by the step's length.
-// Source: Ohser and Muecklich, Statistical Analysis of Microstructures, 2000, section 4.2; weights as in
-// Lang, Ohser and Hilfer, J. Microscopy 203, 2001. Departure: a direction's weight is the share of the sphere
-// nearest to it, computed for the lattice's own spacing on a fine grid of directions, so that anisotropic
-// voxels have no bias either.
+// neighbours, represent all. Along each direction, the lines run through the lattice's points: crossings are
+// pairs of neighbours with one inside, and the area per line is the voxel's volume divided by the step's
+// length. Source: Ohser and Muecklich, Statistical Analysis of Microstructures, 2000, section 4.2; weights as
+// in Lang, Ohser and Hilfer, J. Microscopy 203, 2001. Departure: a direction's weight is the share of the
+// sphere nearest to it, computed for the lattice's own spacing on a fine grid of directions, so that
+// anisotropic voxels have no bias either.
 
 namespace octotomy::voxel {
 namespace {
@@ -72,8 +72,8 @@ std::array<double, 13> summed_shares(const Lattice& lattice) {
   return share;
 }
 
-// Caches the shares of the last lattice, because all objects of a plan have the same one: computing the
-// shares takes longer than counting a small object.
+// Caches the shares of the last lattice, because all objects of a plan have the same lattice and computing
+// the shares takes longer than counting a small object.
 std::array<double, 13> shares(const Lattice& lattice) {
   static std::mutex mutex;
   static glm::dmat3 known(0.0);

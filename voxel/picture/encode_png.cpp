@@ -25,7 +25,7 @@ constexpr std::size_t pixel_bytes = 3;
 constexpr std::size_t chunk_bytes = 8192;
 constexpr int deflate_level = 3;
 
-/// A filter subtracts from a byte what it predicts from its left, upper and upper left neighbours. Both rows
+/// A filter subtracts from each byte a prediction from the left, upper and upper left neighbours. Both rows
 /// begin with a black pixel beyond the picture's edge; `filtered` does not.
 template <int number>
 OCTOTOMY_VECTOR_CLONES std::size_t filter(const Byte* row, const Byte* above, std::size_t count,
@@ -74,7 +74,7 @@ std::vector<Byte> filtered_rows(const glm::ivec2& size_px, const std::vector<Byt
   return rows;
 }
 
-/// Makes the window no larger than the data, because decoders allocate memory for it.
+/// Makes the window no larger than the data, because decoders allocate memory for the window.
 std::vector<Byte> deflated(std::vector<Byte>& bytes) {
   constexpr std::size_t least_lookahead = 262;
   int window_bits = 15;
@@ -94,7 +94,8 @@ std::vector<Byte> deflated(std::vector<Byte>& bytes) {
   need(deflate(&stream, Z_FINISH) == Z_STREAM_END);
   made.resize(stream.total_out);
   // Compressing needs a window 262 bytes larger than the data; decompressing does not. The stream's first
-  // byte states the window for decompressing and is lowered here; its second completes a multiple of 31.
+  // byte states the window for decompressing and is lowered here; the second byte makes the number that both
+  // form a multiple of 31.
   int told = made[0] >> 4;
   while (told > 0 && bytes.size() <= std::size_t{1} << (told + 7)) --told;
   made[0] = static_cast<Byte>(told << 4 | Z_DEFLATED);

@@ -21,7 +21,7 @@ bool is_digit_at(const std::string& text, std::size_t at) {
   return at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) != 0;
 }
 
-/// Letters beyond ASCII, too.
+/// Counts every byte beyond ASCII as a letter.
 bool is_letter_or_digit(char c) {
   const auto byte = static_cast<unsigned char>(c);
   return std::isalnum(byte) != 0 || byte >= 0x80;

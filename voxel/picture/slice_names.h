@@ -22,8 +22,8 @@ struct SliceNames {
 /// Cost: n log n. Equal numbers are in the order of their names' letters.
 SliceNames ordered_by_name(const std::vector<std::filesystem::path>& files);
 
-/// Lists the stacks of a folder, "ct_#.png (5 files) and mask_#.png (5 files)", if several files have the same
-/// number and other letters. Empty if the names are those of one stack.
+/// Lists the stacks of a folder, "ct_#.png (5 files) and mask_#.png (5 files)", if several files have the
+/// same number and different letters. Empty if the names are those of one stack.
 std::string stacks_named(const std::vector<std::filesystem::path>& files);
 
 /// A sentence on names with the same last number after different numbers ("s1_000" and "s2_000"): several

@@ -104,7 +104,7 @@ std::string span(const Scene& scene) {
   return text;
 }
 
-/// Air is -1000 HU. With noise of 30 to 50 HU almost no sample is below this.
+/// Air is -1000 HU. With noise of 30 to 50 HU almost no sample of air is below this.
 constexpr double below_air = -1100.0;
 constexpr double padding_gap = 100.0;
 constexpr std::size_t least_padded = 64, samples_for_one_padded = 10000, padded_for_one_in_gap = 100;

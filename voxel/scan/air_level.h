@@ -27,10 +27,10 @@ AirLevel air_level_of_ct(const Scene& scene);
 AirLevel air_level_of_unnamed(const Scene& scene);
 
 /// Detects negative numbers that were stored or read as unsigned 16-bit numbers, which makes air or padding
-/// brighter than bone. The signs are samples above 40000, which no CT measures, and a gap of at least 32768
-/// between these and the others. Requires at least 64 such samples and one in ten thousand. A FAIL in a CT, a
-/// WARN otherwise; none if there are no such samples. Does not change the samples. Cost: two passes over
-/// samples in single precision; signed 16-bit samples cannot hold such numbers and are not read.
+/// brighter than bone. Evidence: samples above 40000, which no CT measures, and a gap of at least 32768
+/// between these and all other samples. Requires at least 64 samples above 40000, and one in ten thousand. A
+/// FAIL in a CT, a WARN otherwise; none if there are no such samples. Does not change the samples. Cost: two
+/// passes over samples in single precision; signed 16-bit samples cannot hold such numbers and are not read.
 std::optional<Finding> lost_sign_finding(const Scene& scene, bool is_ct);
 
 /// Marks samples as padding that a CT cannot have measured, although the file states no padding. Many
@@ -39,10 +39,10 @@ std::optional<Finding> lost_sign_finding(const Scene& scene, bool is_ct);
 ///
 /// The lowest sample that is not padding yet becomes padding if three conditions hold. It lies below -1100
 /// HU, thus below air and its noise. At least 64 samples and one in ten thousand have this value. The hundred
-/// units above it hold at most one sample for each hundred samples of this value. As this is a guess, the
-/// audit then has a WARN; otherwise the scene is unchanged. In a scene that already has padding, the samples
-/// take the value of that padding. Precondition: samples in Hounsfield units. Cost: two passes over the
-/// samples.
+/// units above it hold at most one sample for each hundred samples of this value. The audit then has a WARN,
+/// because this is a guess. If a condition fails, the scene is unchanged. In a scene that already has
+/// padding, the samples take the value of that padding. Precondition: samples in Hounsfield units. Cost: two
+/// passes over the samples.
 void take_unstated_padding(Scene& scene);
 
 }  // namespace octotomy::voxel

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // Turns files into the stack of one series:
-//   1 read every file's header; list the files that hold no slice 2 choose the requested series or stack,
-//   else the series with most slices; leave out scout views 3 keep the commonest patient, study, modality and
-//   frame of reference, size and orientation 4 if several stacks lie at one place, keep the largest 5 order
-//   the slices by position along their normal and drop repeated ones 6 keep the requested slices and check
-//   what they have in common Longer than most sources because the steps share what the folder holds and what
-//   the caller can choose from.
+//   1 read every file's header; list the files that hold no slice
+//   2 choose the requested series or stack, else the series with most slices; leave out scout views
+//   3 keep the commonest patient, study, modality and frame of reference, size and orientation
+//   4 if several stacks lie at one place, keep the largest
+//   5 order the slices by position along their normal and drop repeated ones
+//   6 keep the requested slices and check what they have in common
+// Longer than most sources because the steps share the list of the folder's contents and of the caller's
+// choices.
 #include "voxel/scan/dicom_series.h"
 
 #include <algorithm>
@@ -344,7 +346,7 @@ class SeriesAssembler {
                wanted + "'; choose by number: " + choices_);
   }
 
-  /// Some scanners put scout views into the series of the scan.
+  /// Leaves out scout views, which some scanners put into the series of the scan.
   std::vector<DicomSlice> without_localizers(std::vector<DicomSlice> members) {
     const auto localizers = static_cast<std::size_t>(std::count_if(
         members.begin(), members.end(), [](const DicomSlice& slice) { return slice.is_localizer; }));
@@ -619,7 +621,7 @@ class SeriesAssembler {
     audit_identifiers(stack);
   }
 
-  /// Images of different files under one identifier. The frames of one file share theirs.
+  /// Reports images of different files with the same SOP Instance UID. Frames of one file share theirs.
   void audit_identifiers(const DicomStack& stack) {
     std::map<std::string, std::filesystem::path> file_of;
     std::vector<std::string> shared;

@@ -29,13 +29,13 @@ struct DicomStack {
   }
 };
 
-/// Reads the headers below a path, chooses the series that the options ask for, and keeps the slices that
+/// Reads the headers below a path, chooses the series that the options request, and keeps the slices that
 /// form a stack. The audit lists the files that were left out, and why, under these checks: stray_files,
 /// unusable_images, damaged_files, series, localizers, patient, patient_issuer (if stated), study, modality,
 /// frame_of_reference, size, orientation, stacks, pixel_spacing, duplicates; then the lines of audit_stack().
-/// A slice left out of a series is a Fail. Only if there is a doubt: orientation_noise, orientation_rounded,
-/// orientation_length, join, image_count and concatenation. Folders of staged files count as stray files.
-/// Throws as read_scene() does.
+/// A slice left out of a series is a Fail. These lines appear only if there is a doubt: orientation_noise,
+/// orientation_rounded, orientation_length, join, image_count and concatenation. Folders of staged files
+/// count as stray files. Throws as read_scene() does.
 DicomStack stack_of_series(const std::filesystem::path& path, const ReadOptions& options,
                            std::vector<Finding>& audit);
 

@@ -69,7 +69,7 @@ std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ive
 std::string image_library_version() {
   using Version = decltype(&octotomy_image_library_version);
   const int version = reinterpret_cast<Version>(symbol_of_library("octotomy_image_library_version"))();
-  // Ten thousands, hundreds and ones are the three parts of the version.
+  // The number is 10000 major + 100 minor + patch.
   return std::to_string(version / 10000) + "." + std::to_string(version / 100 % 100) + "." +
          std::to_string(version % 100);
 }

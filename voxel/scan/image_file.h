@@ -20,19 +20,19 @@ struct ImageText {
 /// Encodes 8-bit sRGB pixels, row by row from the top left, as `format` ("png", "jpeg", "webp"). JPEG and
 /// WebP are lossy, at quality 92 of 100. A PNG also stores `text` (png_chunk.h). OpenImageIO is in
 /// octotomy_image_io.so, loaded on first use: linked in, it would add 0.2 s to every start of the program.
-/// Throws std::invalid_argument if the size is not positive or not that of the pixels; Error, Input, if the
-/// format is another; Error, Resource, if the library cannot be loaded. Safe from several threads.
+/// Throws std::invalid_argument if the size is not positive or not that of the pixels; Error (Input) for any
+/// other format; Error (Resource) if the library cannot be loaded. Safe from several threads.
 std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ivec2& size_px,
                                        const std::vector<std::uint8_t>& rgb,
                                        const std::optional<ImageText>& text = std::nullopt);
 
 /// Writes a picture in the format of the extension (.png, .jpg, .jpeg, .webp); written beside and renamed
-/// into place. Throws as encode_image() does, with the path, and Error, Resource, if the disk is full or
+/// into place. Throws as encode_image() does, with the path, and Error (Resource) if the disk is full or
 /// fails.
 void write_image(const std::filesystem::path& path, const glm::ivec2& size_px,
                  const std::vector<std::uint8_t>& rgb, const std::optional<ImageText>& text = std::nullopt);
 
-/// The version of OpenImageIO that is loaded, for example 2.4.7. Throws Error, Resource, if it cannot be
+/// The version of OpenImageIO that is loaded, for example 2.4.7. Throws Error (Resource) if it cannot be
 /// loaded.
 std::string image_library_version();
 

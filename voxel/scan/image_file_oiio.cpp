@@ -50,8 +50,8 @@ using octotomy::voxel::StoredImage;
 /// decoding rounds each channel separately.
 constexpr int lossy_shades_apart = 1;
 
-/// The original value of a stretched sample. Readers stretch by multiplying with the ratio of the type's and
-/// the picture's largest value and rounding down, or by repeating the highest bits below the lowest.
+/// The original value of a stretched sample. Readers stretch by multiplying with the ratio of the type's
+/// largest value to the picture's and rounding down, or by repeating the highest bits below the lowest.
 template <typename Sample>
 Sample unstretched(Sample sample, std::uint32_t largest) {
   constexpr std::uint64_t whole = std::numeric_limits<Sample>::max();

@@ -21,7 +21,7 @@ struct StoredImage {
   int width = 0;
   int height = 0;
   Type type = Type::UInt8;
-  std::vector<char> bytes;  ///< in this machine's order, upright
+  std::vector<char> bytes;  ///< in this machine's byte order, upright
   /// Orientation of rows and columns as the file states it (1 to 8 of TIFF and EXIF); 1: as stored.
   int orientation = 1;
   double pixels_per_unit = 0.0;         ///< along rows, as the file states; 0: not stated

@@ -22,11 +22,11 @@ struct SlicerSegment {
 /// The segments that a NRRD's header lists, in its order; empty for other files. Cost: reads the header.
 std::vector<SlicerSegment> slicer_segments(const std::filesystem::path& path);
 
-/// The names that a label map's own file has for its labels, in UTF-8: those of a DICOM segmentation's
-/// segments, and of 3D Slicer's (Segment0_Name with Segment0_LabelValue in the header of .seg.nrrd). Segments
-/// that share a number have one name, "Mandible + Maxilla". Empty if the file has none or is of another kind.
-/// Throws Error, Input, with path and reason, if a DICOM segmentation is damaged. Cost: reads the header, or
-/// the whole file for DICOM.
+/// The names of a label map's labels, as stated in its file, in UTF-8: the labels of a DICOM segmentation's
+/// segments, or the names of 3D Slicer's (Segment0_Name with Segment0_LabelValue in the header of .seg.nrrd).
+/// Segments that share a number have one name, "Mandible + Maxilla". Empty if the file has none or is of
+/// another kind. Throws Error (Input) with path and reason, if a DICOM segmentation is damaged. Cost: reads
+/// the header, or the whole file for DICOM.
 std::map<int, std::string> label_names(const std::filesystem::path& path);
 
 }  // namespace octotomy::voxel

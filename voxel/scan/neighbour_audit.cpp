@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // Compares slices with their neighbours:
-//   1 reduce every slice to a small image of means 2 correlate neighbours unchanged, mirrored along rows or
-//   columns, and turned by 180 degrees 3 report single slices that are mirrored or agree with no neighbour,
-//   then blocks of mirrored slices Decides by ratios of disagreement (1 - correlation), not by correlation:
-//   thick slices agree less than thin ones, but this affects correct and wrong slices of a stack alike.
+//   1 reduce every slice to a small image of means
+//   2 correlate neighbours unchanged, mirrored along rows or columns, and turned by 180 degrees
+//   3 report single slices that are mirrored or agree with no neighbour, then blocks of mirrored slices
+// Decides by ratios of disagreement (1 - correlation), not by correlation: thick slices agree less than thin
+// ones, but this affects correct and wrong slices of a stack alike.
 #include "voxel/scan/neighbour_audit.h"
 
 #include <algorithm>
@@ -31,7 +32,7 @@ constexpr int flip_count = 4;
 constexpr std::array<const char*, flip_count> flip_words = {
     "", "mirrored along its rows", "mirrored along its columns", "turned by 180 degrees"};
 
-/// An image less its mean, and its length as a vector.
+/// An image minus its mean, and the length of its values as a vector.
 struct Thumbnail {
   std::vector<float> values;
   int width = 0, height = 0;
@@ -97,9 +98,9 @@ double correlation(const Thumbnail& a, const Thumbnail& b, int flip) {
   return product / (a.length * b.length);
 }
 
-/// Accepts a flip if the disagreement without it is more than a third larger, and if the flipped images agree
-/// in shape, not only in noise. Correct scans of heads, necks and phantoms, in CT and MR, reach a ratio of
-/// 1.01 at a correlation of 0.7.
+/// Accepts a flip if the disagreement without the flip is more than a third larger than with it, and if the
+/// flipped images agree in shape, not only in noise. Correct scans of heads, necks and phantoms, in CT and
+/// MR, reach a ratio of 1.01 at a correlation of 0.7.
 bool is_better(double as_is, double flipped) {
   return flipped > 0.7 && 1.0 - as_is > 1.35 * (1.0 - flipped);
 }

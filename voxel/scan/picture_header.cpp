@@ -40,8 +40,8 @@ std::uint32_t little_endian_at(std::string_view bytes, std::size_t at) {
   return number;
 }
 
-/// Reads the sizes of image and tiles from the start of a JPEG 2000 codestream. Returns the largest sample that its
-/// bit depth allows; 0 above 16 bits.
+/// Reads the sizes of image and tiles at the start of a JPEG 2000 codestream. Returns the largest sample that
+/// its bit depth allows; 0 above 16 bits.
 std::uint32_t read_codestream(std::string_view bytes, std::size_t most_bytes) {
   constexpr std::size_t header_bytes = 43, depth_at = 42;  // with the first channel's depth
   if (!bytes.starts_with(codestream_begin))
@@ -70,8 +70,9 @@ std::uint32_t read_codestream(std::string_view bytes, std::size_t most_bytes) {
   return depth < 16 ? (2u << depth) - 1 : 0;
 }
 
-/// The codestream in a JP2's boxes: length, four letters, data; a length of 1 stands for eight bytes behind
-/// the letters, of 0 for the rest of the file.
+/// Finds the codestream among a JP2's boxes. A box has a length, four letters and data. Length 1 means that
+/// the length is in the eight bytes after the letters; length 0 means that the box extends to the end of the
+/// file.
 std::string_view codestream_of(std::string_view bytes) {
   for (std::size_t at = 0; bytes.size() - at >= 8;) {
     std::size_t header = 8, length = big_endian_at(bytes, at);
@@ -86,8 +87,9 @@ std::string_view codestream_of(std::string_view bytes) {
   throw InvalidInput("is a JPEG 2000 picture without a codestream");
 }
 
-/// The first frame's header. Markers are FF and a byte that is neither 00 nor FF; most have a length that
-/// counts itself. For a picture in several scans, libjpeg keeps the whole picture in memory.
+/// Checks the first frame's header. Markers are FF and a byte that is neither 00 nor FF; after most there is
+/// a length that includes its own bytes. For a picture in several scans, libjpeg keeps the whole picture in
+/// memory.
 void check_jpeg(std::string_view bytes, std::size_t most_bytes) {
   for (std::size_t at = jpeg_begin.size(); at + 4 <= bytes.size();) {
     const auto code = static_cast<std::uint8_t>(bytes[at + 1]);

@@ -81,7 +81,7 @@ void read_image_j(const StoredImage& image, StatedPicture& stated) {
     take_size(stated, 1, inverse(image.pixels_per_unit_across), unit_of("\nyunit="));
     take_size(stated, 2, number_behind(text, "\nspacing="), unit_of("\nzunit="));
   }
-  // ImageJ writes only inch and cm as units of the tags, and then its own unit is the same.
+  // In the tags ImageJ writes only the units inch and cm, and then its description has the same unit.
   if (const auto unit = length_unit(stated.unit);
       unit && image.mm_per_unit > 0.0 && !is_near(image.mm_per_unit, unit->mm)) {
     stated.size_mm[0] = stated.size_mm[1] = std::nullopt;
@@ -102,8 +102,8 @@ void read_ome(const StoredImage& image, StatedPicture& stated) {
   if (image.orientation >= 5) std::swap(stated.size_mm[0], stated.size_mm[1]);
 }
 
-/// Whether a resolution is one for print. Programs write these as defaults, so they are no information about
-/// a pixel's size.
+/// Whether a resolution is a common one for print. Programs write these as defaults, so they are no
+/// information about a pixel's size.
 bool is_of_print(double pixels_per_mm) {
   constexpr std::array<double, 6> per_inch{72.0, 96.0, 100.0, 150.0, 300.0, 600.0};
   return std::any_of(per_inch.begin(), per_inch.end(),

@@ -35,10 +35,11 @@ StatedPicture stated_by(const StoredImage& image);
 /// Compares the statements of a stack's pictures with how they are read.
 class PictureStatements {
  public:
-  /// For further pages of a file, uses only their own statements.
+  /// A further page of a file counts as stating the same as the first, unless it has a description of its
+  /// own.
   void add(const StoredImage& image, bool is_first_of_file);
 
-  /// The spacing that ImageJ or OME states. Throws Error, Input, naming `path` and what is missing. Does not
+  /// The spacing that ImageJ or OME states. Throws Error (Input) naming `path` and what is missing. Does not
   /// use the resolution of a page, because programs write 72 dpi into any picture.
   KnownSpacing spacing(const std::filesystem::path& path) const;
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // Turns a stack of slices into a lattice:
-//   1 lay a lattice through the slices (slice_plan.h) 2 decode the slices, rescaled 3 interpolate linearly if
-//   slices leave the lattice: gantry tilt, uneven or missing slices 4 decide from the air whether values are
-//   Hounsfield units Geometry comes from ImagePositionPatient and ImageOrientationPatient. The scanner's tags
-//   for tilt and spacing are only compared with them, because vendors disagree on the sign of the tilt and on
-//   the meaning of the spacing.
+//   1 lay a lattice through the slices (slice_plan.h)
+//   2 decode the slices, rescaled
+//   3 interpolate linearly if slices leave the lattice: gantry tilt, uneven or missing slices
+//   4 decide from the air whether values are Hounsfield units
+// Geometry comes from ImagePositionPatient and ImageOrientationPatient. The scanner's tags for tilt and spacing
+// are only compared with them, because vendors disagree on the sign of the tilt and on the meaning of the
+// spacing.
 #include "voxel/scan/read_dicom.h"
 
 #include <algorithm>
@@ -76,8 +78,8 @@ class SeriesReader {
     audit_steps();
     if (scene_.modality == "CT") {
       AirLevel air = air_level_of_ct(scene_);
-      // Not Hounsfield units if the header declares another unit, or an unspecified one and the air does not
-      // contradict it.
+      // Not Hounsfield units if the header declares another unit, or if it leaves the unit unspecified (US)
+      // and the air does not confirm Hounsfield units.
       const std::string& unit = stack.first().rescale_type;
       const bool is_other = !unit.empty() && unit != "HU" && unit != "HU_MOD" && unit != "US";
       if (is_other ||
@@ -370,7 +372,7 @@ class SeriesReader {
            });
   }
 
-  /// Whether most padded samples have measured ones on two sides or more. Padding fills areas.
+  /// Whether most padded samples have measured ones on two sides or more. Real padding fills areas instead.
   template <typename Samples>
   bool is_scattered(const Samples& samples, const glm::ivec2& size_px) const {
     const std::size_t width = static_cast<std::size_t>(size_px.x),
@@ -477,9 +479,9 @@ class SeriesReader {
     if (!scene_.padding) find("padding", Verdict::Pass, std::move(without));
   }
 
-  /// Pixels beyond the scanner's field of view hold a padding value, which is no measurement. They all get
-  /// one value below all measured ones: that of the header if it is below them, else the mark that they were
-  /// decoded to.
+  /// Pixels beyond the scanner's field of view hold a padding value, which is no measurement. All these
+  /// pixels get one value below all measured samples: the header's padding if it is below them, else the mark
+  /// to which the pixels were decoded.
   template <typename Samples>
   void take_padding(Stack& stack, Samples& samples) {
     using Sample = typename Samples::value_type;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // Turns a segmentation (DICOM PS3.3, A.51) into a label map:
-//   1 read the segments' numbers and labels, and each frame's segment and position 2 order the positions
-//   along the normal and lay a lattice through them 3 unpack each frame into its plane; where segments
-//   overlap, a further number represents all of them
+//   1 read the segments' numbers and labels, and each frame's segment and position
+//   2 order the positions along the normal and lay a lattice through them
+//   3 unpack each frame into its plane; where segments overlap, a further number represents all of them
 #include "voxel/scan/read_dicom_seg.h"
 
 #include <algorithm>
@@ -336,7 +336,7 @@ class SegReader {
     const double planes = std::round((frames_.back().height_mm - fit_.low_mm) / fit_.step_mm) + 1.0;
     if (planes > 4.0 * static_cast<double>(frames_.size()) + 64.0)
       refused("whose planes are scattered: " + print("%.0f for %zu frames", planes, frames_.size()));
-    // Headers state both to two decimals or better.
+    // Headers state thickness and distance to two decimals or better.
     const double tolerance_mm = 0.02 + 0.01 * fit_.step_mm;
     if (planes > 1.0 && thickness_mm_ && *thickness_mm_ < fit_.step_mm - tolerance_mm)
       warn_spacing(
@@ -381,7 +381,7 @@ class SegReader {
             "': choose its label or number, one of " + all);
   }
 
-  /// A pixel's share of its segment, from 0 to 1.
+  /// The share of a pixel that segment `wanted` fills, from 0 to 1.
   float fraction_at(const Frame& frame, std::size_t pixel, int wanted) const {
     if (most_fraction_ == 0) return segment_at(frame, pixel) == wanted ? 1.0F : 0.0F;
     const int stored = static_cast<unsigned char>(pixels_[pixel]);
@@ -504,7 +504,7 @@ class SegReader {
   std::size_t bits_ = 1;
   bool is_label_map_ = false;
   std::string_view pixels_;        ///< of all frames, one after the other
-  std::string decompressed_ = {};  ///< the same of compressed frames
+  std::string decompressed_ = {};  ///< the same, if the frames were compressed
   int least_ = 128;
   int most_fraction_ = 0;  ///< maximum of a fractional segmentation; 0 for others
   std::size_t rounded_down_ = 0, rounded_up_ = 0;
@@ -531,7 +531,7 @@ bool is_dicom_seg(const fs::path& path) {
 
 namespace {
 
-/// Reads a segmentation's file and has `read` make a scene of it.
+/// Reads a segmentation's file and converts it to a scene by `read`.
 template <typename Read>
 Scene read_seg(const fs::path& path, const Read& read) {
   std::string stored = file_bytes(path);

@@ -12,13 +12,14 @@ std::vector<std::filesystem::path> image_files(const std::filesystem::path& path
 
 /// Reads images as the slices of a stack, the first at the feet; each page of a file is a slice. The spacing
 /// is that of the options, else that stated by ImageJ or OME in the pictures' descriptions, with a line in
-/// the audit. If they state only a part of it, or a page has only a resolution, there is no spacing. All
-/// images must have the same size and type. Images have no patient frame: the audit reports the assumed one,
-/// and any ambiguity in the names (slice_names). Statements of the pictures are compared with the options:
-/// sizes of pixels and slices (picture_spacing), times and channels (picture_axes), WhiteIsZero (polarity),
-/// JPEG's losses (compression). A folder whose names are those of several stacks ("ct_001.png",
-/// "mask_001.png") is refused; a pattern that matches several stacks is a FAIL, and names that differ only by
-/// numbers ("s1_001.png", "s2_001.png") are a WARN (stacks). Throws as read_scene() does.
+/// the audit. If they state only a part of the spacing, or a page has only a resolution, the spacing counts
+/// as not stated. All images must have the same size and type. Images have no patient frame: the audit
+/// reports the assumed one, and any ambiguity in the names (slice_names). Statements of the pictures are
+/// compared with the options: sizes of pixels and slices (picture_spacing), times and channels
+/// (picture_axes), WhiteIsZero (polarity), JPEG's losses (compression). A folder whose names are those of
+/// several stacks ("ct_001.png", "mask_001.png") is refused; a pattern that matches several stacks is a FAIL,
+/// and names that differ only by numbers ("s1_001.png", "s2_001.png") are a WARN (stacks). Throws as
+/// read_scene() does.
 Scene read_image_stack(const std::filesystem::path& path, const ReadOptions& options);
 
 }  // namespace octotomy::voxel

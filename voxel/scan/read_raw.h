@@ -9,7 +9,7 @@ namespace octotomy::voxel {
 
 /// Reads a file of samples without a header in the options' layout and spacing. Its axes point along the
 /// options' frame or are assumed to point to the patient's left, back and head, centred on the origin; the
-/// audit reports this. Throws Error, Input, if the layout is unusable, no spacing is given, or the file's
+/// audit reports this. Throws Error (Input) if the layout is unusable, no spacing is given, or the file's
 /// size is not the layout's.
 Scene read_raw(const std::filesystem::path& path, const ReadOptions& options);
 
@@ -20,11 +20,11 @@ struct KnownSpacing {
 };
 inline constexpr const char* given_spacing = "mm (--spacing)";
 
-/// Throws Error, Input, naming the path.
+/// Throws Error (Input) naming the path.
 [[noreturn]] void refuse_without_spacing(const std::filesystem::path& path);
 
 /// Places a scene whose file has no patient frame: axes along the options' frame or else LPS, centred on the
-/// origin; the audit reports this. Throws Error, Input, naming the path, if the options have a unit or no
+/// origin; the audit reports this. Throws Error (Input) naming the path, if the options have a unit or no
 /// scanner has this spacing.
 void place_without_frame(const std::filesystem::path& path, const glm::ivec3& dims,
                          const KnownSpacing& spacing, const ReadOptions& options, Scene& scene);

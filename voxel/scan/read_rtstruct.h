@@ -31,7 +31,7 @@ struct Structure {
   std::vector<double> slabs_mm = {};         ///< ContourSlabThickness of each of contours_mm; 0: not stated
 };
 
-/// Regions, and the patient, studies and frames of reference that they refer to. Includes both those of the
+/// Regions, and the identity of the set. `identity` has the studies, series and frames of reference of the
 /// file itself and those that it references.
 struct StructureSet {
   std::vector<Structure> structures;
@@ -44,7 +44,7 @@ bool is_rtstruct(const std::filesystem::path& path);
 
 /// The regions of a structure set (PS3.3, A.19), in their order, including those without contours. Contours
 /// may cross or contain each other. A region whose contours are damaged has its `flaw` set, so that the
-/// others can be read. Throws Error, Input, with path and reason. Memory: the file and its points.
+/// others can be read. Throws Error (Input) with path and reason. Memory: the file and its points.
 StructureSet read_rtstruct(const std::filesystem::path& path);
 
 }  // namespace octotomy::voxel

@@ -30,7 +30,7 @@ using SlicesFinal = std::function<void(const Scene& scene, int count)>;
 struct ReadOptions {
   /// The DICOM series: its choice in list_series() ("2", or "2.1" of a series that holds several stacks), its
   /// UID, or a part of its description or of the attributes in which its stacks differ. Empty: the series
-  /// with most slices. Of a DICOM segmentation: the label or number of the segment whose fractions, 0 to 1,
+  /// with most slices. For a DICOM segmentation: the label or number of the segment whose fractions, 0 to 1,
   /// are the samples; empty: all segments as labels.
   std::string series;
   /// Joins the images of all DICOM series of a folder, and those of several studies and frames of reference
@@ -53,8 +53,8 @@ struct ReadOptions {
   Progress progress;
   /// Called on the reading thread with growing counts, so that work on the first slices can start during
   /// reading; may be empty. The last call has all slices, or none if reading fails; when it returns, work on
-  /// the scene must have ended. Called only if reading just unpacks 16-bit samples: NIfTI, NRRD and
-  /// MetaImage.
+  /// the scene must have ended. Called only for NIfTI, NRRD and MetaImage whose 16-bit samples need no
+  /// conversion.
   SlicesFinal slices_final = {};
 };
 
@@ -69,7 +69,7 @@ std::string to_string(const std::vector<SliceRange>& slices);
 /// file. Applies the file's rescale and holds the values as int16 if all are integers in its range, otherwise
 /// as float. Geometry is in LPS millimetres for any frame of the file. The scene's audit lists every check
 /// and every doubt: missing or repeated slices, uneven spacing, gantry tilt, absent rescale, stray files.
-/// Throws Error, Input, with path and reason if no valid scan can be read; Error, Resource; Stopped. Memory:
+/// Throws Error (Input) with path and reason if no valid scan can be read; Error, Resource; Stopped. Memory:
 /// the samples once, and one slice or the decoder's own copy; twice if slices are resampled; bounded by a
 /// multiple of the file's size.
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
@@ -84,7 +84,7 @@ struct SeriesEntry {
   std::string stack = {};      ///< the attributes in which it differs from the series' other stacks: "kernel
                                ///< H60s"
   glm::dvec2 spacing_mm{0.0};  ///< between columns, between rows
-  std::optional<double> slice_mm = {};  ///< mean distance of neighbouring images; none of a single image
+  std::optional<double> slice_mm = {};  ///< mean distance of neighbouring images; none for a single image
   std::string study_date = {};          ///< as the header states it: "20240131"; may be empty
 };
 /// The series of a folder and its subfolders, most slices first. A series with several images at one position

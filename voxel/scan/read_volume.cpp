@@ -37,7 +37,7 @@ bool passes_check(const Scene& scene) {
     check(scene);
     return true;
   } catch (const InvalidInput&) {
-    return false;  // read_scene() reports it after the samples have been checked
+    return false;  // read_scene() reports the flaw after the samples have been checked
   }
 }
 

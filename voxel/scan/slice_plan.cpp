@@ -143,7 +143,8 @@ class Layer {
     plan_.step_mm = total_mm() / static_cast<double>(step_count_);
   }
 
-  /// Slices by their number on an even lattice, whose height is low_mm + number * step_mm.
+  /// The number of each slice on an even lattice. A slice with a number lies at height low_mm + number *
+  /// step_mm.
   struct Even {
     std::vector<long> numbers;
     double low_mm = 0.0, step_mm = 0.0, worst_mm = 0.0;
@@ -197,7 +198,7 @@ class Layer {
     return even.worst_mm <= 0.25 * even.step_mm || (numbers_run_on() && tag_agrees && long_gaps > 2);
   }
 
-  /// Uses an even lattice if the slices do not fit the chosen one only because of errors in the tags.
+  /// Uses an even lattice if only errors in the tags keep the slices from fitting the chosen one.
   void even_out() {
     const double tolerance_mm = position_tolerance_mm(plan_.step_mm);
     std::vector<long> counted(heights_mm_.size(), 0), spaced(heights_mm_.size(), 0);
@@ -386,7 +387,7 @@ class Layer {
     return lean;
   }
 
-  /// Median over the slices of each axis.
+  /// The median of the points along each axis.
   static glm::dvec2 medians_of(const std::vector<glm::dvec2>& points) {
     glm::dvec2 medians;
     for (int axis = 0; axis < 2; ++axis) {

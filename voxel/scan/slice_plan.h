@@ -36,7 +36,7 @@ struct SlicePlan {
 /// The lattice of a plan.
 Lattice lattice_of(const DicomStack& stack, const SlicePlan& plan);
 
-/// A length without measured slices, in mm, from which the audit fails: half the height of the floor of an
+/// The audit fails from this length without measured slices on, in mm: half the height of the floor of an
 /// orbit or of the crown of a lower canine, which could otherwise be missing completely.
 constexpr double longest_unmeasured_mm() {
   return 5.0;
@@ -53,7 +53,7 @@ inline double position_tolerance_mm(double step_mm) {
 /// rounding of the positions' decimals, are copied: the error is in the tags, not in the scan. So are slices
 /// that scatter sideways by up to half a pixel. A gap of more than one and a half steps is a hole, unless at
 /// least three such gaps follow each other and the slices are numbered without a break: then the protocol has
-/// two distances. Findings: slice_spacing, missing_slices, gantry_tilt, sideways. Throws Error, Input, if the
+/// two distances. Findings: slice_spacing, missing_slices, gantry_tilt, sideways. Throws Error (Input) if the
 /// lattice would have more than four times as many slices as the stack, or a slice lies beside the others.
 SlicePlan slice_plan(const DicomStack& stack, const std::filesystem::path& path, std::vector<Finding>& audit);
 

@@ -198,7 +198,7 @@ class StackAudit {
     const std::optional<double> thickness_mm = stack_.first().thickness_mm;
     if (stack_.slices.size() < 2 || !thickness_mm || *thickness_mm <= 0.0) return;
     double gap_mm = usual_gap_mm();
-    // Headers state both to two decimals or better.
+    // Headers state thickness and positions to two decimals or better.
     const double tolerance_mm = 0.02 + 0.01 * gap_mm;
     // If positions are rounded more coarsely, only the mean is exact.
     const double mean_mm =

@@ -181,7 +181,7 @@ class SeriesWriter {
     const std::vector<DicomSource::Image> images = images_behind(source, scene_.lattice, k);
     if (images.empty()) return;
     slice.put(0x00082111, "ST",
-              is_resampled_ ? "Resampled to a lattice, which the source's images are not or which is another"
+              is_resampled_ ? "Resampled: the source's images form another lattice or none"
                             : "On the source's own pixels, not resampled");
     put_source_images(slice, images);
     put_referenced_series(slice, source.series_uid, images);

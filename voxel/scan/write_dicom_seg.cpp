@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 find each segment's planes that hold a voxel and the rectangle around all; 2 pack their pixels, one bit
-// each (of fractions a byte, of label maps the object's number), and describe each plane as a frame; 3 describe the segments, the dimensions
-// (segment and position) and the origin.
+// 1 Find each segment's planes that hold a voxel, and the rectangle around the voxels of all planes.
+// 2 Describe each plane as a frame, and pack its pixels: one bit each; for fractions one byte; for label maps
+//   the object's number.
+// 3 Describe the segments, the dimensions (segment and position) and the origin.
 #include "voxel/scan/write_dicom_seg.h"
 
 #include <algorithm>
@@ -99,7 +100,7 @@ void add_planes(const Lattice& lattice, const DicomFractions& segment, std::size
                        "' are all zero: choose an object that fills a part of a voxel");
 }
 
-/// The number of bytes of the frames' pixels. Throws Error, Geometry, if it is beyond DICOM's limit.
+/// The number of bytes of the frames' pixels. Throws Error (Geometry) if it is beyond DICOM's limit.
 std::size_t pixel_bytes(const Extent& extent, unsigned bits) {
   const auto area =
       static_cast<std::uint64_t>(extent.size_px().x) * static_cast<std::uint64_t>(extent.size_px().y);
@@ -127,7 +128,7 @@ std::string packed_pixels(Segments segments, const Extent& extent, const Progres
   return pixels;
 }
 
-/// Keeps one of the planes at each height, which every object of a label map shares.
+/// Keeps one plane at each height, because all objects of a label map share its frame.
 void share_planes(Extent& extent) {
   std::vector<Plane>& planes = extent.planes;
   std::sort(planes.begin(), planes.end(), [](const Plane& a, const Plane& b) { return a.z < b.z; });
@@ -182,7 +183,7 @@ std::string fraction_pixels(const Lattice& lattice, std::span<const DicomFractio
   return pixels;
 }
 
-/// What is written, apart from the source.
+/// The content of the file, apart from the source.
 struct Content {
   Lattice lattice;
   std::vector<std::string> labels = {};  ///< of the segments
@@ -268,8 +269,8 @@ void put_shared_groups(DicomAttributes& file, const glm::dmat3& axes, const glm:
   file.put_sequence(0x52009229, {shared});
 }
 
-/// The functional groups of one frame: its segment (of a label map, none) and its place among the planes that have
-/// frames, both counted from 1.
+/// The functional groups of one frame: its segment (none for a label map) and its place among the planes that
+/// have frames, both counted from 1.
 DicomAttributes frame_groups(std::optional<std::uint16_t> segment, std::uint32_t place,
                              const glm::dvec3& first_mm, const std::vector<DicomSource::Image>& images) {
   DicomAttributes frame;
@@ -341,7 +342,7 @@ void put_image(DicomAttributes& file, const Content& content) {
   file.put_short(0x00280101, bits);
   file.put_short(0x00280102, static_cast<std::uint16_t>(bits - 1));
   file.put_short(0x00280103, 0);
-  if (content.is_label_map()) file.put_short(0x00280120, 0);  // pixels of no object
+  if (content.is_label_map()) file.put_short(0x00280120, 0);  // value of pixels without an object
   file.put(0x00282110, "CS", "00");
 }
 

@@ -16,8 +16,10 @@ namespace octotomy::voxel {
 
 /// How the voxels of several objects are stored.
 enum class DicomSegKind {
-  Binary,  ///< a frame of bits for each object and plane: objects may share voxels, and every reader knows it
-  LabelMap  ///< a frame of the objects' numbers for each plane (Supplement 243): for many objects, which share nothing
+  Binary,  ///< a frame of bits for each object and plane: objects may share voxels, and every reader supports
+           ///< it
+  LabelMap  ///< a frame of object numbers for each plane (Supplement 243): for many objects that share no
+            ///< voxel
 };
 
 struct DicomSegOptions {
@@ -43,16 +45,16 @@ struct DicomSegment {
 /// octree's own, not resampled to the source's lattice. Unique identifiers are computed from the content: the
 /// same object and options produce the same bytes. Written to a temporary file and renamed into place. Throws
 /// std::invalid_argument if the object is empty, the universe's axes are not perpendicular or a text is too
-/// long; Error, Geometry, if the frames take more than DICOM's 4 GB; Error, Resource or Input, with path and
+/// long; Error (Geometry) if the frames take more than DICOM's 4 GB; Error (Resource or Input) with path and
 /// reason; Stopped. Cost: the planes' pixels; memory: two bits a pixel.
 void write_dicom_seg(const Octree& object, const std::filesystem::path& path,
                      const DicomSegOptions& options = {});
 
 /// Writes a segmentation of several named objects of one universe: segment i + 1 is segments[i], each with
-/// frames of its own, cropped to the rectangle around all; of a label map, one frame for each plane that
+/// frames of its own, cropped to the rectangle around all; for a label map, one frame for each plane that
 /// holds a voxel of any object. On universe_on() of a scan's lattice each frame lies on a slice of the scan.
-/// Also throws std::invalid_argument for no segments, more than 65535 segments, or different universes;
-/// Error, Geometry, with both names, if objects of a label map share voxels.
+/// Also throws std::invalid_argument for no segments, more than 65535 segments, or different universes; Error
+/// (Geometry) with both names, if objects of a label map share voxels.
 void write_dicom_seg(std::span<const DicomSegment> segments, const std::filesystem::path& path,
                      const DicomSegOptions& options = {});
 

@@ -17,7 +17,7 @@ namespace octotomy::voxel {
 /// single precision, so an extension, which other readers skip, holds the exact geometry. Written to a
 /// temporary file and renamed into place, so that a failure leaves an older file intact. The samples of .nhdr
 /// and .mhd go into a data file beside the header under a name that was free, so that an older header never
-/// reads them; those of the older header are removed last. Throws Error, Input or Resource, with path and
+/// reads them; the older header's samples are removed last. Throws Error (Input or Resource) with path and
 /// reason, before anything is written if the disk has too little space. Throws as need_own_data_file() does,
 /// and std::invalid_argument for MetaImage if the lattice's axes are not perpendicular, because its readers
 /// do not support that.
@@ -65,7 +65,7 @@ void need_no_slices(const std::filesystem::path& folder);
 /// others with the finest slope for which their range fits, a power of two. Padding is stored as -32768 and
 /// stated as such. The files contain a window for viewers: level 500, width 2000 in Hounsfield units, else
 /// all values. Unique identifiers are computed from the content: the same scene and options produce the same
-/// files, byte by byte. Throws Error, Input or Resource, with path and reason; as need_no_slices() does;
+/// files, byte by byte. Throws Error (Input or Resource) with path and reason; as need_no_slices() does;
 /// std::invalid_argument if a sample is not finite, the first two axes are not perpendicular or a text is too
 /// long.
 void write_dicom_series(const Scene& scene, const std::filesystem::path& folder,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The hull of a convex polyhedron at both ends of a segment is their Minkowski sum. Its faces are those of the
-// polyhedron, moved to the end that lies further out, and one for each edge of the silhouette along the segment.
-// An edge's normals are the positive combinations of its two faces' normals, with the offset combined alike, so
-// that no corner has to be computed.
+// The convex hull of a convex polyhedron placed at both ends of a segment is the Minkowski sum of the two.
+// Its faces are the polyhedron's faces, each at the end that lies further along the face's normal, and one
+// face for each edge of the silhouette along the segment. A silhouette face's normal and offset are the same
+// positive combination of those of the edge's two faces, so no corner has to be computed.
 #include "voxel/solid/brush.h"
 
 #include <algorithm>
@@ -47,7 +47,8 @@ Dab ball(double radius_mm) {
   Dab dab;
   for (const glm::dvec3& normal : normals)
     dab.faces.push_back({glm::normalize(normal), ball_face * radius_mm});
-  // Cosines are 0.745 and 0.795 between faces that share an edge, and at most 0.45 between others.
+  // The cosine between two normals is 0.745 or 0.795 for faces that share an edge, and at most 0.45 for
+  // others.
   constexpr double between = 0.6;
   for (std::size_t i = 0; i < normals.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
@@ -70,7 +71,7 @@ Dab prism(const BrushStroke::Slab& slab, double radius_mm) {
   return dab;
 }
 
-/// Evaluated in pairs, so that the expression is as deep as the logarithm of their number.
+/// Joins the parts in pairs, so that the expression's depth is the logarithm of the number of parts.
 template <typename Join>
 Expression joined(std::vector<Expression> parts, const Join& join) {
   while (parts.size() > 1) {
@@ -82,7 +83,7 @@ Expression joined(std::vector<Expression> parts, const Join& join) {
   return parts.front();
 }
 
-/// The hull of the dab at both points, which may be one point.
+/// The convex hull of the dab at both points, which may coincide.
 Expression swept(const Dab& dab, const glm::dvec3& from_mm, const glm::dvec3& to_mm) {
   // A cosine below this comes from rounding: the face is parallel to the segment.
   constexpr double parallel = 64.0 * std::numeric_limits<double>::epsilon();

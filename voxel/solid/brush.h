@@ -9,8 +9,9 @@
 
 namespace octotomy::voxel {
 
-/// One stroke of a brush, along a polyline. At each point the brush is a convex polyhedron: of the ball's volume
-/// for a ball, a regular prism for a slab. Between two points it is the convex hull of the two.
+/// One stroke of a brush, along a polyline. At each point the brush is a convex polyhedron: for a ball one of
+/// the ball's volume, for a slab a regular prism. Between two points it is the convex hull of the polyhedra
+/// at both.
 struct BrushStroke {
   /// A disc of some thickness, as a prism of 16 sides that has the disc's volume.
   struct Slab {

@@ -59,7 +59,8 @@ class Combiner {
     for (std::uint64_t rest = undecided; rest != 0; rest &= rest - 1)
       numbers[next++] = std::countr_zero(rest);
 
-    // Evaluates a child, or returns the octree node that equals it, which is not retained yet.
+    // If a node of an octree equals the child, returns that node, not yet retained. Otherwise evaluates the
+    // child into `children` and returns null.
     const auto child_block = [&](std::size_t slot, EnteredBlock& inner) -> const Node* {
       const Node* shared = blocks_.enter(block, numbers[slot], inner);
       if (shared == nullptr) children[slot] = evaluate(inner).detach();

@@ -10,10 +10,9 @@ namespace octotomy::voxel {
 /// The voxels of the universe whose centre the expression contains, computed in one walk over all operands.
 /// At every block, operands that are Full or Empty drop out of the expression; no operand or intermediate
 /// result is built as an octree, and where a single octree operand decides, its nodes are shared. An octree
-/// operand of the same universe contributes exactly its voxels, at rest or moved by whole voxels; under other
-/// motions, or of another universe, it is resampled.
-/// Parallel; same bits on any thread count. Cost: grows with the boundary of the operands, not with their
-/// volume.
+/// operand of the same universe, at rest or moved by whole voxels, contributes exactly its voxels. An octree
+/// under another motion or of another universe is resampled. Parallel; same bits on any thread count. Cost:
+/// grows with the boundary of the operands, not with their volume.
 Octree combine(const Universe& universe, const Expression& expression, const Resampling& resampling = {});
 
 }  // namespace octotomy::voxel

@@ -1,6 +1,7 @@
-// For each operation: 1 combine() computes the voxels wholly inside and those touched; 2 the bounds of the
-// voxels between them follow from the bounds of both operands. Source: Frechet, "Généralisation du théorème
-// des probabilités totales", 1935: a voxel is the probability space, a share a probability.
+// For each operation: 1 combine() computes the voxels wholly inside and the voxels touched; 2 for voxels
+// touched but not wholly inside, the bounds follow from the bounds of both operands. Source: Frechet,
+// "Généralisation du théorème des probabilités totales", 1935: a voxel takes the place of the probability
+// space, and a share that of a probability.
 #include "voxel/solid/combine_shares.h"
 
 #include <algorithm>
@@ -23,7 +24,7 @@ struct Bounds {
   int high = 0;
 };
 
-/// Looks up the bounds of any voxel of a bracket.
+/// Looks up a bracket's bounds by voxel.
 class Shares {
  public:
   explicit Shares(const ShareBracket& bracket) : bracket_(bracket) {

@@ -12,7 +12,7 @@
 #include "voxel/solid/target_expression.h"
 #include "voxel/space/error.h"
 
-// The walk of combine() decides blocks by their cubes, whole voxels included. Leaves that it leaves undecided
+// The walk of combine() decides blocks by cubes that contain the whole voxels. Leaves that remain undecided
 // are decided here:
 //   1 eight cubes of 2 x 2 x 2 voxels are tested, and the voxels of undecided cubes are resolved;
 //   2 fractions are computed for voxels that are neither wholly inside nor outside.

@@ -22,9 +22,9 @@ enum class Digitisation { Inside, Touching, Centre, Half };
 /// on any thread count. Cost: grows with the solid's boundary, not with its volume.
 Octree digitise(const Universe& universe, const Expression& solid, Digitisation digitisation);
 
-/// The solid with the share that it fills of every boundary voxel. Error of a share: 1 / 65535 by rounding;
-/// 2^-9 on a smooth surface whose curvature is at most 1/3 per voxel; if an edge runs through the voxel, 2^-4
-/// of the edge's length in it. Throws as digitise().
+/// The solid, with the filled share of every boundary voxel. Error of a share: 1 / 65535 by rounding; 2^-9 on
+/// a smooth surface whose curvature is at most 1/3 per voxel; if an edge runs through the voxel, 2^-4 of the
+/// edge's length in it. Throws as digitise().
 PartialOctree digitise_partial(const Universe& universe, const Expression& solid);
 
 }  // namespace octotomy::voxel

@@ -1,8 +1,9 @@
 // Steps: 1 build boxes over runs of each polygon's edges, halved along the polygon; 2 build boxes over whole
-// polygons, halved across the longer side of their middles' box. Queries use only the boxes near the point: a
-// ray crosses a run wholly beyond its start an odd number of times if the run's ends lie on different sides
-// of the ray, and whole polygons an even number of times. Boxes include the rounding of points computed on
-// the edges, so skipping a box cannot change a result.
+// polygons, halved across the longer side of the box around the polygons' middles. Queries open only the
+// boxes near the point. A run of edges that lies wholly beyond the ray's start is crossed an odd number of
+// times if its ends lie on different sides of the ray. A whole polygon there is crossed an even number of
+// times. Boxes include the rounding of points computed on the edges, so skipping a box cannot change a
+// result.
 #include "voxel/solid/edge_tree.h"
 
 #include <algorithm>

@@ -19,12 +19,13 @@ class EdgeTree {
   /// The closing edges are implied; a polygon without points has none.
   explicit EdgeTree(const std::vector<std::vector<glm::dvec2>>& polygons_mm);
 
-  /// The least square_to_segment() of all edges; infinity without any.
+  /// The square of the point's distance from the nearest edge, by square_to_segment(); infinity without
+  /// edges.
   double square_to(const glm::dvec2& p_mm) const;
   /// Whether the point is inside by the even-odd rule, as contains() in region_mask.h.
   bool contains(const glm::dvec2& p_mm) const;
   /// Edges that decide which points of a rectangle are inside, and where the region's border meets the
-  /// rectangle. These are edges of the polygons near the rectangle, and upright edges at larger x each of
+  /// rectangle. These are the polygons' edges near the rectangle, and upright edges at larger x, each of
   /// which replaces a whole run of edges. A ray from the rectangle towards growing x crosses the polygons and
   /// these edges equally often, modulo two.
   std::vector<Edge> edges_about(const glm::dvec2& low_mm, const glm::dvec2& high_mm) const;
@@ -84,7 +85,8 @@ class EdgeTree {
     visit_node(node.second, low_mm, high_mm, visit_edge);
   }
 
-  std::vector<glm::dvec2> points_;  ///< polygon after polygon; each begins and ends with its last point
+  std::vector<glm::dvec2> points_;  ///< polygon after polygon; each polygon's last point also precedes its
+                                    ///< first
   std::vector<Node> nodes_;         ///< a parent before its children
 };
 

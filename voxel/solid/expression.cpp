@@ -258,7 +258,7 @@ int strength(Expression::Kind kind) {
 
 constexpr std::array<std::string_view, 4> symbols{" | ", " ^ ", " & ", " - "};
 
-// A part still to be printed: a term with the strength that it needs to go without parentheses, or a text.
+// A part still to be printed: a text, or a term with the least strength at which it needs no parentheses.
 struct Unprinted {
   const Expression::Term* term = nullptr;
   int at_least = 0;
@@ -268,7 +268,7 @@ struct Unprinted {
 }  // namespace
 
 std::string print_expression(const Expression& expression, const Labels& labels) {
-  for_each_term(expression, [](const MetTerm&) {});  // refuses an expression without end
+  for_each_term(expression, [](const MetTerm&) {});  // throws if there are too many leaves
   std::string printed;
   std::vector<Unprinted> rest{{&expression.term()}};
   while (!rest.empty()) {

@@ -53,8 +53,8 @@ class Expression {
     ~Term();  ///< iterative: deep terms cannot exhaust the stack
   };
 
-  /// A leaf. Each throws std::invalid_argument as check() of its type: a mask that holds nothing, a length
-  /// that is not positive, an axis that is no unit vector.
+  /// A leaf. Each constructor throws std::invalid_argument as check() of its type: for a mask without
+  /// polygons, a length that is not positive, or an axis that is not a unit vector.
   Expression(Octree octree) : Expression(Leaf(std::move(octree))) {}
   Expression(Window window) : Expression(Leaf(std::move(window))) {}
   Expression(RegionMask mask) : Expression(Leaf(std::move(mask))) {}
@@ -72,11 +72,11 @@ class Expression {
   friend Expression operator-(const Expression& a, const Expression& b) { return {Kind::Minus, a, b}; }
   friend Expression operator^(const Expression& a, const Expression& b) { return {Kind::Xor, a, b}; }
   friend Expression operator~(const Expression& a);
-  /// The expression carried by a rigid motion, LPS to LPS. Throws std::invalid_argument if it is not
+  /// The expression carried by a rigid motion, LPS to LPS. Throws std::invalid_argument if the matrix is not
   /// rigid.
   friend Expression moved(const Expression& a, const glm::dmat4& moved_from_still);
-  /// The expression's mirror image: the matrix is a reflection, LPS to LPS. Throws std::invalid_argument
-  /// if it is none.
+  /// The expression's mirror image: the matrix is a reflection, LPS to LPS. Throws std::invalid_argument if
+  /// the matrix is not a reflection.
   friend Expression reflected(const Expression& a, const glm::dmat4& mirrored_from_still);
   Expression carried(const Expression& a, const glm::dmat4& carried_from_still);
 

@@ -8,9 +8,9 @@
 // At a block:
 //   1 every operand reports which of the 64 children are Full, and which are not Empty;
 //   2 the expression is evaluated on these covers in three-valued logic, 64 children at a time, which decides
-//   most; 3 operands that are Full or Empty in an undecided child drop out of the expression there. If a
-//   single octree
-//     remains, its node is the result;
+//     most children;
+//   3 operands that are Full or Empty in an undecided child drop out of the expression there; if a single
+//     octree remains, its node is the result;
 //   4 otherwise the walk enters the child or, at the leaves, evaluates the expression on words of 64 voxels.
 
 namespace octotomy::voxel {
@@ -153,11 +153,11 @@ void ExpressionBlocks::ask_words(EnteredBlock& block, std::uint64_t wanted) cons
   std::uint64_t open = wanted & block.cover.undecided();
   for (std::size_t i = 0; i < operands_.size() && open != 0; ++i) {
     fetch_words(i, open, block);
-    // A node's words are neither empty nor full.
+    // Words of an aligned octree's Partial node need no settle(): a node stores empty and full leaves apart.
     if (i + 1 == operands_.size() || block.operations[i].node != nullptr ||
         !settle(block.covers[i], block.operand_words[i], open))
       continue;
-    // Leaves that these words decide need no words of the other operands.
+    // Leaves that the words fetched so far decide need no words of the other operands.
     const Cover settled = run_covers(block);
     block.cover.full |= open & settled.full;
     block.cover.some &= settled.some | ~open;

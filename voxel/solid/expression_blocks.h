@@ -10,9 +10,10 @@
 
 namespace octotomy::voxel {
 
-/// Evaluates an expression over a universe one block at a time, both for walks that build all of it and for
-/// walks that visit a few blocks only. All state of a walk is in its EnteredBlock and none in this object, so
-/// several threads may call it at once. Thesis 7.2 does this for three operands; here their number is free.
+/// Evaluates an expression over a universe one block at a time, both for walks over the whole universe and
+/// for walks that visit only a few blocks. All state of a walk is in its EnteredBlock and none in this
+/// object, so several threads may call it at once. Thesis 7.2 does this for three operands; here any number
+/// is allowed.
 class ExpressionBlocks {
  public:
   /// The expression must outlive this object. `margin` as in TargetBlock.
@@ -32,7 +33,7 @@ class ExpressionBlocks {
     Cover cover;           ///< of its children; at height 2 ask_words() decides more of them
     // At height 2 only:
     std::array<std::uint64_t, 64> words;  ///< of the wanted leaves that `cover` leaves undecided
-    // One entry an operand:
+    // One entry per operand:
     std::vector<Operation> operations;
     std::vector<Cover> covers;
     std::vector<std::array<std::uint64_t, 64>> operand_words;

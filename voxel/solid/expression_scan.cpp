@@ -59,7 +59,8 @@ double value_below(const Scene& frame) {
   return below;
 }
 
-/// Throws where samples that count in steps, of 16 bits, cannot have a value. A step of 0: any finite value.
+/// Throws unless a sample can have the value. With a step above 0 samples are 16-bit multiples of the step; a
+/// step of 0 allows any finite value.
 void need_sample(double value, double step, const std::string& of) {
   const double steps = step > 0.0 ? value / step : 0.0;
   if (std::isfinite(value) && steps >= -32768.0 && steps <= 32767.0) return;
@@ -132,7 +133,7 @@ ExpressionScan expression_scan(const Scene& frame, const GreyOctree& of_frame, c
               if (is_held) owned = owners.at(voxel, glm::dvec3(voxel));
               if (is_held && !owned) ++filled_here;
               const std::int16_t steps = owned ? in_steps(owned->in_steps) : filled_steps;
-              // A sample that is the frame's own, counted in steps, keeps the frame's bits.
+              // A sample that equals the frame's own sample in steps keeps the frame's bits.
               const bool is_measured = own.scan().contains(voxel);
               if (is_held && is_measured && own.sample(voxel) == steps) continue;
               if (!is_held && !is_measured && frame.padding) continue;

@@ -15,8 +15,8 @@ struct ExpressionScanOptions {
   /// the frame has no padding, a value below all its samples, which then becomes the result's padding,
   /// because no window contains it.
   std::optional<double> hole;
-  /// Sample of voxels that only objects without samples fill. Default: 3071 of Hounsfield units, otherwise the
-  /// frame's largest sample.
+  /// Sample of voxels that only objects without samples fill. Default: 3071 for samples in Hounsfield units,
+  /// otherwise the frame's largest sample.
   std::optional<double> filled;
   Progress progress;
 };
@@ -35,11 +35,11 @@ struct ExpressionScan {
 /// operand is interpolated once, trilinearly between that operand's own samples. Padding of the frame stays
 /// where the expression contains nothing. Lattice, type and meaning of the samples and the patient's
 /// identity are the frame's. `of_frame` is a grey octree that keeps the frame (GreyOctree::with_scan());
-/// the expression's windows are of this or of others with samples in the same steps; windows in other
-/// steps, such as those of offset(), only bound.
+/// the expression's windows belong to this octree or to others with samples in the same steps; windows in
+/// other steps, such as those of offset(), limit the voxels but give no samples.
 ///
 /// Throws Error (Input) if the frame has more than 1,024 samples a side or reaches out of the octree's
-/// universe, if a typed value is not one that the samples can have, or if no value is left for holes;
+/// universe, if the samples cannot have the value of `hole` or `filled`, or if no value is left for holes;
 /// Stopped. Parallel; same bits on any thread count. Cost and memory: those of combine() and GreyOwners on
 /// the frame's lattice, and a copy of the frame's samples. Source: thesis, chapter 7: grey octrees of a
 /// plan's objects.

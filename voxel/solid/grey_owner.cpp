@@ -9,16 +9,16 @@
 #include "voxel/solid/operand_frame.h"
 #include "voxel/solid/term_walk.h"
 
-// Source: thesis 7.2 for grey operands. A walk collects the windows with the motions around them, their signs
-// and the operands of unions that must own a voxel; a question tests the windows in their order.
+// Source: thesis 7.2 for grey operands. A walk collects the windows with their motions, their signs and the
+// operands of unions that must contain a voxel that the window owns. at() tests the windows in this order.
 
 namespace octotomy::voxel {
 namespace {
 
 using TermPointer = std::shared_ptr<const Expression::Term>;
 
-// An operand's voxels in the target: a source within the operand gives samples there only, or beyond them
-// only if the operand is under an odd number of complements.
+// An operand's voxels in the target. A source within the operand gives samples only in these voxels, or only
+// outside them if the operand is under an odd number of complements.
 struct Owner {
   Octree voxels;
   bool inside = true;
@@ -41,8 +41,9 @@ bool is_alternative(Expression::Kind kind, bool positive) {
   return kind == Kind::And || kind == Kind::Minus;
 }
 
-// Whether the term's windows decide by their own samples or by operands of their own. The term's voxels
-// then add nothing.
+// Whether the term is a leaf or itself a union; under an odd number of complements, an intersection. The
+// term's voxels then need no test: a window is tested by its samples, and a union's operands by their own
+// voxels.
 bool owns_itself(const Expression::Term& term, bool positive) {
   using Kind = Expression::Kind;
   const Expression::Term* at = &term;
@@ -87,7 +88,7 @@ class SourceWalk {
   using Kind = Expression::Kind;
   // A term between its two visits.
   struct Open {
-    TermPointer alternative;  // none if its voxels decide nothing
+    TermPointer alternative;  // none if its voxels need no test
     bool positive = true;
     std::size_t first_source = 0;
   };
@@ -135,7 +136,8 @@ class SourceWalk {
   std::vector<Source> found_;
   std::vector<glm::dmat4> motions_{glm::dmat4(1.0)};  // products, from outermost
   std::vector<glm::dmat4> around_;                    // the factors
-  std::vector<TermPointer> next_{nullptr};  // for each term not yet visited, as for_each_term() has them
+  std::vector<TermPointer> next_{nullptr};  // Open::alternative of each term not yet visited, in the order of
+                                            // for_each_term()'s stack
   std::vector<Open> open_;
   bool positive_ = true;
 };
@@ -152,7 +154,7 @@ bool same_terms(const Expression::Term& one, const Expression::Term& other) {
   if (a->kind != Expression::Kind::Leaf || b->kind != Expression::Kind::Leaf) return false;
   const auto* window = std::get_if<Window>(&*a->leaf);
   const auto* against = std::get_if<Window>(&*b->leaf);
-  // Grey octrees are immutable and shared: one storage holds one universe.
+  // Grey octrees are immutable and shared, so the address of the universe identifies the samples.
   return window != nullptr && against != nullptr && window->low == against->low &&
          window->high == against->high && &window->grey.universe() == &against->grey.universe();
 }
@@ -166,8 +168,8 @@ Expression all_samples(const GreyOctree& grey, const glm::dmat4& moved_from_stil
   return moved_from_still == glm::dmat4(1.0) ? samples : carried(samples, moved_from_still);
 }
 
-// The union with all of space contains all of space, so the intersection has the voxels of `voxels`. The window
-// of `samples` comes after the windows of `voxels`, and is tested by its own samples.
+// The right side of the & contains all of space, so the intersection has the voxels of `voxels`. The window
+// of `samples` comes after the windows of `voxels` in reading order and is tested by its own samples.
 Expression with_samples(const Expression& voxels, const Expression& samples) {
   return voxels & (samples | ~Expression(Octree::empty({})));
 }

@@ -21,30 +21,31 @@ struct OwnedSample {
 /// An expression whose windows give samples.
 struct SampleSource {
   Expression expression;
-  std::optional<Octree> voxels = {};  ///< the only ones that its windows own; none: no such limit
-  /// Only windows whose samples count in this step give samples; others only bound. None: all windows do.
+  std::optional<Octree> voxels = {};  ///< its windows own only these; none: no limit
+  /// Only windows whose samples count in this step give samples; other windows only limit the voxels. None:
+  /// all windows give samples.
   std::optional<double> step = {};
 };
 
 /// All samples of a scan, under a rigid motion or reflection of LPS onto itself.
 Expression all_samples(const GreyOctree& grey, const glm::dmat4& moved_from_still = glm::dmat4(1.0));
 
-/// The same voxels with more samples: a voxel that no window of `voxels` owns has the sample of `samples`,
-/// a window under motions, at that place, if there is one. For voxels that were computed from a scan and
-/// stored as an octree.
+/// Adds samples to `voxels` and keeps its voxels. `samples` is a window under motions: where no window of
+/// `voxels` owns a voxel, the window's sample is used if there is one. For voxels that were computed from a
+/// scan and stored as an octree.
 Expression with_samples(const Expression& voxels, const Expression& samples);
-/// The term whose samples with_samples() completed; the term itself if it did not make it.
+/// For a term made by with_samples(), the term of its `voxels`; otherwise the term itself.
 const Expression::Term& before_samples(const Expression::Term& term);
 
-/// The windows of an expression that give samples to what they contain: those under an even number of
-/// complements and right sides of a minus. Throws as for_each_term().
+/// The windows of an expression that give samples to the voxels that they contain: windows under an even
+/// number of complements and right sides of a minus. Throws as for_each_term().
 std::vector<Window> positive_windows(const Expression& expression);
 
-/// The samples of expressions at places, without a scan of them being made. The owner of a voxel is the first
-/// window, in the order of the expressions and in reading order within each, that contains the voxel and is
-/// not under a complement or to the right of a minus; if there is none, the first window whose complement
-/// contains the voxel. Of a union's operands only those that contain the voxel own it. Value semantics:
-/// copies share.
+/// Computes samples of expressions at single positions, without building a scan. The owner of a voxel is the
+/// first window, in the order of the expressions and in reading order within each, that contains the voxel
+/// and is not under a complement or to the right of a minus; if there is none, the first window whose
+/// complement contains the voxel. Of a union's operands only those that contain the voxel own it. Value
+/// semantics: copies share.
 class GreyOwners {
  public:
   /// Precondition: the sources' voxels are of the universe. Cost: combine() for each operand of a union that
@@ -59,7 +60,7 @@ class GreyOwners {
   const Universe& universe() const;
   /// All windows in their order.
   std::vector<Window> windows() const;
-  /// Whether both certainly give the same results: one universe, the same voxels and the same terms in
+  /// Whether both certainly return the same samples: one universe, the same voxels and the same terms in
   /// memory. Windows and their motions that were created separately are compared by value.
   bool is_same(const GreyOwners& other) const;
 

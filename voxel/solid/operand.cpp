@@ -61,8 +61,8 @@ Operand operand_of(const PostfixExpression::Operand& operand, const Universe& ta
       const glm::dmat4 source_from_target = source(octree.universe());
       if (const std::optional<glm::ivec3> offset = whole_voxel_offset(source_from_target))
         return ShiftedOctreeOperand(octree, *offset);
-      // A window contains the points whose nearest sample belongs to its scan, so the scan is never resampled
-      // by halves.
+      // A window contains the points whose nearest sample belongs to its scan, so the rule Half is never
+      // applied to the scan.
       if (resampling.voxels == Resampling::Voxels::Half && !operand.is_scan)
         return HalfOctreeOperand(octree, source_from_target);
       return SampledOctreeOperand(octree, source_from_target);

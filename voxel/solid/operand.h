@@ -41,8 +41,8 @@ struct TargetBlock {
   }
 };
 
-/// Output of words(): the words of the leaves whose bits are set in `wanted`, of a block of height 2, written
-/// at their child numbers.
+/// Output of words() for a block of height 2: for each bit set in `wanted`, words[bit number] receives the
+/// word of the leaf with this child number.
 struct WantedLeaves {
   glm::ivec3 origin{0};  ///< of the block
   std::uint64_t wanted = 0;
@@ -138,8 +138,8 @@ class SampledOctreeOperand {
   glm::ivec3 lowest_{0}, highest_{0};
 };
 
-/// An octree on another lattice or under a motion: a voxel is inside if most of a grid of 5 x 5 x 5 points
-/// in it is (D4).
+/// An octree on another lattice or under a motion: a voxel is inside if most of 5 x 5 x 5 points in the voxel
+/// are inside (D4).
 class HalfOctreeOperand {
  public:
   HalfOctreeOperand(const Octree& octree, const glm::dmat4& source_from_target);
@@ -194,8 +194,7 @@ using Operand =
 Operand operand_of(const PostfixExpression::Operand& operand, const Universe& target,
                    const Resampling& resampling);
 
-/// The status of the children of a block, as far as it is decided here. Children of 4 voxels a side may be
-/// left undecided for words().
+/// The status of a block's children. Children of 4 voxels a side may be left undecided for words().
 Cover cover(const Operand& operand, const TargetBlock& block);
 void words(const Operand& operand, const WantedLeaves& leaves);
 /// Precondition of meets(), contains() and sheets(): the operand is no WindowOperand and no

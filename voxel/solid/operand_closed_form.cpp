@@ -10,27 +10,24 @@
 #include "voxel/solid/operand.h"
 
 // Closed forms of the operands. A cube of index space is a parallelepiped in a primitive's own frame.
-//   Ball: the farthest point is a corner, because distance is convex. The nearest point is clamped edge by
-//   edge if the
-//     edges are at right angles; otherwise its distance is the least of the minima over the cube's 27 faces.
-//   Half-space: the value at the centre and its reach over the cube.
-//   Box: the cube has a part outside if a corner is outside (convexity). It has a part inside unless one of
-//   15 axes
-//     separates the two (Gottschalk, Lin, Manocha 1996); three axes suffice if the cube's edges run along the
-//     box's.
+//   Ball: the farthest point is a corner, because distance is convex. If the cube's edges are at right angles,
+//     the nearest point is clamped edge by edge; otherwise its distance is the least of the minima over the
+//     cube's 27 faces.
+//   Half-space: the value at the centre is compared with its greatest change within the cube.
+//   Box: the cube has a part outside if a corner is outside (convexity). It has a part inside unless one of 15
+//     axes separates cube and box (Gottschalk, Lin, Manocha 1996); three axes suffice if the cube's edges run
+//     along the box's.
 //   Cylinder, region of a mask: the cube is clipped to the range along the axis and projected along the axis
-//   to a
-//     convex polygon. As the solid is swept along the axis, the polygon meets the cross-section exactly if
-//     the cube meets the solid.
-//   Torus: the cube's ranges of distance from the axis and of position along it form a rectangle, which is
-//   compared
-//     with the tube's disc. If the lattice is upright to the axis, the rectangle is the cube's image.
-//     Otherwise it is a bound, and the cube's corners and centre are witnesses.
+//     to a convex polygon. As the solid is swept along the axis, the polygon meets the cross-section exactly
+//     if the cube meets the solid.
+//   Torus: the cube's ranges of distance from the axis and of position along the axis form a rectangle, which
+//     is compared with the tube's disc. If the lattice is upright to the axis, the rectangle is the cube's
+//     image. Otherwise it is a bound, and the cube's corners and centre are witnesses.
 
 namespace octotomy::voxel {
 namespace {
 
-// Directions shorter than 2^-40 of the vectors from which they were computed are rounding.
+// A direction shorter than 2^-40 of the vectors from which it was computed comes from rounding.
 constexpr double vanishing = 0x1p-40;
 
 glm::dvec3 corner(int number) {
@@ -41,7 +38,7 @@ double square(double x) {
   return x * x;
 }
 
-// Least |c + columns t|^2 over -1 <= t <= 1.
+// Least |c + columns t|^2 over all t with coordinates from -1 to 1.
 double nearest_square(const glm::dmat3& columns, const glm::dvec3& c) {
   // Each coordinate is fixed at an end or free. The function is convex, so its minimum is the least value at
   // the feasible stationary points.
@@ -92,7 +89,7 @@ CornerSquares corner_squares(const glm::dmat3& columns, const glm::dvec3& c) {
 
 // Whether the parallelepiped comes nearer to the origin than a radius. The centre or a corner within the
 // radius proves it; a plane across the direction to the centre disproves it. Other cases, and those within
-// rounding, are searched.
+// rounding, are decided by nearest_square().
 bool comes_within(double radius, const glm::dmat3& columns, const glm::dvec3& c, double nearest_corner2) {
   const double centre2 = glm::dot(c, c), radius2 = square(radius);
   if (std::min(centre2, nearest_corner2) < radius2 * (1.0 - vanishing)) return true;
@@ -106,8 +103,8 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) {
   return a.x * b.y - a.y * b.x;
 }
 
-// A convex polygon, counter-clockwise. A cube clipped by two planes has at most 8 corners between them and 2
-// x 6 cut points.
+// A convex polygon, counter-clockwise. A cube clipped by two planes has at most 8 corners between the planes,
+// and 6 points where its edges cross each plane.
 struct Polygon {
   std::array<glm::dvec2, 48> points;
   int count = 0;
@@ -140,8 +137,8 @@ struct Range {
   double high_mm = std::numeric_limits<double>::infinity();
 };
 
-// A cube in the solid's frame: its range along the third axis, and its outline along that axis. The outline is
-// that of the part within the solid's range, and empty if that part has no volume.
+// A cube in the solid's frame: its range along the third axis, and its outline along that axis. Only the part
+// of the cube within the solid's range contributes to the outline, which is empty if that part has no volume.
 struct SweptCube {
   double low = 0.0;
   double high = 0.0;
@@ -238,7 +235,7 @@ glm::dvec2 middle(const Polygon& hull) {
   return sum / static_cast<double>(hull.count);
 }
 
-// Adds those of a solid's two end planes across an axis of its frame that cut the cube, in index space.
+// A solid ends at two planes across `axis` of its frame. Adds the planes that cut the cube, in index space.
 void add_ends(const LocalFrame& local, int axis, const Range& range, const Cube& cube, Sheets& sheets) {
   const glm::dvec3 gradient(local.map[0][axis], local.map[1][axis], local.map[2][axis]);
   const double along = local(cube.centre)[axis];
@@ -414,7 +411,7 @@ Meets BoxOperand::meets(const Cube& cube) const {
   if (straight_) return Meets::exactly(true, true);
   const glm::dmat3 columns = local_.map * cube.half;
   const auto separates = [&](const glm::dvec3& way, double size) {
-    // The cross product of parallel edges is no axis.
+    // The cross product of parallel edges is zero and gives no axis.
     if (glm::dot(way, way) <= square(vanishing * size)) return false;
     const double box = glm::dot(half_mm_, glm::abs(way));
     const double reach = std::abs(glm::dot(columns[0], way)) + std::abs(glm::dot(columns[1], way)) +

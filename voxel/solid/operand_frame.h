@@ -26,8 +26,7 @@ Cover cover_of_children(const TargetBlock& block, const ChildMeets& child_meets)
   return cover;
 }
 
-/// Writes the words of the wanted leaves; `leaf` computes the word of the leaf whose first voxel it is
-/// passed.
+/// Writes the words of the wanted leaves; `leaf(first_voxel)` computes a leaf's word.
 template <typename Leaf>
 void for_each_wanted(const WantedLeaves& leaves, const Leaf& leaf) {
   for (std::uint64_t rest = leaves.wanted; rest != 0; rest &= rest - 1) {
@@ -36,7 +35,7 @@ void for_each_wanted(const WantedLeaves& leaves, const Leaf& leaf) {
   }
 }
 
-/// Likewise; `inside` returns whether a voxel's centre is inside.
+/// Writes the words of the wanted leaves; `inside` returns whether a voxel's centre is inside.
 template <typename Inside>
 void for_each_wanted_voxel(const WantedLeaves& leaves, const Inside& inside) {
   for_each_wanted(leaves, [&](const glm::ivec3& origin) {
@@ -78,9 +77,8 @@ struct VoxelBox {
   glm::ivec3 low, high;
 };
 
-/// Under a translation by whole voxels: the source leaves first..last that a block of height 2 overlaps, and
-/// the number of voxels, `shift`, that precede the block in the first of them. `source` is the block's first
-/// voxel in the source.
+/// The source leaves first..last that a block of height 2 overlaps under a translation by whole voxels. The
+/// block begins `shift` voxels into leaf `first`. `source` is the block's first voxel in the source.
 struct ShiftedLeaves {
   explicit ShiftedLeaves(const glm::ivec3& source)
       : first(source >> 2),

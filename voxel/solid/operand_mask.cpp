@@ -60,7 +60,7 @@ Status status_of(const std::vector<Edge>& edges, const Patch& patch) {
   return inside ? Status::Full : Status::Empty;
 }
 
-/// A number for each child of a block, or voxel of a leaf.
+/// A number for each child of a block or each voxel of a leaf.
 using Values = std::array<double, 64>;
 
 /// Values of f at the places first + step (x, y, z) of children or voxels.
@@ -109,7 +109,7 @@ OCTOTOMY_VECTOR_CLONES void count_meetings(const Edge& edge, const glm::dvec2& h
   }
 }
 
-/// The places whose count, below 2^31, has a bit of `bits` set.
+/// The places whose count has a bit of `bits` set. Precondition: counts are below 2^31.
 OCTOTOMY_VECTOR_CLONES std::uint64_t places_of(const Values& counts, std::int32_t bits) {
   std::array<std::uint8_t, 64> set;
   for (std::size_t i = 0; i < counts.size(); ++i)

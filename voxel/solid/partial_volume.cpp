@@ -13,8 +13,8 @@
 
 // A cell is the cube between eight neighbouring voxel centres. Cells are processed in blocks of 16 x 16 x 16,
 // numbered by their first corner. Blocks with an index of -1 contain the cells that reach into the universe
-// from outside. Passes: 1 each block sums the shares of its cells, most of which the range of their samples
-// decides; 2 the blocks' sums are added in order.
+// from outside. Passes: 1 each block sums the shares of its cells; for most cells the range of the samples
+// already decides the share; 2 the blocks' sums are added in order.
 
 namespace octotomy::voxel {
 namespace {
@@ -76,7 +76,7 @@ using CornerBits = std::uint8_t;
 constexpr CornerBits all_corners = 0xff;
 
 // Sets each corner of a cell outside the scan to the mean of its nearest corners in the scan. So the scan's
-// last samples extend their values by up to half a sample, as in the surfaces of both kernels.
+// last samples extend their values by up to half a sample, as in interpolated surfaces.
 void extend(std::array<double, 8>& c, CornerBits scanned) {
   const std::array<double, 8> own = c;
   for (unsigned k = 0; k < 8; ++k) {

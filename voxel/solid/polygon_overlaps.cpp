@@ -1,8 +1,8 @@
-// Repeated polygons: 1 measure every polygon; 2 sort them by one number in which equal lines differ by no
-// more than the rounding allows; 3 compare points with edges for polygons with nearby numbers.
-// Crossing polygons: 1 find edges that touch, by boxes; 2 for two polygons that touch, check whether each
-// lies on both sides of the other by more than the rounding, at its corners and between its touches; 3 where
-// a polygon crosses itself, check by areas whether the two loops overlap or lie side by side.
+// Repeated polygons: 1 measure every polygon; 2 sort them by a number that differs between equal lines by no
+// more than the rounding allows; 3 compare points with edges for polygons with nearby numbers. Crossing
+// polygons: 1 find edges that touch, by boxes; 2 for two polygons that touch, check whether each lies on both
+// sides of the other by more than the rounding, at its corners and between its touches; 3 where a polygon
+// crosses itself, check by areas whether the two loops overlap or lie side by side.
 #include "voxel/solid/polygon_overlaps.h"
 
 #include <algorithm>
@@ -173,7 +173,7 @@ class Crossings {
     bool is_inside = false;
     bool is_outside = glm::any(glm::lessThan(one.low, low)) || glm::any(glm::greaterThan(one.high, high));
     const auto see = [&](const glm::dvec2& p) {
-      // The distance is computed only while that side is still unknown.
+      // The distance is computed only if no earlier point lies on the same side of the other polygon.
       bool& known = edges.contains(p) ? is_inside : is_outside;
       if (!known) known = edges.square_to(p) > margin_mm * margin_mm;
     };
@@ -229,7 +229,7 @@ class Crossings {
     const Polygon& polygon = polygons_[number];
     const auto met = crossing_of(edge(number, a), edge(number, b));
     if (!met) return;
-    // The loop from the crossing over points a .. b - 1 and back, and the rest.
+    // The crossing splits the polygon into the loop through points a .. b - 1 and the rest.
     const glm::dvec2 x = *met - polygon[0], first = polygon[a] - polygon[0],
                      last = polygon[b - 1] - polygon[0];
     const double twice_loop = twice_areas_[b - 1] - twice_areas_[a] + (x.x * first.y - x.y * first.x) +

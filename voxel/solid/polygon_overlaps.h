@@ -6,14 +6,14 @@
 #include <vector>
 
 // Finds polygons in one plane for which the even-odd rule yields another region than was drawn: repeated and
-// crossing ones. Nested polygons and keyholes are not reported.
+// crossing polygons. Nested polygons and keyholes are not reported.
 namespace octotomy::voxel {
 
 /// Ascending numbers of the polygons that repeat an earlier one: the points of each lie within the rounding
 /// of the other's edges, whatever the first point and direction. `rounding_mm` is the largest error of a
 /// coordinate; a polygon smaller than 1000 times that uses a thousandth of its size. Precondition: all
-/// coordinates are finite. Cost: n log n in the points, and the pairs of polygons that share bounds, area and
-/// centre.
+/// coordinates are finite. Cost: n log n in the points, plus one comparison per pair of polygons that share
+/// bounds, area and centre.
 std::vector<std::size_t> repeated_polygons(const std::vector<std::vector<glm::dvec2>>& polygons_mm,
                                            double rounding_mm);
 
@@ -31,9 +31,9 @@ struct CrossingPolygons {
 
 /// Polygons that cross another: each of the two has a part inside and a part outside the other, both farther
 /// than the rounding from its line. Also polygons that cross themselves, by enclosing a part twice or as a
-/// figure of eight. `rounding_mm` and preconditions as in repeated_polygons(); the caller removes the
-/// polygons that it returns first. Cost: n log n in the edges where few of their boxes overlap. The search
-/// stops, incomplete, after a fixed number of pairs of edges per edge.
+/// figure of eight. `rounding_mm` and preconditions as in repeated_polygons(); the caller first removes the
+/// polygons that repeated_polygons() returns. Cost: n log n in the edges where few of their boxes overlap.
+/// The search stops early, with `is_complete` false, after a fixed number of pairs of edges per edge.
 CrossingPolygons crossing_polygons(const std::vector<std::vector<glm::dvec2>>& polygons_mm,
                                    double rounding_mm);
 

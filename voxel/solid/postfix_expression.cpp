@@ -77,7 +77,7 @@ class Layout {
   struct Entry {
     std::size_t first_step = 0;
     std::uint32_t number = 0;
-    Code row = Code::Push;                      ///< operator of the chain whose last value this is
+    Code row = Code::Push;                      ///< operator of the chain that ends in this value
     std::unordered_set<std::uint32_t> members;  ///< numbers of the values joined or subtracted in the chain
   };
 

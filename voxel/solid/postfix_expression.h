@@ -79,10 +79,10 @@ struct PostfixExpression {
 };
 
 /// The result refers to the expression's leaves; the expression must outlive it. A leaf that occurs
-/// repeatedly under the same motion becomes one operand. It adds no step where it joins a chain of | or &
-/// that already contains it, or is subtracted a second time. A window becomes an intersection with its scan,
-/// unless it is at rest on the lattice of `target` and excludes the background: then it contains no voxel
-/// beyond the scan anyway. Throws as for_each_term().
+/// repeatedly under the same motion becomes one operand. A repeated leaf adds no step to a chain of | or &
+/// that already contains it, or from which it was already subtracted. A window becomes an intersection with
+/// its scan. Exception: a window at rest on the lattice of `target` that excludes the background contains no
+/// voxel beyond the scan anyway. Throws as for_each_term().
 PostfixExpression postfix_of(const Expression& expression, const std::optional<Universe>& target = {});
 
 }  // namespace octotomy::voxel

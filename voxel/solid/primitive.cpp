@@ -20,8 +20,8 @@ bool finite(const glm::dvec3& v) {
 }
 
 // A product of a few rotations has columns orthonormal to a few units in the last place; numbers read from
-// text with nine digits are accurate to 1e-9. A scale or shear that moves anything in a head by a micrometre
-// over 300 mm is 3e-9. Half of the digits lie between the two.
+// text with nine digits are accurate to 1e-9. A scale or shear that moves points by a micrometre over 300 mm
+// is 3e-6. The square root of epsilon, 1.5e-8, lies between the two.
 double unit_slack() {
   return std::sqrt(std::numeric_limits<double>::epsilon());
 }

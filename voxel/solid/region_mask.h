@@ -17,7 +17,8 @@ struct Region {
 };
 
 /// A volume of interest: the points whose projection lies inside the region of every view (thesis 6.2).
-/// It stays symbolic: regions can be edited until, and after, an expression evaluates it.
+/// A mask stores the regions and no voxels, so its regions can be edited at any time, even after an
+/// expression has evaluated it.
 struct RegionMask {
   std::vector<Region> regions;
 };

@@ -37,8 +37,8 @@ void check(const SliceMask& mask) {
     }
   }
   if (!drawn) throw InvalidInput("no slice of the mask has a polygon");
-  // Two slices of a stack may lie close to each other, where a part ends. A whole stack thinner than any that is drawn
-  // has its positions in another unit.
+  // Two slices may lie this close, where a part ends. If all slices of a stack do, their positions are in
+  // another unit than mm.
   constexpr double least_span_mm = 0.01;
   if (mask.slices.back().position_mm - mask.slices.front().position_mm < least_span_mm)
     throw InvalidInput("slice 1 to slice " + std::to_string(mask.slices.size()) +
@@ -74,7 +74,7 @@ SliceDistance::Bounds SliceDistance::in_gap(std::size_t below, double at_a, doub
     const double to = at(to_mm);
     return {std::min(from, to), std::max(from, to)};
   }
-  // The middle belongs to the slice before it.
+  // The middle of a gap belongs to the slice before the gap.
   const double middle = 0.5 * (a.position_mm + b.position_mm);
   Bounds bounds{outside_mm, -outside_mm};
   const auto take = [&](double distance) {

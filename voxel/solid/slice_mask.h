@@ -11,8 +11,8 @@ namespace octotomy::voxel {
 
 /// A volume of interest from regions drawn on parallel slices (thesis 6.2.1.3). On a slice the object is the
 /// inside of its polygons, by the even-odd rule. Each slice represents half the gap to each neighbour; the
-/// first and last also extend as far beyond. In combine(), a voxel centre on a border is inside at the
-/// border's lower end only.
+/// first and last extend equally far beyond the stack. In combine(), a voxel centre on a border is inside at
+/// the border's lower end only.
 struct SliceMask {
   struct Slice {
     double position_mm = 0.0;                          ///< p . look for the points p of its plane

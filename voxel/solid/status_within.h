@@ -7,7 +7,7 @@
 namespace octotomy::voxel {
 
 /// Status of a box of voxels of the octree's lattice. The box may extend beyond the universe, where all
-/// voxels are Empty. Cost: the nodes along the box's faces, without those below a child that already decides.
+/// voxels are Empty. Cost: the nodes along the box's faces; stops as soon as the status is Partial.
 Status status_within(const Octree& octree, const VoxelBox& box);
 
 }  // namespace octotomy::voxel

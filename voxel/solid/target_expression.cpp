@@ -8,7 +8,7 @@
 namespace octotomy::voxel {
 namespace {
 
-// The share of a cube inside, with the surfaces that cross the cube combined as independent.
+// The share of a cube that lies inside. Surfaces that cross the cube are combined as independent.
 struct Share {
   double share = 0.0;
   int sheets = 0;  ///< 0: the share is exactly 0 or 1

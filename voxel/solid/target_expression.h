@@ -43,7 +43,7 @@ class TargetExpression {
   std::vector<Operand> operands_;
 };
 
-/// Replaces the decision by voxel centres in leaves that blocks leave undecided.
+/// Decides the leaves that the covers of blocks leave undecided, by another rule than voxel centres.
 struct LeafRule {
   double margin = TargetBlock::cuboids;                         ///< as in TargetBlock
   std::function<std::uint64_t(const glm::ivec3& origin)> word;  ///< returns the word of the leaf at `origin`;

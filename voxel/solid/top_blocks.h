@@ -27,9 +27,7 @@ class TopBlocks {
   TopBlocks& operator=(const TopBlocks&) = delete;
 
   const ExpressionBlocks& blocks() const { return blocks_; }
-  const TopBlock& root() const {
-    return root_;
-  }  ///< lower than the least height if the universe is that small
+  const TopBlock& root() const { return root_; }  ///< lower than `least_height` in a small universe
 
  private:
   void enter_children(TopBlock& block, int least_height) const;

@@ -25,19 +25,19 @@ class Error : public std::runtime_error {
   ErrorCode code_;
 };
 
-/// A stop token was set.
+/// Thrown after a stop token was set.
 struct Stopped : Error {
   explicit Stopped(const std::string& message) : Error(ErrorCode::Cancelled, message) {}
 };
 
-/// A function refuses a value or data that may come from outside the program; the message says what is wrong
-/// and, if it helps, what to do. A plain std::invalid_argument is a mistake of the caller instead: it broke a
-/// precondition that no outside value can break.
+/// Thrown for a wrong value or wrong data that may come from outside the program. The message says what is
+/// wrong and, if it helps, what to do. A plain std::invalid_argument, in contrast, reports a mistake of the
+/// caller, who broke a precondition that no outside value can break.
 struct InvalidInput : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// A function refuses a size that may come from outside the program, because its result would be too large.
+/// Thrown for a size that may come from outside the program if the function's result would be too large.
 struct TooLarge : std::length_error {
   using std::length_error::length_error;
 };

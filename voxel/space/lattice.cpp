@@ -12,7 +12,7 @@ namespace octotomy::voxel {
 namespace {
 
 // Converting a plan's millimetres to voxel indices rounds numbers below 2^12 a few times: 1e-12 of a voxel. A
-// translation intended not to be by whole voxels differs from one by far more than a millionth.
+// translation that is not meant to be by whole voxels differs from whole voxels by far more than a millionth.
 constexpr double whole_voxel_tolerance = 1e-6;
 
 }  // namespace

@@ -13,7 +13,7 @@ std::string rounded(double value) {
   if (value == 0.0) return "0";
   constexpr int digits = 3;
   const int exponent = static_cast<int>(std::floor(std::log10(std::abs(value))));
-  // Rounded first: 1876 is 1880, not 1.88e+03.
+  // Rounds before printing, so that 1876 becomes 1880, not 1.88e+03.
   const double unit = std::pow(10.0, exponent - digits + 1);
   char text[64];
   if (exponent < -4 || exponent > 14)

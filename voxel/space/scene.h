@@ -48,12 +48,12 @@ using FloatSamples = Samples<float>;
 struct Identity {
   std::string patient_id, patient_name;
   std::vector<std::string> study_uids, frame_uids;
-  std::string id_issuer = {};   ///< who gave the patient's number, which is unique only among the issuer's
+  std::string id_issuer = {};   ///< issuer of patient_id, which is unique only among this issuer's numbers
   std::string birth_date = {};  ///< YYYYMMDD
   std::string sex = {};         ///< M, F or O
-  std::string series_uid = {};  ///< of a scan that was read of a DICOM series
+  std::string series_uid = {};  ///< of a scan that was read from a DICOM series
   std::vector<std::string> referred_series_uids = {};  ///< of a structure set: the series it was drawn on
-  std::string study_date = {};  ///< YYYYMMDD
+  std::string study_date = {};                         ///< YYYYMMDD
 };
 
 /// Samples on a lattice, x fastest.
@@ -70,10 +70,10 @@ struct Scene {
   /// labels, in ascending order.
   std::map<int, std::vector<int>> overlaps = {};
   /// The sample value where the scanner measured nothing; below every measured one. No interpolation may mix
-  /// it with a measurement. None: every sample is a measurement.
+  /// it with a measurement. None: every sample is a measured one.
   std::optional<double> padding = {};
-  /// The samples' unit as a DICOM file declares it: "HU", "US" (unspecified), "OD", "BQML", "GY". Empty where
-  /// none is declared, which of a CT means HU (PS3.3, C.8.2.1).
+  /// The samples' unit as a DICOM file declares it: "HU", "US" (unspecified), "OD", "BQML", "GY". Empty if no
+  /// unit is declared, which for a CT means HU (PS3.3, C.8.2.1).
   std::string declared_unit = {};
 };
 
@@ -85,7 +85,8 @@ struct SliceRange {
   int first = 0;
   int last = 0;
 };
-/// None if no slice's centre lies inside the hole, or the lattice's slices are not the hole's.
+/// None if no slice's centre lies inside the hole, or the lattice's slices are not parallel to the hole's
+/// images.
 std::optional<SliceRange> slices_inside(const Lattice& lattice, const Hole& hole);
 
 /// Smallest and largest measured sample; the padding itself if nothing was measured. Precondition: the scene
@@ -99,7 +100,7 @@ Range range(const Scene& scene);
 /// The unit to print after a sample value: "HU" or "1".
 std::string unit(const Scene& scene);
 
-/// Throws std::invalid_argument if the number of samples is not the lattice's, the lattice is empty,
+/// Throws std::invalid_argument if the number of samples is not the lattice's, or if the lattice is empty,
 /// singular or not finite.
 void check(const Scene& scene);
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // posix_spawn() instead of fork() and exec: our process has threads, and a forked child could wait for ever
-// on a lock that another thread held. It also copies no page tables, which takes long in a large process.
+// on a lock that another thread held. Nor does posix_spawn() copy the page tables, which takes long in a
+// large process.
 #include "voxel/space/spawn.h"
 
 #include <array>

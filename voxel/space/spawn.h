@@ -19,13 +19,14 @@ struct Spawn {
   bool has_own_group = false;   ///< false: it gets the signals of our terminal
 };
 
-/// Starts the program and returns its process. It inherits no other open file, no blocked signal, and no
-/// ignored signal except SIGHUP, so that under nohup both outlive the terminal. Throws std::system_error with
-/// the program's name.
+/// Starts the program and returns its process. The program inherits no other open file, no blocked signal,
+/// and no ignored signal except SIGHUP, so that under nohup both processes outlive the terminal. Throws
+/// std::system_error with the program's name.
 pid_t spawn(const Spawn& program);
 
 /// Waits for the end of a child and returns its status as waitpid() reports it. Calls `look` every
-/// `look_every` until then; `look` may send signals. Throws std::system_error if the process is no child.
+/// `look_every` until then; `look` may send signals. Throws std::system_error if `child` is not a child of
+/// this process.
 int wait_for_end(pid_t child, std::chrono::milliseconds look_every, const std::function<void()>& look);
 
 }  // namespace octotomy::voxel

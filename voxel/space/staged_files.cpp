@@ -51,8 +51,8 @@ void bring(Move& move, std::list<StagedFiles>& folders) {
   move.staged = staged;
 }
 
-/// A second hard link to a file that is replaced, from which it can be restored. File systems without hard
-/// links, or that forbid them, allow no restoring.
+/// A second hard link to a file that is replaced, from which the old file can be restored. Nothing is
+/// restored on a file system that has or allows no hard links.
 class OldFile {
  public:
   explicit OldFile(const Move& move) : target_(move.target), kept_(move.staged.string() + ".old") {

@@ -14,13 +14,13 @@ namespace octotomy::voxel {
 /// folder; a folder that a killed process left is removed by the next process.
 class StagedFiles {
  public:
-  /// Throws Error, Input or Resource, that names `destination` if no folder can be created in it.
+  /// Throws Error (Input or Resource) that names `destination` if no folder can be created in it.
   explicit StagedFiles(const std::filesystem::path& destination);
 
   const std::filesystem::path& folder() const { return unfinished_.path(); }
   /// Renames every staged file or folder into the destination, `last` (a file name) after all others, so that
   /// a header never appears before its data. A link at the destination is followed, also to another disk. A
-  /// replaced file's permissions are kept. Throws Error, Input or Resource, with path and reason; a device,
+  /// replaced file's permissions are kept. Throws Error (Input or Resource) with path and reason; a device,
   /// pipe or folder is not replaced by a file. A failure leaves every old file: all targets are checked
   /// before the first is renamed, and renames that were done are undone if a later one fails.
   void commit(const std::filesystem::path& last = {});

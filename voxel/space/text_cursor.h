@@ -31,7 +31,7 @@ class TextCursor {
   /// Throws std::invalid_argument: "treecode, character 12: ...", counted from one.
   [[noreturn]] void refuse(const std::string& why) const { refuse_at(position_, why); }
   [[noreturn]] void refuse_at(std::size_t position, const std::string& why) const;
-  /// Likewise; the message names the expected text and the character that stands there.
+  /// Throws as refuse(); the message names the expected text and the character that stands there.
   [[noreturn]] void refuse_unexpected(const std::string& expected) const;
 
  private:

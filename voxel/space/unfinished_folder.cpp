@@ -1,6 +1,6 @@
-// Owners hold a lock on their folder. A folder is created, then locked. Between the two a cleaner may take
-// the lock and remove the folder, so the owner checks after locking that it still exists, and otherwise
-// creates another one.
+// Owners hold a lock on their folder. A folder is created, then locked. In between, remove_abandoned() of
+// another process may take the lock and remove the folder. So the owner checks after locking that the folder
+// still exists, and otherwise creates another one.
 #include "voxel/space/unfinished_folder.h"
 
 #include <algorithm>
@@ -24,7 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t letter_count = 6;
-/// Suffix under which a folder is emptied. It is renamed first, so that no thread writes into it meanwhile.
+/// Suffix of a folder's name while it is emptied. The folder is renamed first, so that no thread writes into
+/// it meanwhile.
 constexpr const char* leaving = "~";
 
 /// The folders of this process; never destroyed, since threads may outlive main(). The mutex is held while a
@@ -57,7 +58,7 @@ void remove_folder(const fs::path& path) {
   const fs::path gone = path.string() + leaving;
   fs::rename(path, gone, ignored);
   fs::remove_all(gone, ignored);
-  fs::remove_all(path, ignored);  // if it could not be renamed
+  fs::remove_all(path, ignored);  // removes the folder if it could not be renamed
 }
 
 /// Ignores exceptions: a folder that cannot be removed stays hidden or marked as unfinished until the next

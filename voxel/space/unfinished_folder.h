@@ -12,7 +12,7 @@ namespace octotomy::voxel {
 /// destructor removes it.
 class UnfinishedFolder {
  public:
-  /// Creates `beside`/`prefix` with six letters added. Throws Error, Input or Resource, that names `beside`.
+  /// Creates `beside`/`prefix` with six letters added. Throws Error (Input or Resource) that names `beside`.
   UnfinishedFolder(const std::filesystem::path& beside, const std::string& prefix);
   UnfinishedFolder(const UnfinishedFolder&) = delete;
   UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;

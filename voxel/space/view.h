@@ -17,8 +17,8 @@ struct View {
   glm::dvec2 project(const glm::dvec3& p_mm) const { return {glm::dot(p_mm, right), glm::dot(p_mm, up)}; }
 };
 
-/// Whether a view's directions are unit vectors, perpendicular to each other, right = look x up, to 1e-6; NaN
-/// is not.
+/// Whether a view's directions are perpendicular unit vectors with right = look x up, within 1e-6. False for
+/// NaN.
 bool is_frame(const View& view);
 
 /// A named view (anterior, posterior, left, right, superior, inferior) or "AZ,EL" in degrees: from anterior,

@@ -10,8 +10,8 @@
 
 namespace octotomy::voxel {
 
-/// Advice for the error number of a failed write, to append to a message; empty if there is no room or limit
-/// to raise.
+/// Advice for the error number of a failed write, to append to a message; empty unless a full disk or a limit
+/// is the cause.
 inline std::string way_out_of(int number) {
   if (number == EFBIG) return "; raise the limit on the size of files (ulimit -f)";
   return number == ENOSPC || number == EDQUOT ? "; make room on the disk" : "";

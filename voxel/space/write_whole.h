@@ -6,8 +6,8 @@
 
 namespace octotomy::voxel {
 
-/// Writes a file into a folder that no reader looks into yet, such as an UnfinishedFolder. Throws Error,
-/// Input or Resource, with the path and the reason.
+/// Writes a file into a folder that no reader looks into yet, such as an UnfinishedFolder. Throws Error
+/// (Input or Resource) with the path and the reason.
 void write_file(const std::filesystem::path& path, const std::string& bytes);
 
 /// Writes a file beside its destination and renames it into place: readers see the old file or the whole new

@@ -76,8 +76,8 @@ BlockGrid parents(const BlockGrid& children, int parent_height) {
   return grid;
 }
 
-// Builds an octree from a grid of dims blocks of height 2, from the universe's first voxel on; all others are
-// empty.
+// Builds an octree from a grid of `dims` blocks of height 2 that begins at the universe's first voxel. Blocks
+// beyond the grid are empty.
 Octree octree_of_grid(const Universe& universe, const glm::ivec3& dims, const FillRow& fill) {
   BlockGrid grid(dims);
   fill_rows(grid, fill);
@@ -111,7 +111,7 @@ Block block_of_box(int height, const glm::ivec3& origin, const glm::ivec3& low, 
 void check_fits(const Universe& universe, const Scene& scene) {
   check(scene);
   if (scene.lattice.lps_from_voxel != universe.lps_from_voxel)
-    throw InvalidInput(scene.source + ": the scan's voxels are not the universe's: resample it first");
+    throw InvalidInput(scene.source + ": the scan's voxels are not the universe's: resample the scan first");
   if (glm::any(glm::greaterThan(scene.lattice.dims, glm::ivec3(universe.side()))))
     throw InvalidInput(scene.source + ": the scan is larger than the universe of " +
                        std::to_string(universe.side()) + " voxels a side");

@@ -9,9 +9,9 @@
 
 namespace octotomy::voxel {
 
-/// A row of a slice as bits indexed by corner. Bit i of `ahead` is the voxel after corner i of the word, bit
-/// i of `behind` the voxel before it. Rows outside the universe are empty. A row has one corner more than
-/// voxels, which may need a further word.
+/// A row of a slice as bits indexed by corner. Bit i of `ahead` is the voxel after corner i of the word; bit
+/// i of `behind` is the voxel before that corner. Rows outside the universe are empty. A row has one more
+/// corner than it has voxels; the last corner may need a further word.
 struct RowBits {
   const std::uint64_t* words = nullptr;
   int count = 0;

@@ -10,8 +10,9 @@
 
 namespace octotomy::voxel {
 
-/// Trilinear samples and differences of a grey octree, in its steps, at positions in voxels. Caches those of the
-/// last cell, because a ray takes several steps in it. Refers to the octree. For one thread.
+/// Trilinear samples and differences of a grey octree, in its steps, at positions in voxels. Caches the
+/// corners of the last cell, because a ray takes several steps in one cell. Refers to the octree. For one
+/// thread.
 class GreyCell {
  public:
   explicit GreyCell(const GreyOctree& grey) : grey_(grey) {}
@@ -45,7 +46,8 @@ class GreyCell {
     for (std::size_t corner = 0; corner < 8; ++corner) corners_[corner] = grey_.sample(cell + offset(corner));
   }
 
-  /// The difference at a corner. Along every axis one of its two neighbours is another corner.
+  /// The difference at a corner. Along every axis one of the corner's two neighbours is another corner of the
+  /// cell.
   glm::dvec3 difference(std::size_t corner) const {
     glm::dvec3 falling;
     for (int axis = 0; axis < 3; ++axis) {

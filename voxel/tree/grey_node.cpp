@@ -77,8 +77,8 @@ GreyNode::GreyNode(const GreyOctree& grey, Window16 window, const glm::ivec3& or
       origin_(origin),
       scan_(scan),
       status_(window_status(range_of_node(grey, origin, scan.side_log2()), window.low, window.high)) {
-  // If the window excludes the background, the range alone decides, because voxels beyond the scan are not in
-  // the window.
+  // If the window excludes the background, it excludes all voxels beyond the scan, so the range alone
+  // decides.
   if (status_ == Status::Empty || !grey.window_meets_background(window.low, window.high)) return;
   const Status scanned = scan.status();
   if (scanned != Status::Full) status_ = scanned;

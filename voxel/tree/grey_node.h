@@ -10,7 +10,7 @@
 namespace octotomy::voxel {
 
 /// A node of the thesis's min-max octree (3.3.2), seen through a window. Full if all its samples belong to
-/// the scan and lie in the window; Empty if their range misses the window or none of them belongs to the
+/// the scan and lie in the window; Empty if the samples' range misses the window or no sample belongs to the
 /// scan; otherwise Partial. Refers to its grey octree, which must outlive it.
 class GreyNode {
  public:

@@ -148,7 +148,7 @@ GreyOctree grey_octree_of_bricks(const Universe& universe, std::int16_t backgrou
                                  const std::function<void(std::size_t number, GreyBrick& brick)>& fill,
                                  std::optional<Octree> scan, double step) {
   if (scan && !(scan->universe() == universe))
-    throw InvalidInput("the scan's voxels are of another universe than its bricks");
+    throw InvalidInput("the scan's voxels and the bricks lie in different universes");
   auto storage = std::make_shared<GreyOctree::Storage>(universe, background, blocks.size());
   storage->step = step;
   GreyOctree::Level& bottom = storage->bottom();
@@ -175,8 +175,8 @@ GreyOctree grey_octree_of_bricks(const Universe& universe, std::int16_t backgrou
 
 namespace {
 
-// The box of the samples that differ from the background. add() widens it by a block of the given height; 1
-// is a leaf and 0 a voxel.
+// The bounding box of the samples that differ from the background. add() extends the box by a block of the
+// given height; height 1 is a leaf and height 0 a voxel.
 class BoxOfSamples {
  public:
   explicit BoxOfSamples(const GreyOctree& grey) : grey_(grey) {}

@@ -20,8 +20,8 @@
 
 namespace octotomy::voxel {
 
-/// Smallest and largest sample of a block. Has no default values, so that a brick's memory is first written
-/// by the thread that fills it.
+/// Smallest and largest sample of a block. Has no default values, because the thread that fills a brick must
+/// be the first to write to its memory.
 struct MinMax {
   std::int16_t low;
   std::int16_t high;
@@ -75,15 +75,15 @@ class GreyOctree {
     return low <= background() && background() <= high;
   }
 
-  /// Range of block number `block` of the given height, 2 and up; blocks of a height form a grid of
-  /// universe side / 4^height, rounded up, along each axis. Precondition: within that grid.
+  /// Range of the samples of block number `block` of the given height, 2 and up. Along each axis there are
+  /// (universe side / 4^height) blocks, rounded up. Precondition: the block is one of them.
   const MinMax& range(int height, const glm::ivec3& block) const {
     assert(height >= 2 && static_cast<std::size_t>(height) < storage_->levels.size() + 2);
     const Level& level = storage_->levels[static_cast<std::size_t>(height - 2)];
     return level.ranges[level.index(block)];
   }
-  /// Samples of block number `block` of height 2. Blocks of one value may share a brick. Precondition: within
-  /// the grid.
+  /// Samples of block number `block` of height 2. Blocks of a single value may share a brick. Precondition:
+  /// as range().
   const GreyBrick& brick(const glm::ivec3& block) const {
     return storage_->bricks[storage_->brick_of_block[storage_->levels.front().index(block)]];
   }
@@ -116,7 +116,7 @@ class GreyOctree {
     }
   };
   struct Storage {
-    /// Brick 0 holds the background, as do all blocks; room for `brick_count` others.
+    /// All blocks refer to brick 0, which holds the background. Reserves room for `brick_count` more bricks.
     Storage(const Universe& universe, std::int16_t background, std::size_t brick_count);
     Level& bottom() { return levels.front(); }
     /// Adds the levels above the bottom one.
@@ -127,7 +127,7 @@ class GreyOctree {
     double step = 1.0;
     Octree scan = Octree::empty({});
     std::vector<Level> levels;                  ///< heights 2, 3, ... up to the root's
-    std::vector<std::uint32_t> brick_of_block;  ///< brick 0 is all background
+    std::vector<std::uint32_t> brick_of_block;  ///< number of each block's brick; brick 0 is all background
     /// May have gaps. An unused brick is never written, so it takes memory only where it shares a page with a
     /// used one.
     std::vector<GreyBrick, LargeAllocator<GreyBrick>> bricks;
@@ -152,17 +152,16 @@ double grey_step(const Scene& scene);
 /// outside the scene's bounds, or whose sample would depend on the scene's padding, become `background`, in
 /// the scan's unit, and are not part of scan(), so no window contains them. Throws Stopped. Parallel; same
 /// bits on any thread count. GreyOctreeBuild (grey_octree_build.h) builds it while the scan is being read.
-/// Memory: the samples within the scan's bounds plus three per cent, without blocks of 16 x 16 x 16 voxels of
-/// a single value, such as air beside a head.
+/// Memory: the samples within the scan's bounds plus three per cent. Blocks of 16 x 16 x 16 voxels of a
+/// single value, such as air beside a head, take almost none.
 GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int16_t background = beyond_scan,
                           const Progress& progress = {});
 
 /// The grey octree with samples in the blocks of height 2 numbered `blocks` and the background elsewhere.
-/// `fill` sets the samples of brick `number`, which is that of blocks[number]; it is called once per brick,
-/// from several threads. Ranges are computed here. Samples beyond a universe of less than 16 voxels a side
-/// must be the background. `scan` contains the voxels whose samples belong to the scan; default: scan_box().
-/// Throws std::invalid_argument if a block is outside the universe or occurs twice, or `scan` has another
-/// universe.
+/// `fill` sets the samples of the brick of blocks[number]; it is called once per brick, from several threads.
+/// Ranges are computed here. Samples beyond a universe of less than 16 voxels a side must be the background.
+/// `scan` contains the voxels whose samples belong to the scan; default: scan_box(). Throws
+/// std::invalid_argument if a block is outside the universe or occurs twice, or `scan` has another universe.
 GreyOctree grey_octree_of_bricks(const Universe& universe, std::int16_t background,
                                  std::span<const glm::ivec3> blocks,
                                  const std::function<void(std::size_t number, GreyBrick& brick)>& fill,

@@ -22,9 +22,10 @@
 #include "voxel/tree/octree_node.h"
 #include "voxel/tree/scan_rows.h"
 
-// Passes: 1 find the blocks that the scan reaches; 2 fill their bricks, each with the ranges of its leaves
-// and the block of its voxels that lie in the scan, a row of blocks along x at a time, as soon as the slices
-// that it reads are final; 3 join ranges level by level up to the root, and the blocks to the scan's octree.
+// Passes: 1 find the blocks that the scan reaches; 2 fill the blocks' bricks, the ranges of their leaves and
+// the octree blocks of their voxels that lie in the scan, one row of blocks along x at a time, as soon as all
+// slices that the row reads are final; 3 join the ranges level by level up to the root, and the octree blocks
+// to the scan's octree.
 //
 // Memory dominates the time: mapping new pages takes longer than writing to them. So bricks of a single value
 // are shared within a layer, and the other bricks of a row are contiguous. Samples that need no resampling
@@ -52,8 +53,8 @@ std::pair<glm::ivec3, glm::ivec3> reach(const Universe& universe, const Lattice&
 
 using LeafRanges = std::array<MinMax, 64>;
 
-// Largest number of blocks along x that are copied at once: their 256 rows of 512 samples stay in a cache of
-// 256 KiB until they are copied.
+// Largest number of blocks along x in a run: its 256 rows of 512 samples stay in a cache of 256 KiB from the
+// computation of the ranges to the copy.
 constexpr std::size_t longest_run = 32;
 
 // Widens the ranges of columns by a row of samples.
@@ -71,7 +72,7 @@ OCTOTOMY_VECTOR_CLONES void widen(const std::int16_t* samples, std::size_t width
 void find_ranges(const std::int16_t* first, const RowSteps& steps, std::size_t count, LeafRanges* ranges) {
   const std::size_t width = 16 * count;
   for (std::size_t z = 0; z < 16; z += 4) {
-    // First per column; then four columns are joined to a leaf.
+    // First the ranges of single columns; then four columns are joined to a leaf.
     std::array<std::array<std::int16_t, 16 * longest_run>, 4> low, high;
     for (std::size_t slice = z; slice < z + 4; ++slice)
       for (std::size_t y = 0; y < 16; ++y) {
@@ -139,7 +140,7 @@ class GreyOctreeBuild::Work {
     try {
       tasks_.wait();
     } catch (...) {
-      // The octree is no longer wanted, so its error is dropped.
+      // The octree is discarded, so its error is dropped.
     }
   }
 
@@ -187,10 +188,10 @@ class GreyOctreeBuild::Work {
   std::shared_ptr<GreyOctree::Storage> storage_;
   std::vector<Block> scan_;  // per block, its voxels that lie in the scan
   std::vector<Shared> shared_;
-  std::vector<std::pair<int, int>> layers_;  // layers not begun: number of slices that each reads, and z; the
-                                             // next one last
+  std::vector<std::pair<int, int>> layers_;  // layers not begun, the next one last: number of slices that the
+                                             // layer reads, and its z
   std::atomic<std::size_t> brick_count_ = 0;
-  tbb::isolated_task_group tasks_;  // the last member: the others outlive them
+  tbb::isolated_task_group tasks_;  // the last member, so that the others outlive the tasks
 };
 
 // A row of blocks along x. Its bricks are contiguous, in a range reserved for the row.
@@ -289,7 +290,7 @@ class GreyOctreeBuild::Work::Row {
     const MinMax range = bottom.ranges[index] = joined(ranges);
     std::uint32_t& number = storage_.brick_of_block[index];
     if (range.low == range.high) {
-      if (range.low == storage_.background) return nullptr;  // brick 0 stands for it
+      if (range.low == storage_.background) return nullptr;  // brick 0 is the block's brick
       Shared& shared = work_.shared_[static_cast<std::size_t>(z_)];
       const std::lock_guard lock(shared.mutex);
       const auto [known, is_new] = shared.bricks.try_emplace(range.low, next_);

@@ -8,13 +8,13 @@
 
 namespace octotomy::voxel {
 
-/// Builds grey_octree_of() of a scene while its slices become final. Other threads build the parts that the
-/// final slices determine; the result has the same bits. Refers to the scene until finished() or the
-/// destructor has returned. Both wait for the other threads without running unrelated tasks.
+/// Builds the result of grey_octree_of() while the scene's slices are being read. Other threads build the
+/// parts that the final slices determine; the result has the same bits. Refers to the scene until finished()
+/// or the destructor has returned. Both wait for the other threads without running unrelated tasks.
 class GreyOctreeBuild {
  public:
-  /// Preconditions: the scene passes check(); its samples have their size, but need no values yet; `step` is
-  /// their grey_step(), which is 1 for whole numbers of 16 bits.
+  /// Preconditions: the scene passes check(); its vector of samples has its final size, but values may still
+  /// be missing; `step` is the scene's grey_step(), which is 1 for whole numbers of 16 bits.
   GreyOctreeBuild(const Universe& universe, const Scene& scene, std::int16_t background = beyond_scan,
                   double step = 1.0);
   ~GreyOctreeBuild();

@@ -9,10 +9,9 @@
 
 namespace octotomy::voxel {
 
-/// A bound of the samples on which trilinear samples in a cube of cells can depend, in cubes of 4, 16, 64, ...
-/// cells a side: the highest one of the leaves that the cells reach. A cell lies between the centres of eight
-/// voxels, so the cells of a leaf reach into the next leaf along each axis. Lets rays skip cubes that cannot
-/// matter.
+/// For cubes of 4, 16, 64, ... cells a side, an upper bound of the trilinear samples in the cube: the highest
+/// sample of the leaves that the cube's cells reach. A cell lies between the centres of eight voxels, so the
+/// cells of a leaf reach into the next leaf along each axis. Rays skip cubes whose bound is too low.
 class HighestSamples {
  public:
   /// Cost: one pass over the ranges of the leaves. Parallel.

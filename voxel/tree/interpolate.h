@@ -27,8 +27,8 @@ struct Margin {
 };
 Margin margin(Interpolation interpolation);
 
-/// Bounds of an interpolated value from the range of its samples. They equal that range except for Cubic,
-/// where the magnitudes of the weights sum to at most 5/4 an axis.
+/// Bounds of an interpolated value from the range of its samples. The bounds equal this range except for
+/// Cubic, whose weights may be negative: their magnitudes sum to at most 5/4 along each axis.
 struct ValueRange {
   double low, high;
 };
@@ -37,9 +37,9 @@ ValueRange value_range(const MinMax& samples, Interpolation interpolation);
 /// The value at a position of the octree's universe, in voxel indices; samples beyond it are the background.
 double interpolate(const GreyOctree& grey, const glm::dvec3& p_voxel, Interpolation interpolation);
 
-/// The trilinear value at a position, as above, from the scan's own samples alone. Samples around the
-/// position that do not belong to the scan are left out, and the other weights are scaled to sum to 1.
-/// Returns the background if the nearest voxel does not belong to the scan.
+/// The trilinear value at a position, in voxel indices of the octree's universe, from the scan's own samples
+/// alone. Samples around the position that do not belong to the scan are left out, and the other weights are
+/// scaled to sum to 1. Returns the background if the nearest voxel does not belong to the scan.
 double interpolate_scan(const GreyOctree& grey, const glm::dvec3& p_voxel);
 
 }  // namespace octotomy::voxel

@@ -21,13 +21,13 @@ class LeafWords {
   /// Reads the leaves of the box first..last, both included; the others of the array are empty. Precondition:
   /// at most `side` leaves along each axis.
   void read(const Octree& octree, const glm::ivec3& first, const glm::ivec3& last);
-  /// Likewise for the voxels whose sample lies in the window. Outside the universe samples are the
+  /// Reads the leaves of the voxels whose sample lies in the window. Samples outside the universe are the
   /// background.
   void read(const GreyOctree& grey, Window16 window, const glm::ivec3& first, const glm::ivec3& last);
 
-  /// Writes the words of the 4 x 4 x 4 leaves, x fastest, that begin `shift` voxels, 0..3 an axis, into the
-  /// box. Precondition: the box that was read has 5 leaves along each axis with a shift and 4 along the
-  /// others.
+  /// Writes the words of 4 x 4 x 4 leaves, x fastest, of which the first begins `shift` voxels into the box;
+  /// `shift` is 0..3 along each axis. Precondition: the box that was read has 5 leaves along axes with a
+  /// shift above 0, and 4 along the others.
   void shifted(const glm::ivec3& shift, std::uint64_t* words) const;
 
   std::uint64_t word(int x, int y, int z) const {

@@ -22,8 +22,8 @@ inline void check_depth(int depth) {
 
 /// Builds an octree from the statuses of its nodes in preorder. `source.open(level)` returns the next node's
 /// status. `source.close(homogeneous)` is called after the children of a Partial node; `homogeneous` means
-/// that all are Full or all Empty. A source may reject that by throwing; otherwise the node is condensed.
-/// Precondition: no node at the level of voxels is Partial.
+/// that all are Full or all Empty. A source may reject homogeneous children by throwing; otherwise they are
+/// condensed into their parent. Precondition: no node at the level of voxels is Partial.
 template <typename Source>
 class LogicalBuild {
  public:

@@ -38,7 +38,7 @@ constexpr std::uint32_t last_version = 3;
 constexpr std::size_t header_bytes = 32;
 constexpr std::size_t section_header_bytes = 16;
 constexpr std::size_t largest_raw = std::size_t{1} << 20;
-/// A zstd block of 2^17 equal bytes takes 4 stored bytes, so no frame expands further.
+/// Largest ratio of raw to stored bytes: a zstd block of 2^17 equal bytes takes 4 stored bytes.
 constexpr std::size_t largest_ratio = std::size_t{1} << 15;
 constexpr std::size_t bricks_per_section = 64;
 constexpr std::size_t samples_per_brick = 4096;
@@ -136,7 +136,7 @@ Bytes brick_bytes(const GreyOctree& grey, std::span<const glm::ivec3> blocks) {
   return raw;
 }
 
-// The inverse for brick `number` of a section.
+// The inverse of brick_bytes() for brick `number` of a section.
 void read_brick(const Bytes& raw, std::size_t number, std::int16_t background, GreyBrick& brick) {
   const std::uint8_t* low = raw.data() + number * samples_per_brick;
   const std::uint8_t* high = low + raw.size() / 2;
@@ -325,7 +325,7 @@ class Reader {
       if (!damage[number].empty()) refuse_damaged(named(number) + ", " + damage[number]);
   }
 
-  // Checks and decompresses a section. Returns the reason if it is damaged.
+  // Checks and decompresses a section. If the section is damaged, returns the reason.
   std::optional<std::string> unpack(std::uint32_t number, Section& section) const {
     const std::uint8_t* start = bytes_.data() + section.start;
     if (get<std::uint32_t>(start + 4) != section_checksum(number, start, section.stored.size()))

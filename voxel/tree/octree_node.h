@@ -44,7 +44,8 @@ constexpr int root_height(int depth) {
 }
 
 inline constexpr std::uint64_t all_children = ~std::uint64_t{0};
-/// The 2 x 2 x 2 children of a logical octant at (0, 0, 0); shift by child_index(2x, 2y, 2z) for the others.
+/// Mask of the 2 x 2 x 2 children of the logical octant (0, 0, 0). Shifted left by child_index(2x, 2y, 2z),
+/// the mask of octant (x, y, z).
 inline constexpr std::uint64_t octant_children = 0x0000000000330033ULL;
 
 /// The children of a root block that lie inside a universe of 2^depth voxels a side; the others stay Empty.
@@ -55,7 +56,7 @@ struct Node {
   std::int32_t height = 2;
   std::uint64_t voxel_count = 0;  ///< voxels of the object inside this block
   std::uint64_t full = 0;         ///< children that are Full
-  std::uint64_t partial = 0;      ///< children that have a payload, which are stored in ascending child
+  std::uint64_t partial = 0;      ///< children that are Partial; their payloads are stored in ascending child
                                   ///< number
 
   /// Index of a child in the payload. Precondition: its bit of `partial` is set.
@@ -82,7 +83,8 @@ class BlockRef {
 
   bool is_empty() const { return bits_ == 0; }
   bool is_full() const { return bits_ == 1; }
-  // A child slot in one word, as node addresses are never 0 or 1. NOLINTNEXTLINE(performance-no-int-to-ptr)
+  // One word holds every case, because node addresses are never 0 or 1.
+  // NOLINTNEXTLINE(performance-no-int-to-ptr)
   const Node* node() const { return bits_ > 1 ? reinterpret_cast<const Node*>(bits_) : nullptr; }
   Status status() const { return is_empty() ? Status::Empty : is_full() ? Status::Full : Status::Partial; }
   /// Child of a block of height 3 and up; of a homogeneous block, the block itself.
@@ -147,7 +149,8 @@ class Block {
 };
 
 /// The block of height 2 whose leaves in `partial` have the given words, in ascending child number. Words
-/// that are all ones or zero are condensed, and so is the block.
+/// that are all ones or all zeros are condensed to Full or Empty leaves, and so is the block if all its
+/// leaves are alike.
 Block make_leaf_block(std::uint64_t full, std::uint64_t partial, const std::uint64_t* words);
 
 /// A block of height 3 and up. `children` has one block per bit of `undecided`, in ascending child number;

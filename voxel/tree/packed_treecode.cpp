@@ -19,7 +19,8 @@ constexpr std::uint8_t byte_of(std::uint64_t word, int number) {
   return static_cast<std::uint8_t>(word >> (8 * number));
 }
 
-// Two masks of eight bits: bytes that are 0xff, and bytes that are neither 0xff nor 0.
+// For the eight bytes of a 64-bit word, a bit each: whether the byte is 0xff, and whether it is neither 0xff
+// nor 0.
 struct Eight {
   std::uint8_t full = 0;
   std::uint8_t partial = 0;

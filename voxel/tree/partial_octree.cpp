@@ -44,7 +44,7 @@ class LevelCounter {
       if (within == all_children && !count(2 * height - 1, masks, mask)) continue;
       for (std::uint64_t rest = mask & within; rest != 0; rest &= rest - 1) {
         const int child = std::countr_zero(rest);
-        // Likewise if the universe is a single leaf.
+        // If the universe is a single leaf, the leaf is the root and not counted.
         if (within != 1 && !count(2 * height - 2, masks, rest & (~rest + 1))) continue;
         if (height > 2)
           count_block(inside.child(child), touching.child(child), height - 1, all_children);

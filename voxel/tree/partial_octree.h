@@ -11,7 +11,8 @@
 namespace octotomy::voxel {
 
 /// A solid as voxels, with the share of each voxel that it fills. Two octrees contain the voxels wholly
-/// inside (D1) and the voxels that the solid touches (D2). The voxels between them are its boundary.
+/// inside (D1) and the voxels that the solid touches (D2). The voxels touched but not wholly inside are the
+/// solid's boundary voxels.
 struct PartialOctree {
   /// The fraction of a wholly filled voxel.
   static constexpr std::uint16_t whole = 65535;
@@ -23,8 +24,8 @@ struct PartialOctree {
   std::vector<std::uint16_t> fractions;
 };
 
-/// Throws std::invalid_argument if the universes differ, a voxel is inside and not touching, or the number
-/// of fractions is not that of the voxels between the two.
+/// Throws std::invalid_argument if the universes differ, a voxel is inside and not touching, or the number of
+/// fractions is not the number of boundary voxels.
 void check(const PartialOctree& partial);
 
 /// Levels 1..n as the thesis counts its digital sphere (table 3.1). A node is Full only if it lies wholly
@@ -40,11 +41,10 @@ void for_each_boundary_voxel(
 /// The voxels at least half filled (D4). Precondition: passes check().
 Octree at_least_half(const PartialOctree& partial);
 
-/// The shares of voxels as samples from 0 to 1, in steps of 1 / 32767: the solid is about the window from
-/// half_share up, whose voxels are those of at_least_half(), and whose surface, interpolated between centres,
-/// is the partial-volume surface (thesis 5.2.2.2). All of the universe counts as scanned. Precondition:
-/// passes check(). Parallel. Memory: two bytes for each voxel of the blocks of 16 x 16 x 16 that the solid
-/// touches.
+/// The shares of voxels as samples from 0 to 1, in steps of 1 / 32767: the window from half_share up has the
+/// voxels of at_least_half(). Its surface, interpolated between voxel centres, is the partial-volume surface
+/// (thesis 5.2.2.2). All of the universe counts as scanned. Precondition: passes check(). Parallel. Memory:
+/// two bytes for each voxel of the blocks of 16 x 16 x 16 that the solid touches.
 inline constexpr double half_share = 0.5;
 GreyOctree share_samples(const PartialOctree& partial);
 

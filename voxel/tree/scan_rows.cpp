@@ -170,7 +170,7 @@ std::uint16_t ScanRows::interpolate(const Sample* samples, const glm::ivec3& fir
   return static_cast<std::uint16_t>(inside);
 }
 
-// As interpolate(), with the same bits, but a row at a time.
+// Returns the same bits as interpolate(), but computes a whole row at a time.
 std::uint16_t ScanRows::interpolate_along(const std::int16_t* samples, const glm::ivec3& first,
                                           std::int16_t* row) const {
   const AxisPosition& y = along_[1][static_cast<std::size_t>(first.y)];

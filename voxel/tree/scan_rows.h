@@ -18,8 +18,8 @@ struct RowSteps {
 };
 
 /// A scan's samples at the voxel centres of a universe, read along the universe's rows, 16 voxels at a time.
-/// They are the scan's own if the lattices coincide, otherwise trilinearly interpolated; in steps of `step`,
-/// rounded to the nearest, halves upward. Refers to the scene, which must outlive it.
+/// Samples are the scan's own if the lattices coincide, otherwise trilinearly interpolated. They are rounded
+/// to the nearest whole number of steps, halves upward. Refers to the scene, which must outlive it.
 class ScanRows {
  public:
   static constexpr int length = 16;
@@ -27,12 +27,12 @@ class ScanRows {
   /// padding, have the sample `background` and do not lie in the scan.
   ScanRows(const Universe& universe, const Scene& scene, std::int16_t background, double step);
 
-  /// Number of the scan's slices, from the first on, that contain all samples on which the universe's slices
-  /// first..last depend.
+  /// The number n such that the universe's slices first..last depend only on the scan's first n slices.
   int slices_read(int first, int last) const;
 
-  /// The sample of the first of the 16 x 16 x 16 voxels from `origin` on, if all of them are samples of the
-  /// scan and the scan has no padding; otherwise null. steps() leads to the other samples.
+  /// A pointer to the first sample of the block of 16 x 16 x 16 voxels at `origin`, if every voxel of the
+  /// block is a sample of the scan and the scan has no padding; otherwise null. steps() leads to the other
+  /// samples.
   const std::int16_t* own_samples(const glm::ivec3& origin) const;
   RowSteps steps() const;
 
@@ -75,7 +75,7 @@ class ScanRows {
   struct {
     std::vector<std::int32_t> low, high;
     std::vector<double> share;
-  } in_row_;  ///< the places along x, one array per member
+  } in_row_;  ///< along_[0] as one array per member
 };
 
 }  // namespace octotomy::voxel

@@ -7,8 +7,8 @@
 namespace octotomy::voxel {
 namespace {
 
-// Sets `count` bits of a row from voxel x on. Precondition: runs of blocks are 4^k long and aligned to their
-// length.
+// Sets `count` bits of a row from voxel x on. Precondition: `count` is a power of 4, and x a multiple of
+// `count`.
 void set_run(std::uint64_t* row, int x, int count) {
   assert(x >= 0 && count > 0 && x % std::min(count, 64) == 0);
   if (count >= 64) {

@@ -187,7 +187,7 @@ void set_row(SliceBits& slice, int y, int first, int last) {
 bool next_run(const SliceBits& slice, int y, int from, int& first, int& last) {
   assert(y >= 0 && y < slice.side && from >= 0 && from <= slice.side);
   const std::uint64_t* row = slice.row(y);
-  // The first voxel from x on that is in the object, or outside it if `flip` is all ones.
+  // The first voxel from x on that is in the object; with `flip` all ones, the first outside the object.
   const auto find = [&](int x, std::uint64_t flip) {
     for (int word = x / 64; word < slice.words_per_row; ++word) {
       std::uint64_t bits = row[word] ^ flip;

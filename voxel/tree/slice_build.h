@@ -16,9 +16,9 @@ std::vector<bool> occupied_slices(const Octree& octree);
 /// such slice. Memory: one slice.
 void for_each_slice(const Octree& octree, const std::function<void(int z, const SliceBits& slice)>& visit);
 
-/// The octree of a universe's slices. `draw` is called once per slice in ascending z. It sets bits in an
-/// empty slice of the universe's side and returns whether it set any.
-/// Memory: 17 slices of side^2 / 8 bytes, and the octree's.
+/// The octree of a universe's slices. `draw` is called once per slice in ascending z. `draw` receives an
+/// empty slice of the universe's side, sets bits in the slice and returns whether it set any. Memory: 17
+/// slices of side^2 / 8 bytes, and the octree's.
 Octree octree_of_slices(const Universe& universe, const std::function<bool(int z, SliceBits& slice)>& draw);
 
 /// Sets the voxels first..last of a row. Precondition: within the slice.

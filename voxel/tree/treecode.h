@@ -11,7 +11,7 @@ namespace octotomy::voxel {
 /// The octree as treecode (thesis 3.4.3, after Oliver): nodes in preorder, E for Empty, F for Full, P for
 /// Partial followed by its eight children, x + 2y + 4z, in parentheses:
 /// `P(EP(EEEEEEEF)FP(EEEEFEEE)EEP(EFFEEFEE)E)`. The universe's depth is not part of it.
-/// Cost: a character a node, two more a Partial node.
+/// Length: one character for each node, and two more for each Partial node.
 std::string treecode(const Octree& octree);
 
 /// The inverse. Spaces and line ends are allowed between nodes. Throws std::invalid_argument with the

@@ -15,8 +15,8 @@ struct VoxelFace {
 };
 
 /// The faces around a set of voxels, including those of cavities, ordered by leaves of 4^3 voxels, x fastest;
-/// within a leaf by axis, -1 before +1. Cost: one look-up per block of 16^3 voxels, and seven per leaf that
-/// is not empty. Parallel; same order on any thread count.
+/// within a leaf by axis; on each axis side -1 before +1. Cost: one look-up per block of 16^3 voxels, and
+/// seven per leaf that is not empty. Parallel; same order on any thread count.
 std::vector<VoxelFace> voxel_boundary(const Octree& octree);
 
 }  // namespace octotomy::voxel

@@ -43,15 +43,15 @@ EdgeLetters edge_letters(const View& view);
 struct Annotation {
   std::string title;                   ///< top left
   bool sides = true;                   ///< letters of the patient's sides at the picture's four edges
-  std::optional<EdgeLetters> letters;  ///< replace the view's, for a picture on a curved sheet
+  std::optional<EdgeLetters> letters;  ///< replace the view's letters, for a picture on a curved sheet
   bool scale = true;                   ///< a bar of a round length, bottom right; not drawn in perspective
   std::vector<LegendEntry> legend;     ///< bottom left
   std::optional<ColourBar> bar;        ///< at the right edge
 };
 
-/// Writes an annotation on the pixels of a picture of that plane, dark on light pictures and light on dark
-/// ones. Letters are a fiftieth of the narrower side high, and at least 7 pixels. Throws
-/// std::invalid_argument if the number of pixels is not the plane's, or a bar has no colours or no range.
+/// Writes an annotation into a picture on `plane`: dark on a light picture, light on a dark one. Letters are
+/// a fiftieth of the narrower side high, and at least 7 pixels. Throws std::invalid_argument if the number of
+/// pixels is not the plane's, or a bar has no colours or no range.
 void annotate(std::vector<std::uint8_t>& rgb, const ImagePlane& plane, const Annotation& annotation);
 
 }  // namespace octotomy::voxel

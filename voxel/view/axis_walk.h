@@ -16,8 +16,8 @@
 
 namespace octotomy::voxel {
 
-/// For column i + side j (as in ColumnMap), the number of voxels before the object's first; -1: an empty
-/// column.
+/// Entry i + side j (as in ColumnMap) is the number of voxels before the object's first voxel in column (i,
+/// j); -1: an empty column.
 using ColumnDepths = std::vector<std::int32_t>;
 
 class AxisFrame {
@@ -32,7 +32,8 @@ class AxisFrame {
   std::size_t column(int p, int q) const {
     return static_cast<std::size_t>(p) + static_cast<std::size_t>(q) * static_cast<std::size_t>(side_);
   }
-  /// The octree child x + 2y + 4z in front of or behind quadtree child p + 2q.
+  /// The number x + 2y + 4z of the front or, with `behind`, the back octree child that projects onto quadtree
+  /// child p + 2q.
   int child(int quadtree_child, bool behind) const {
     const bool far_half = behind != axes_.reversed[2];
     return ((quadtree_child & 1) << axes_.axis[0]) | ((quadtree_child >> 1) << axes_.axis[1]) |

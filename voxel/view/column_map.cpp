@@ -13,7 +13,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// The columns of the map that a row or column of pixels lies between, along one axis.
+/// The map's columns between which a row or column of pixels lies, along one axis.
 struct AxisColumns {
   int nearest = -1;  ///< -1: outside
   int low = 0, high = 0;

@@ -14,7 +14,7 @@
 namespace octotomy::voxel {
 
 /// The visible surface in every column of voxels along one of the universe's axes: the thesis's quadtree
-/// image at full resolution. A picture of any pixel size samples it.
+/// image at full resolution. Pictures of any pixel size are sampled from this map.
 struct ColumnMap {
   int side = 0;               ///< columns along each of the image's axes
   glm::dvec2 spacing_mm{1};   ///< between columns, along right and up
@@ -28,8 +28,8 @@ struct ColumnMap {
                    static_cast<std::size_t>(i)];
   }
   /// The visible surface at a position between columns; integers are the columns' centres. The object is the
-  /// nearest column's. Depth is bilinear among the columns that continue its surface, so that it neither
-  /// steps on smooth surfaces nor smears over breaks. Outside the map: background.
+  /// nearest column's. Depth is bilinear between the columns that continue the nearest column's surface, so a
+  /// smooth surface has no steps and a break is not smeared. Outside the map: background.
   Seen seen(const glm::dvec2& column) const;
 };
 
@@ -46,8 +46,8 @@ class ColumnSurface {
   /// The surface in a column whose first voxel lies `before` voxels behind the universe's front face. With
   /// DrawnObject::grey its depth is the crossing of the threshold between the centres of the last voxel
   /// outside and the first inside (thesis 5.2.2.2). Departure from the thesis: uses the voxel before the
-  /// first, not the node before it. If these samples do not cross the threshold, the object was cut there,
-  /// and the depth is that of the voxel's face.
+  /// first voxel inside, not the node before it. If these samples do not cross the threshold, the object was
+  /// cut there, and the depth is that of the voxel's face.
   Seen seen(const glm::ivec2& column, int before) const;
 
  private:

@@ -20,7 +20,8 @@
 namespace octotomy::voxel {
 namespace {
 
-/// A ray ends below this share: it changes 8-bit sRGB by less than half a step, even at black.
+/// A ray ends when a smaller share than this of the light from behind would come through: it changes 8-bit
+/// sRGB by less than half a step, even at black.
 constexpr float unseen_share = 1.0f / 1024.0f;
 
 /// The cubes of cells that may be visible. A cell lies between the centres of eight voxels.
@@ -218,8 +219,8 @@ class March {
     return nullptr;
   }
 
-  /// The negative gradient, in steps of the samples per millimetre: the inverse transpose turns half the
-  /// differences over two voxels into it.
+  /// The negative gradient in LPS, in steps of the samples per millimetre: half the differences over two
+  /// voxels, mapped by the inverse transpose of the voxels' axes.
   glm::dvec3 outward(GreyCell& samples, const glm::dvec3& p) const {
     return lps_from_normal_ * (0.5 * samples.outward(p));
   }

@@ -18,9 +18,10 @@ namespace octotomy::voxel {
 /// Departure from Levoy: one ramp of the gradient's length for all samples.
 struct GradientOpacity {
   double clear_per_mm = 0.0;   ///< samples that change by at most this much per mm are clear; 0 or more
-  double opaque_per_mm = 1.0;  ///< from this change per mm on, all of the extinction counts; above the other
+  double opaque_per_mm = 1.0;  ///< from this change per mm on, all of the extinction counts; above
+                               ///< clear_per_mm
 
-  double share(double slope_per_mm) const;  ///< of the extinction, 0..1
+  double share(double slope_per_mm) const;  ///< share of the extinction that counts, 0..1
 };
 /// Throws std::invalid_argument unless 0 <= clear_per_mm < opaque_per_mm, both finite.
 void check(const GradientOpacity& gradient);

@@ -28,7 +28,7 @@ struct Ancestors {
   std::array<Node, Universe::max_depth + 1> nodes;
 };
 
-/// Ignores that a quadtree node is painted.
+/// Does nothing when a quadtree node is painted.
 struct NoReads {
   void painted(int, int, int, int) {}
 };
@@ -101,9 +101,10 @@ class NodeTracer {
   Reads reads_;
 };
 
-/// Counts what interpolated depths read in addition (thesis 5.2.2.2, figure 5.7). The ray of a quadtree node that
-/// ends at a Full node needs the samples at the node's front and those of the node before it. The ray has both
-/// nodes. A node whose samples differ is opened, and the quadtree node is split with it.
+/// Counts the additional visits of interpolated depths (thesis 5.2.2.2, figure 5.7). The ray of a quadtree
+/// node that ends at a Full node needs the samples at that node's front and those of the node before it. Both
+/// nodes lie on the ray's path and cost no visit. A node whose samples differ is opened, and the quadtree
+/// node is split with it.
 class DepthReads {
  public:
   DepthReads(const GreyOctree& grey, Window16 window, const AxisFrame& frame, VisitCounter& counter)
@@ -136,8 +137,8 @@ class DepthReads {
     return {outer.node.child(number), outer.origin + (octant << (outer.node.side_log2() - 1))};
   }
 
-  /// The node of a level, or the larger node of equal samples that contains it. Passes the nodes below the one
-  /// that the ray has.
+  /// The node of a level, or the larger node of equal samples that contains it. Counts an indirect visit to
+  /// every node below the node on the ray's path.
   Place find(int level, int p, int q, int d) {
     Place place = root_;
     for (int at = 0; at < level && !is_even(place); ++at) {
@@ -222,7 +223,7 @@ class BeamTracer {
     NodePolygons::Polygon polygon;
   };
 
-  /// Traces a beam that meets no other nodes than these, front to back.
+  /// Traces a beam. `outer` holds all nodes that the beam meets, front to back.
   void split(const std::vector<Met>& outer, const glm::ivec2& corner_px, int side_px) {
     if (glm::any(glm::greaterThanEqual(corner_px, image_.size_px))) return;
     if (side_px == 1) {
@@ -242,8 +243,8 @@ class BeamTracer {
     for (int i = 0; i < 4; ++i) split(inner, corner_px + half * glm::ivec2(i & 1, i >> 1), half);
   }
 
-  /// Adds the parts of a node that the beam meets; opens a Partial node larger than the beam. Returns whether
-  /// a Full node across the whole beam hides everything behind.
+  /// Adds the parts of a node that the beam meets to `inner`; opens a Partial node larger than the beam.
+  /// Returns whether a Full node across the whole beam hides everything behind.
   bool collect(const Met& met, const glm::ivec2& corner_px, int side_px, std::vector<Met>& inner) {
     const auto where = polygons_.place(met.polygon, corner_px, side_px);
     if (where == NodePolygons::Containment::Outside) return false;
@@ -407,7 +408,7 @@ DepthImage quadtree_trace(const std::vector<DrawnObject>& objects, const ImagePl
       using Root = std::decay_t<decltype(root)>;
       using Counter = std::decay_t<decltype(counter)>;
       if (root.status() == Status::Empty) return;
-      // A count needs the visits of one beam from the root; pictures start one for each tile.
+      // Visits are counted for a single beam from the root; without a count, each tile has its own beam.
       constexpr int tile_px = 64;
       const int beam_px = visits != nullptr ? side_px : std::min(side_px, tile_px);
       const glm::ivec2 beams = (plane.size_px + beam_px - 1) / beam_px;

@@ -13,7 +13,7 @@
 namespace octotomy::voxel {
 
 /// Node tracing as in the thesis (4.5.2): quadtree rays step from node to node, split into four at Partial
-/// nodes, and find neighbours by walking down from the pivot in their ancestor array. The same map as
+/// nodes, and find neighbours by walking down from the pivot in their ancestor array. Returns the same map as
 /// node_trace(). The neighbour gets a direct visit, the nodes between pivot and neighbour indirect ones; the
 /// quadtree gets recursion level - pivot level - 1 indirect visits (A.3.1.2). Adds visits to `visits` if
 /// given. Precondition: as node_trace().
@@ -24,13 +24,13 @@ ColumnMap quadtree_trace(const std::vector<DrawnObject>& objects, const AxisView
 /// picture is traced as one square beam, which is split into four until a Full node covers it or no node is
 /// left in it; a beam of one pixel is the ray through the pixel's centre. A beam opens the Partial nodes that
 /// are larger than itself. Returns the same depths as front_to_back(). A visit is the opening of a node by a
-/// beam; adds them to `visits` if given. Precondition: all objects are built and of the plane's universe.
-/// Parallel over tiles of 64 x 64 pixels unless visits are counted.
+/// beam; adds the visits to `visits` if given. Precondition: all objects are built and of the plane's
+/// universe. Parallel over tiles of 64 x 64 pixels unless visits are counted.
 DepthImage quadtree_trace(const std::vector<DrawnObject>& objects, const ImagePlane& plane,
                           Visits* visits = nullptr);
 
-/// Adds the visits of one ray per pixel, through the pixel's centre, until it meets a Full node. They are
-/// counted like those of a ray of the deepest level in quadtree_trace().
+/// Adds the visits of one ray per pixel, through the pixel's centre, until it meets a Full node. Visits are
+/// counted as for a ray of the deepest level in quadtree_trace().
 void count_rays(const std::vector<DrawnObject>& objects, const ImagePlane& plane, Visits& visits);
 
 }  // namespace octotomy::voxel

@@ -52,7 +52,8 @@ std::optional<TakenSpan> taken_of(const Sight& sight, const Box& box) {
 }
 
 /// Bound on the distance along a cut's normal from the cut to a face between a kept and a removed voxel.
-/// Their centres lie on different sides, and no point of a voxel is farther from its centre than this.
+/// The two centres lie on different sides of the cut, and no point of a voxel is farther from its centre than
+/// this.
 double half_voxel_mm(const glm::dmat3& lps_from_voxel, const glm::dvec3& normal) {
   return 0.5 *
          (std::abs(glm::dot(lps_from_voxel[0], normal)) + std::abs(glm::dot(lps_from_voxel[1], normal)) +

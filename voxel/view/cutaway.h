@@ -15,7 +15,7 @@ namespace octotomy::voxel {
 using Cutaway = std::variant<HalfSpace, Box>;
 
 /// The part of a line of sight that a cut removes: its first and last depth, which may be infinite, and the
-/// outward normal of the face behind it.
+/// outward normal of the cut face behind this part.
 struct TakenSpan {
   double from_mm = 0.0;
   double until_mm = 0.0;
@@ -34,11 +34,11 @@ std::vector<DrawnObject> without(const std::vector<DrawnObject>& objects, const 
 
 /// Moves pixels from the voxel faces that a cut made onto the cut itself. The cut face is then flat, not
 /// stepped. A pixel shows a cut's face if its depth is a voxel's face and at most half a voxel's extent along
-/// the cut's normal away from the cut. No face between a kept and a removed voxel is farther. Faces seen at
-/// more than 76 degrees (break_mm() of depth_plane.h) stay, because there a pixel shows the voxels' sides. Returns the
-/// outward normals (right, up, look) of the moved pixels and zero elsewhere; empty without cuts.
-/// Precondition: the image is of objects of this universe, drawn without the parts that the cuts remove.
-/// Parallel over rows.
+/// the cut's normal away from the cut. No face between a kept and a removed voxel is farther from the cut.
+/// Faces seen at more than 76 degrees (break_mm() of depth_plane.h) stay, because there a pixel shows the
+/// voxels' sides. Returns the outward normals (right, up, look) of the moved pixels and zero elsewhere; empty
+/// without cuts. Precondition: the image is of objects of this universe, drawn without the parts that the
+/// cuts remove. Parallel over rows.
 std::vector<glm::vec3> flatten_cuts(DepthImage& image, const ImagePlane& plane, const Universe& universe,
                                     const std::vector<Cutaway>& cuts);
 

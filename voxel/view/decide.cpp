@@ -15,7 +15,8 @@
 #include "voxel/view/pixel_index.h"
 
 // For every ray: 1 take the parts that cuts remove; 2 step through the samples, past leaves in which
-// no place can meet the criterion; 3 count the beginnings of stretches; 4 halve the step in which the wanted one lies.
+// no place can meet the criterion; 3 count the stretches on which the criterion holds; 4 halve the step in
+// which the wanted stretch begins.
 
 namespace octotomy::voxel {
 namespace {
@@ -127,8 +128,8 @@ class DecidedRays {
     return true;
   }
 
-  /// The depth at which a ray leaves the leaf about it, if no place of the leaf can meet the criterion; at most
-  /// the given depth otherwise.
+  /// If no place of the leaf around the ray can meet the criterion, the depth at which the ray leaves the
+  /// leaf; otherwise at most the given depth.
   double dull_until_mm(const Ray& ray, double depth_mm) const {
     const glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor(ray.at(depth_mm))), 0, 4 * leaves_ - 1);
     if (dull_[leaf_number(cell >> 2)] == 0) return depth_mm;
@@ -175,9 +176,10 @@ class DecidedRays {
     return grey_.brick(leaf >> 2).leaf_range[static_cast<std::size_t>(number)];
   }
 
-  /// A change between two samples of a range is at most the range. The derivative takes two samples two steps
-  /// apart; the gradient has three differences of samples two voxels apart, each at least four steps. Changes
-  /// across the universe's border are no surfaces, so that samples beyond it do not matter.
+  /// Two samples differ by at most the width of their range. The derivative compares two samples two steps
+  /// apart. The gradient has three differences, each between samples that are two voxels, so at least four
+  /// steps, apart. A change across the universe's border is no surface, so samples beyond the border do not
+  /// matter.
   bool is_dull(const MinMax& range) const {
     if (decision_.by == Criterion::Range) return range.high < low_ || range.low > high_;
     const double most = static_cast<double>(range.high) - range.low;

@@ -27,7 +27,7 @@ struct Seen {
 /// bytewise.
 struct PixelAllocator : LargeAllocator<Seen> {
   template <typename Other>
-  struct rebind {  // NOLINT(readability-identifier-naming): allocators are asked for the name
+  struct rebind {  // NOLINT(readability-identifier-naming): the standard fixes this name
     using other = PixelAllocator;
   };
   using LargeAllocator<Seen>::construct;

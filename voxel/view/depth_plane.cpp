@@ -91,7 +91,7 @@ DepthPlane depth_plane(const DepthImage& image, const Scenery& scenery) {
       facts[number] = copy_row(image, y, row, lit);
       plane.lit[number] = lit;
     }
-    // Fills only what smoothing does not write: it writes the lit part.
+    // Fills only the pixels outside the lit part, because smoothing writes the lit part.
     for (Plane* const other : {&between, &plane.depth}) {
       std::fill(other->row(y) - margin, other->row(y) + lit.x, beyond_mm);
       std::fill(other->row(y) + lit.y, other->row(y) - margin + other->width, beyond_mm);
@@ -126,6 +126,6 @@ DepthPlane depth_plane(const DepthImage& image, const Scenery& scenery) {
     });
   }
   return plane;
-}  // NOLINT(clang-analyzer-cplusplus.NewDeleteLeaks): whoever takes the plane keeps it
+}  // NOLINT(clang-analyzer-cplusplus.NewDeleteLeaks): the caller owns the plane
 
 }  // namespace octotomy::voxel

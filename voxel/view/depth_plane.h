@@ -15,10 +15,10 @@ namespace octotomy::voxel {
 inline constexpr float beyond_mm = 1e9f;
 inline constexpr float surely_lit_mm = 0.5f * beyond_mm;
 
-/// The largest difference of depth between points of the image `distance_mm` apart that still counts as one
-/// surface instead of a break between two. A surface at 76 degrees to the image plane reaches it; steeper
-/// ones are dark under a light at the observer. Gordon and Reynolds 1985 leave the value to the user; in the
-/// thesis's terms (5.2.2.1) it is B = 4.
+/// Two points of the image `distance_mm` apart lie on one surface if their depths differ by at most this; a
+/// larger difference is a break between two surfaces. A surface at 76 degrees to the image plane reaches the
+/// limit; steeper surfaces are dark under a light at the observer. Gordon and Reynolds 1985 leave the value
+/// to the user; in the thesis's terms (5.2.2.1) it is B = 4.
 constexpr double break_mm(double distance_mm) {
   return 4.0 * distance_mm;
 }

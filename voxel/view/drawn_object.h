@@ -27,7 +27,7 @@ struct DrawnObject {
   std::optional<glm::dmat4> moved_from_still{};
   float opacity = 1.0f;  ///< 0: hidden, 1: opaque
   /// Counts visits in the min-max octree of `grey` (samples from the threshold up) instead of in the binary
-  /// octree. Precondition if set: `octree` is the object of these samples.
+  /// octree. Precondition if set: `octree` holds the voxels with these samples.
   bool counted_in_grey = false;
   /// For an object digitised by partial volume: the voxels wholly inside it, while `octree` holds all voxels
   /// that it touches. Visits are then counted in the thesis's tree for such objects (table 3.1): a node is

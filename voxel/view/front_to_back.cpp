@@ -8,10 +8,10 @@
 #include "voxel/view/node_polygon.h"
 #include "voxel/view/pixel_index.h"
 
-// Front to back after Meagher 1982 and Amans 1986 (thesis 4.4.3.2, A.2). Departures: covered quadtree nodes
-// have one status, of one colour (Full) or not (Masked); each level of the quadtree is a flat array, so that
-// no node is created; for general views a quadtree node counts its uncovered pixels, so that condensing it
-// needs no look at its children.
+// Front to back after Meagher 1982 and Amans 1986 (thesis 4.4.3.2, A.2). Departures: a covered quadtree node
+// has one status for both cases of the thesis, a single colour (Full) or several (Masked); each level of the
+// quadtree is a flat array, so that no node is created; for general views a quadtree node counts its
+// uncovered pixels, so that condensing it needs no look at its children.
 
 namespace octotomy::voxel {
 namespace {

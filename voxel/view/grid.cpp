@@ -25,7 +25,7 @@ double cap_px(const glm::ivec2& size_px) {
 
 struct Line {
   double at_mm;
-  int pixel;  ///< the column or row in which it lies
+  int pixel;  ///< the column or row in which the line lies
 };
 
 /// The lines across u (axis 0, columns) or v (axis 1, rows), in growing order of pixels.
@@ -135,7 +135,7 @@ glm::ivec2 add_grid_margin(std::vector<std::uint8_t>& rgb, const glm::ivec2& siz
       draw_lines(canvas, {{{right, y}, {right + 0.5 * cap, y}}}, tick);
       write(text_of(row.at_mm), {right + 0.8 * cap, std::max(cap + 1.0, y + 0.5 * cap)});
     }
-  // Below the rows' labels, right of the columns'.
+  // Below the labels of the rows, right of the labels of the columns.
   write("mm", {right + 0.8 * cap, below + 2.0 * cap});
   return whole_px;
 }

@@ -139,9 +139,9 @@ Scenery scenery_of(const std::vector<DrawnObject>& objects, const ImagePlane& pl
   return scenery;
 }
 
-/// The sample of the voxel that shows at a point of a surface or cut face: at the point, or at the voxel's
-/// centre. The surface runs between voxels' centres, so that the voxel may begin up to a voxel's diagonal
-/// behind it: it is searched along the view direction, `ahead`, in steps of a quarter voxel.
+/// The sample of the voxel visible at a point of a surface or cut face, read at the point or at the voxel's
+/// centre. A surface runs between voxels' centres, so the voxel may begin up to a voxel's diagonal behind the
+/// point. Searches for it along the view direction, `ahead`, in steps of a quarter voxel.
 std::optional<double> sample_behind(const GreyOwners& samples, const glm::dvec3& p_voxel,
                                     const glm::dvec3& ahead, bool at_centre) {
   constexpr int most_steps = 8;

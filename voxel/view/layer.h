@@ -50,8 +50,8 @@ struct Layer {
   SeenAt seen_at;                      ///< owns its data; any number of threads may call it
 };
 
-/// The objects without the parts that the options' cuts remove. Builds their octrees, unless they are only
-/// read by node tracing along an axis, which evaluates expressions where they are visible.
+/// The objects without the parts that the options' cuts remove. Builds their octrees, except for node tracing
+/// along an axis, which evaluates expressions only where they are visible.
 std::vector<DrawnObject> to_trace(const std::vector<DrawnObject>& objects, const RenderOptions& options,
                                   Algorithm algorithm);
 
@@ -61,7 +61,7 @@ Layer draw_layer(const std::vector<DrawnObject>& objects, const ImagePlane& plan
                  const std::vector<Cutaway>& cuts, Algorithm algorithm, Visits* visits = nullptr);
 
 /// Shades a layer's pixels with the objects' colours and the options' shading, lights and background. Ignores
-/// the options' size, view, algorithm and cuts: those that the layer was traced with apply.
+/// the options' size, view, algorithm and cuts, because the layer was traced with its own.
 std::vector<std::uint8_t> shade_layer(const Layer& layer, const std::vector<DrawnObject>& objects,
                                       const ImagePlane& plane, const RenderOptions& options);
 
@@ -74,8 +74,8 @@ DrawnObject as_shaded(const DrawnObject& object, Shading shading);
 /// Replaces each object's number i by numbers[i].
 void number_objects(DepthImage& image, const std::vector<std::int16_t>& numbers);
 
-/// Merges layers of one object each: the nearest surface wins, among equals the first layer's. Precondition:
-/// at least one layer, all of one plane and the same cuts.
+/// Merges layers of one object each: the nearest surface wins; at equal depth, that of the first layer.
+/// Precondition: at least one layer, all of one plane and the same cuts.
 Layer nearest_of(const std::vector<const Layer*>& layers);
 
 /// A translucent object of a scene.

@@ -9,10 +9,10 @@
 #include "voxel/space/vector_clones.h"
 
 // The search of ray_surface.cpp on vectors of rays:
-// 1 copy the samples about the leaf in fours; 2 interpolate them at the entries; 3 take the voxel's face
-// where the object was cut; 4 probe along the other rays until their sample crosses the threshold; 5
-// interpolate the crossing. All rays execute the same steps; a step that a ray does not need has no effect on
-// it.
+// 1 copy the samples about the leaf in fours (LeafSurface::fours_); 2 interpolate them at the entries; 3 take
+// the voxel's face where the object was cut; 4 probe along the other rays until their sample crosses the
+// threshold; 5 interpolate the crossing. All rays execute the same steps; a step that a ray does not need has
+// no effect on it.
 
 // Vectors are passed between functions of this file alone, all of them inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -24,7 +24,7 @@ constexpr int lanes = 8;
 constexpr int row = LeafSurface::side;
 constexpr int layer = row * row;
 
-/// The sample of voxels beyond the universe. Where it is read, it acts as a voxel that was cut away.
+/// The sample that is read for voxels beyond the universe, which therefore count as cut away.
 constexpr std::int16_t beyond = std::numeric_limits<std::int16_t>::max();
 
 // Vectors of rays. A comparison gives -1 where it holds.
@@ -75,7 +75,7 @@ struct Leaf {
   Int first[3];                   ///< voxel of the first four
   Int low_cell[3], high_cell[3];  ///< range of cells whose fours are in memory
   std::int32_t corner = 0;        ///< number of the leaf's first voxel in the mirrored frame
-  std::int32_t stride[3];         ///< from there to the next voxel along an axis
+  std::int32_t stride[3];         ///< from a voxel to the next one along an axis
 };
 
 /// The samples of a moved object, among which its rays run.
@@ -90,13 +90,13 @@ struct Origins {
   Int first[3];
 };
 
-/// Two samples that are neighbours along x, of each ray.
+/// For each ray, two samples that are neighbours along x.
 struct Pairs {
   Int pairs;
   [[gnu::always_inline]] Float left() const { return __builtin_convertvector((pairs << 16) >> 16, Float); }
   [[gnu::always_inline]] Float right() const { return __builtin_convertvector(pairs >> 16, Float); }
 };
-/// Two pairs that are neighbours along y, of each ray.
+/// For each ray, two pairs that are neighbours along y.
 struct Fours {
   Pairs near, far;
 };
@@ -122,7 +122,8 @@ struct Fours {
   return mix(left, right, t[0]);
 }
 
-/// The cell, along an axis, of positions at a distance from the entry, and their place in it.
+/// The cell, along an axis, of positions at a distance from the entry, and the positions' places in their
+/// cells.
 [[gnu::always_inline]] inline Int cell_of(const Way& way, const Origins& origins, int axis,
                                           const Float& distance_mm, const Int& low, const Int& high,
                                           Float& t) {
@@ -162,8 +163,8 @@ struct Fours {
     store(cell_of(way, origins, axis, distance_mm, low, high, t[axis]), cells[axis]);
   for (int i = 0; i < lanes; ++i) {
     const glm::ivec3 cell(cells[0][i], cells[1][i], cells[2][i]);
-    // The part of a coordinate in the number of a brick's sample, which counts leaves, then voxels, each by
-    // x + 4y + 16z.
+    // What a coordinate adds to the number of a brick's sample. Samples are numbered by leaves, then by
+    // voxels of a leaf, each in the order x + 4y + 16z.
     const auto along = [](int at) { return ((at >> 2) & 3) * 64 + (at & 3); };
     const int number[3][2] = {{along(cell.x), along(cell.x + 1)},
                               {along(cell.y) << 2, along(cell.y + 1) << 2},
@@ -211,8 +212,8 @@ struct Search {
   Int faces;              ///< rays that meet their voxel's face
   Int crossed;            ///< rays whose surface lies between their last two probes; the entry counts as a
                           ///< probe
-  Float near_mm, far_mm;  ///< from the entry to these two
-  Float near_value, far_value;  ///< there
+  Float near_mm, far_mm;  ///< from the entry to these two probes
+  Float near_value, far_value;  ///< samples at these two probes
 };
 
 /// Steps 2 and 3 for the rays of a leaf from number `from` on.
@@ -318,8 +319,8 @@ template <typename Samples>
 
 constexpr std::int32_t nothing = 0, smooth = 1, face = 2;  // what a ray meets
 
-/// Steps 2 to 5 for a batch, each for all vectors of rays before the next, so that the processor need not
-/// wait for one vector to begin with another.
+/// Executes each of steps 2 to 5 for all vectors of a batch before the next step, so that the processor can
+/// overlap the work on several vectors.
 template <typename Samples>
 [[gnu::always_inline]] inline void find_surface(const Way& way, const Samples& samples, const RayBatch& batch,
                                                 float* depth_mm, std::int32_t* kind) {
@@ -388,9 +389,9 @@ void write_fours(const RowOfPairs& near, const RowOfPairs& far, std::uint64_t* f
   }
 }
 
-/// Writes the fours of a cube of `row` voxels a side, those from `from` up to, not including, `until` along y
-/// and z, with the rows of samples that `row_at` returns for y and z. The last row along y has no next one
-/// and is paired with itself.
+/// Writes the fours of a cube of `row` voxels a side whose y and z are from `from` up to, not including,
+/// `until`. `row_at` returns the row of samples for y and z. The last row along y has no next one and is
+/// paired with itself.
 template <typename RowAt>
 void write_cube(const glm::ivec3& from, const glm::ivec3& until, const RowAt& row_at, std::uint64_t* fours) {
   for (int z = from.z; z < until.z; ++z) {
@@ -405,8 +406,8 @@ void write_cube(const glm::ivec3& from, const glm::ivec3& until, const RowAt& ro
   }
 }
 
-/// Writes the fours of a cube, as write_cube(). Its first voxel lies one to three behind a leaf's first along
-/// each axis. Precondition: the three leaves along each axis lie within the universe.
+/// Writes the fours of a cube, as write_cube(). The cube's first voxel lies one to three voxels behind a
+/// leaf's first along each axis. Precondition: the three leaves along each axis lie within the universe.
 void write_leaves(const GreyOctree& grey, const glm::ivec3& first, const glm::ivec3& from,
                   const glm::ivec3& until, std::uint64_t* fours) {
   const glm::ivec3 first_brick = first >> 4;

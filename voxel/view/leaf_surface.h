@@ -25,7 +25,7 @@ class LeafSurface {
   /// What the rays of a batch see.
   struct Found {
     RayBatch::Rays lit = 0;      ///< the rays that meet the surface
-    RayBatch::Rays stepped = 0;  ///< at the voxel's face
+    RayBatch::Rays stepped = 0;  ///< the lit rays whose surface is the voxel's face
     RayBatch::ByRay<float> depth_mm;
   };
   /// Finds the surface of every ray in the batch. Precondition: all of them pass their voxels. For a moved
@@ -43,7 +43,7 @@ class LeafSurface {
   const GreyOctree& grey_;
   const Mirror& mirror_;
   std::optional<glm::dmat4> still_from_voxel_;  ///< DrawnObject::still_from_voxel()
-  glm::dvec3 per_mm_;                           ///< among the samples
+  glm::dvec3 per_mm_;                           ///< of the rays, in voxels of the samples
   float half_voxel_mm_;                         ///< along a ray, in depth
   float threshold_;
   int universe_side_;
@@ -51,8 +51,8 @@ class LeafSurface {
   glm::ivec3 native_{0};              ///< the leaf's first voxel
   glm::ivec3 first_{0};               ///< the voxel of the first sample
   glm::ivec3 from_{0}, until_{side};  ///< the samples that these rays need, counted from `first_`
-  /// Entry x + 8y + 64z, counted from `first_`: the samples of that voxel, of the next along x, and of the
-  /// next along y of both; 16 bits each, lowest first.
+  /// Entry x + 8y + 64z, counted from `first_`: the four samples at (x, y, z), (x + 1, y, z), (x, y + 1, z)
+  /// and (x + 1, y + 1, z), 16 bits each, lowest first.
   alignas(64) std::array<std::uint64_t, side * side * side> fours_;
 };
 

@@ -24,7 +24,7 @@ SightLine sight_line(const View& view, const glm::dvec2& p_mm);
 glm::dvec2 pixel_position(const ImagePlane& plane, const glm::dvec3& p_mm);
 
 /// A point in space from two lines of sight: midway between the nearest points of the lines, which are
-/// miss_mm apart. At least one of the two marks is off by half of that.
+/// miss_mm apart. At least one of the two marks is off by half of miss_mm or more.
 struct SpaceMark {
   glm::dvec3 point_mm{0.0};
   double miss_mm = 0.0;

@@ -15,8 +15,8 @@ class MeanDepth {
  public:
   MeanDepth(const DepthPlane& plane, const glm::ivec2& size_px);
 
-  /// Writes the means for pixels span.x up to, not including, span.y of a row. They are meaningless at pixels
-  /// far from every lit one. Precondition: `to` has the picture's width.
+  /// Writes the means for pixels span.x up to, not including, span.y of a row. Means are meaningless at
+  /// pixels far from every lit pixel. Precondition: `to` has the picture's width.
   void mean_row(int y, const glm::ivec2& span, std::vector<float>& to) const;
 
  private:
@@ -29,7 +29,7 @@ class MeanDepth {
   std::vector<float> sums_;              ///< of depths around a cell
   std::vector<float> lit_;               ///< number of pixels in each sum
   std::vector<std::uint32_t> low_cell_;  ///< by x: the cell left of a pixel's centre
-  std::vector<float> share_;             ///< by x: weight of the cell right of it
+  std::vector<float> share_;             ///< by x: weight of the cell right of that centre
 };
 
 }  // namespace octotomy::voxel

@@ -15,9 +15,10 @@
 #include "voxel/tree/octree_node.h"
 #include "voxel/view/leaf_surface.h"
 
-// Node tracing (thesis 4.5) with the physical nodes. Departures from the thesis: a quadtree node has the 16
-// columns of a node's 64 children instead of four; instead of a ray that seeks its next neighbour from the
-// root, the descent itself goes front to back and visits the same nodes; all objects are traced at once.
+// Node tracing (thesis 4.5) with the physical nodes. Departures from the thesis: a quadtree node has 16
+// children, the columns of a physical node's 64 children, instead of four; instead of a ray that seeks its
+// next neighbour from the root, the descent itself goes front to back and visits the same nodes; all objects
+// are traced at once.
 //
 // In the *traced frame* a block's digits are p, q (in the image) and r (along the look axis), so that child
 // number p + 4q + 16r makes every layer of children across the look axis 16 adjacent bits of a mask. Words
@@ -39,7 +40,7 @@ constexpr int tile_side = 64;
 constexpr int max_height = Universe::max_depth / 2;
 
 /// Transforms a mask of children from number x + 4y + 16z to p + 4q + 16r by exchanging z with the coordinate
-/// along `look_axis`. Its own inverse.
+/// along `look_axis`. This transformation is its own inverse.
 constexpr std::uint64_t traced(std::uint64_t word, int look_axis) {
   if (look_axis == 0) return exchange_index_bits<1, 5>(exchange_index_bits<0, 4>(word));
   if (look_axis == 1) return exchange_index_bits<3, 5>(exchange_index_bits<2, 4>(word));
@@ -102,7 +103,7 @@ UnbuiltObjects unbuilt_of(const std::vector<DrawnObject>& objects) {
 /// An object's part of the current block. A block of height 1 is a leaf's word.
 struct Part {
   BlockRef block;             ///< unset if `entered` is set
-  std::uint64_t full = 0;     ///< in the traced frame; of a leaf, its voxels
+  std::uint64_t full = 0;     ///< Full children in the traced frame; of a leaf, its voxels
   std::uint64_t partial = 0;  ///< in the traced frame
   std::int16_t object = 0;
   EnteredBlock* entered = nullptr;  ///< of an object that is not built
@@ -188,7 +189,7 @@ class TileTrace {
     return node != nullptr ? part(BlockRef::of(node), outer.object) : part(&inner, outer.object);
   }
 
-  /// Words of leaves in the traced frame, of all parts of height 2 that are not built.
+  /// Computes the leaf words of all unbuilt parts of height 2. `leaves` is in the traced frame.
   void ask_words(std::uint64_t leaves) {
     const std::uint64_t wanted = traced(leaves, frame_.look);
     for (const Part& part : parts_[2])
@@ -351,8 +352,8 @@ class ColumnSamples {
   }
 
  private:
-  /// The part of an index along an axis in the number of a brick's sample, which counts leaves, then samples,
-  /// each by x + 4y + 16z.
+  /// What an index along an axis adds to the number of a brick's sample. Samples are numbered by leaves, then
+  /// by voxels of a leaf, each in the order x + 4y + 16z.
   static int part(int axis, int index) { return (((index >> 2) & 3) * 64 + (index & 3)) << (2 * axis); }
 
   const GreyOctree* grey_;
@@ -476,7 +477,7 @@ ColumnMap node_trace(const std::vector<DrawnObject>& objects, const AxisView& ax
     const int tile_q = tile / tiles * tile_side;
     // 1. Find the first voxel of every column.
     TileTrace(objects, unbuilt, frame, tile_p, tile_q, map.columns).run();
-    // 2. Turn it into a depth, leaf by leaf so that a leaf's samples stay in the cache.
+    // 2. Turn these voxels into depths, leaf by leaf so that a leaf's samples stay in the cache.
     Depths depths(objects, frame, spacing_mm[frame.look]);
     const int last_p = std::min(tile_p + tile_side, frame.side);
     const int last_q = std::min(tile_q + tile_side, frame.side);

@@ -10,10 +10,10 @@
 namespace octotomy::voxel {
 
 /// Normal of a voxel's face from eight of the voxel's 18 neighbours (Chen et al. 1985; thesis 5.2.1.1, table
-/// 5.1). On either side of the face the surface rises, continues or falls; half the difference is its slope,
-/// which gives 25 normals per face. The face is perpendicular to `axis` and faces larger indices if `outward`
-/// is 1, smaller ones if it is -1. In index space, not of unit length. Cost: sixteen point queries of the
-/// octree.
+/// 5.1). On each side of the face the surface rises, continues or falls. Half the difference between opposite
+/// sides is the slope, so there are 25 normals per face. The face is perpendicular to `axis` and faces larger
+/// indices if `outward` is 1, smaller ones if it is -1. In index space, not of unit length. Cost: sixteen
+/// point queries of the octree.
 glm::dvec3 context_normal(const Octree& octree, const glm::ivec3& voxel, int axis, int outward);
 
 /// Outward normal at a position in index space: against the gradient of the samples, by central differences

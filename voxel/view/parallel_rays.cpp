@@ -200,8 +200,8 @@ class ParallelRays::Square {
     }
   }
 
-  /// Exchanges rays from number `first` on so that those that pass come first. Returns the number of the
-  /// first that does not.
+  /// Reorders the rays from number `first` on so that the passing rays come first. Returns the number of the
+  /// first ray that does not pass.
   int bring_forward(RayBatch::Rays passing, int first) {
     const int end = first + std::popcount(passing);
     if (end == batch_.count) return end;
@@ -237,7 +237,7 @@ class ParallelRays::Square {
 
   const ParallelRays& rays_;
   glm::ivec2 first_px_;
-  glm::ivec2 last_;  ///< pixel last pixel of the square
+  glm::ivec2 last_;  ///< last pixel of the square
   const Accept& accept_;
   const Announce& announce_;
   std::array<std::uint64_t, square_px> open_{};  ///< by row

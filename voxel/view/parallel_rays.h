@@ -31,7 +31,7 @@ class ParallelRays {
 
   /// Precondition: rays of an orthographic plane of the octree's universe. Shares the octree.
   ParallelRays(const Octree& octree, const VoxelRays& rays);
-  /// These rays through another octree of the same universe.
+  /// The same rays through another octree of the same universe.
   ParallelRays through(const Octree& octree) const;
 
   /// Calls `accept` with the voxels that the rays of a square of pixels pass, each ray's from front to back.

@@ -20,14 +20,14 @@ constexpr double water_per_mm = 0.0206;
 constexpr double steps_per_voxel = 2.0;
 constexpr int leaf_edge = 4;
 
-/// Trilinear samples. Reads the bricks that a cell's corners lie in; keeps those of the last brick and the
-/// corners of the last cell, as a ray takes several steps in either.
+/// Trilinear samples. Reads the bricks in which a cell's corners lie. Keeps the bricks of the last block and
+/// the corners of the last cell, because a ray takes several steps in either.
 class CellSamples {
  public:
   explicit CellSamples(const GreyOctree& grey)
       : grey_(grey), last_cell_(grey.universe().side() - 2), last_block_((grey.universe().side() - 1) >> 4) {}
 
-  /// Four lines along x at once, two along y, one along z: the compiler makes vectors of the first two.
+  /// Interpolates along four lines in x, two in y and one in z. The compiler vectorises the steps in x and y.
   double at(const glm::dvec3& p, const glm::ivec3& cell) {
     if (cell.x != cell_.x || cell.y != cell_.y || cell.z != cell_.z) enter(cell);
     const double tx = p.x - cell.x, ty = p.y - cell.y, tz = p.z - cell.z;
@@ -87,7 +87,8 @@ class CellSamples {
   glm::ivec3 last_cell_, last_block_;
   glm::ivec3 cell_{-1000}, block_{-1000};
   std::array<double, 4> lower_{},
-      upper_{};  ///< ends of the cell's edges along x; number = upper z + 2 upper y
+      upper_{};  ///< samples at both ends of the cell's edges along x; an edge at (y, z) of the cell has
+                 ///< number z + 2y
   std::array<const std::int16_t*, 8> bricks_{};  ///< of a block and the next ones along each axis
 };
 
@@ -107,7 +108,8 @@ struct Steps {
 
   glm::dvec3 at(int i) const { return start + (near_mm + i * length_mm) * per_mm; }
 
-  /// A step after i, at most the first one that lies outside the aligned cube of cells about step i's cell.
+  /// A step after i, but not after the first step outside the aligned cube of `edge` cells a side that holds
+  /// step i's cell.
   int leaving(int i, const glm::ivec3& cell, int edge) const {
     double exit_mm = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
@@ -311,7 +313,8 @@ class AttenuationOfRay {
     }
   }
 
-  /// A plane of voxels' centres, at most the first one outside the aligned cube of cells about a cell.
+  /// A plane after `plane`, but not after the first plane that the ray crosses outside the aligned cube of
+  /// `edge` cells a side that holds `cell`.
   int leaving(int plane, const glm::ivec3& cell, int edge, double u_at_0, double v_at_0) const {
     double exit = (cell[axis] & -edge) + edge;
     const auto leave_along = [&](int along, double slope, double at_0) {

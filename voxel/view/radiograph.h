@@ -22,8 +22,8 @@ struct RayImage {
 /// thread count.
 RayImage maximum_intensity(const GreyOctree& grey, const ImagePlane& plane, const Progress& progress = {});
 
-/// The share of its attenuation with which a range of samples, ends included, counts in a radiograph: 0
-/// dissolves it, more than 1 heightens it. Samples in no range count fully; of ranges that overlap the first
+/// A factor for the attenuation of the samples in a range, ends included, in a radiograph: with 0 they
+/// vanish, above 1 they stand out. Samples in no range have the factor 1; where ranges overlap, the first
 /// applies.
 struct RangeWeight {
   static constexpr double max_weight = 100.0;
@@ -39,9 +39,9 @@ void check(const std::vector<RangeWeight>& weights);
 /// that a ray crosses, with bilinear samples in them (P. M. Joseph, IEEE Trans. Med. Imaging 1(3), 1982). Rays
 /// are parallel, so that the picture is in true scale: from the side, a cephalogram without its enlargement.
 /// Water attenuates by 0.0206 / mm, as at 60 keV (NIST XCOM). Samples of at most -1000 attenuate nothing.
-/// With weights, each voxel's attenuation is first multiplied by that of the range that holds its sample
-/// (Harris et al. 1979; thesis 4.4.2.3), so that a voxel that is part bone and part air counts as its mean
-/// sample. Throws as maximum_intensity() and check() do; preconditions and threads are those of
+/// With weights, each voxel's attenuation is first multiplied by the weight of the range that contains its
+/// sample (Harris et al. 1979; thesis 4.4.2.3). The weight of a voxel that is part bone and part air follows
+/// from its mean sample. Throws as maximum_intensity() and check() do; preconditions and threads are those of
 /// maximum_intensity().
 RayImage radiograph(const GreyOctree& grey, const ImagePlane& plane, const Progress& progress = {},
                     const std::vector<RangeWeight>& weights = {});

@@ -42,8 +42,8 @@ struct Axis {
   bool flipped, still;
 };
 
-/// The passages of a batch's rays, from a vector's first ray on, through the voxels of the leaf with the
-/// given numbers. Returns the rays that pass; bits beyond the batch are meaningless.
+/// Computes the passages of a batch's rays, from a vector's first ray on. Ray i passes the leaf's voxel
+/// number voxels[i]. Returns the rays that pass; bits beyond the batch are meaningless.
 OCTOTOMY_VECTOR_CLONES RayBatch::Rays pass(const Axis* axes, const std::int32_t* voxels, int first,
                                            RayBatch& batch) {
   const Long ray{1, 2, 4, 8};

@@ -157,7 +157,7 @@ Seen RayCast::seen(const glm::dvec2& p_px, double near_mm, double far_mm) const 
   Seen nearest;
   for (std::size_t i = 0; i < the.objects.size(); ++i) {
     const DrawnObject& object = the.objects[i];
-    // The surface of a voxel behind the nearest one may still be nearer.
+    // A voxel behind the nearest surface may still have its own surface in front of that one.
     const double reach_mm = the.reach_mm(object, ray.per_mm);
     const double until_mm = std::min(far_mm, static_cast<double>(nearest.depth_mm)) + reach_mm;
     Walk(object.octree.root(), object.octree.root_height(), frame)

@@ -95,8 +95,8 @@ class RaySamples {
       }
     }
   }
-  /// The part of coordinate x in the number of a brick's sample, which counts leaves, then voxels, each by
-  /// x + 4y + 16z.
+  /// What coordinate x adds to the number of a brick's sample. Samples are numbered by leaves, then by voxels
+  /// of a leaf, each in the order x + 4y + 16z.
   static int along(int coordinate) { return ((coordinate >> 2) & 3) * 64 + (coordinate & 3); }
 
   const GreyOctree& grey_;
@@ -134,8 +134,9 @@ Seen face_of(const Passage& passage) {
 }
 
 /// The surface near a voxel that a ray passes. If the ray enters the voxel outside the surface, searches
-/// until it leaves the voxel; none if it stays outside. If it enters inside, searches back over two voxels;
-/// the voxel's face if the ray was inside all the way. The samples count from the entry.
+/// forward until the ray leaves the voxel; none if the ray stays outside. If it enters inside the surface,
+/// searches back over two voxels; the voxel's face if the ray was inside all the way. Distances of `samples`
+/// count from the entry.
 std::optional<Seen> surface_about(RaySamples& samples, float threshold, const Passage& passage,
                                   float half_voxel_mm) {
   const auto surface = [&](Sample below, Sample above) {

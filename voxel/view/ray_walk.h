@@ -17,9 +17,9 @@
 // one through the first plane on its way (Amanatides, Woo 1987, on blocks of any size). It then descends
 // again from the smallest block that holds both the old and the new voxel.
 //
-// Rays are walked in the *mirrored frame*: index space shifted so that voxel i reaches from i to i + 1, with
-// the axes reversed along which the ray decreases, so that it increases along all. If a ray does not move
-// along an axis, its time to a plane across that axis is infinite.
+// Rays are walked in the *mirrored frame*: index space shifted so that voxel i reaches from i to i + 1, and
+// every axis reversed along which the ray's coordinate decreases, so that all its coordinates increase. If a
+// ray does not move along an axis, its time to a plane across that axis is infinite.
 //
 // Longer than other headers, because the receiver of the voxels is inlined into the innermost loop.
 

@@ -34,12 +34,12 @@ struct Sheet {
 /// The largest number of pixels along a side of a sheet.
 inline constexpr int most_sheet_px = 8192;
 
-/// The smallest sheet on the plane of points with p . view.look = position_mm that shows its whole cut
-/// through the lattice, voxel edges included. If the view's axes and pixel_mm are those of the lattice, pixel
-/// centres are voxel centres. The view sets the radiological convention: "inferior" for axial slices and
-/// "anterior" for coronal ones have the patient's left on the picture's right. Throws std::invalid_argument
-/// if the plane misses the lattice, a number is not finite, pixel_mm is not positive, or the picture has more
-/// than most_sheet_px a side.
+/// The smallest sheet on the plane of points with p . view.look = position_mm that shows the plane's whole
+/// cut through the lattice, voxel edges included. If the view's axes and pixel_mm are those of the lattice,
+/// pixel centres are voxel centres. The view sets the radiological convention: "inferior" for axial slices
+/// and "anterior" for coronal ones have the patient's left on the picture's right. Throws
+/// std::invalid_argument if the plane misses the lattice, a number is not finite, pixel_mm is not positive,
+/// or the picture has more than most_sheet_px a side.
 Sheet plane_sheet(const Lattice& lattice, const View& view, double position_mm, double pixel_mm);
 
 struct CurveOptions {
@@ -70,12 +70,12 @@ SheetSamples sample(const GreyOctree& grey, const Sheet& sheet, Interpolation in
 /// 1 for pixels whose centre lies in a voxel of the octree, 0 for the others. Parallel over rows.
 std::vector<std::uint8_t> cut(const Octree& octree, const Sheet& sheet);
 
-/// The outline of a cut, one pixel wide and inside it: its pixels with one of four neighbours in the picture
-/// but not in the cut.
+/// The outline of a cut, one pixel wide: the cut's pixels of which at least one of the four neighbours lies
+/// in the picture but not in the cut.
 std::vector<std::uint8_t> outline(const std::vector<std::uint8_t>& cut, const glm::ivec2& size_px);
 
 /// The letters at a sheet's four edges: the directions from its middle column to its ends, and up and down.
-/// An end that coincides with the middle has no letter: a single column or a closed curve.
+/// An end that coincides with the middle, as on a single column or a closed curve, has no letter.
 EdgeLetters edge_letters(const Sheet& sheet);
 
 }  // namespace octotomy::voxel

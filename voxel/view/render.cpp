@@ -28,19 +28,20 @@ void check(const std::vector<DrawnObject>& objects, const RenderOptions& options
                          "': combine it into that universe first");
     if (object.scalar && object.scalar->universe != object.octree.universe())
       throw std::invalid_argument("the scalar that colours object '" + object.name +
-                                  "' is of another universe than the object: make it for the same");
+                                  "' is of another universe than the object: compute it in the object's");
     if (object.grey && !object.moved_from_still && object.grey->universe() != object.octree.universe())
       throw std::invalid_argument("the grey octree of object '" + object.name +
-                                  "' is of another universe than the object: build it for the same");
+                                  "' is of another universe than the object: build it in the object's");
   }
   if (options.cut_tones && options.cut_tones->samples.universe() != objects.front().octree.universe())
     throw std::invalid_argument(
-        "the samples for cut faces are of another universe than the objects: build them for the same");
+        "the samples for cut faces are of another universe than the objects: build them in the objects'");
   if (options.cut_tones && !(options.cut_tones->white > options.cut_tones->black))
     throw InvalidInput("white must be a larger sample than black on cut faces");
   if (options.densities && options.densities->tones.samples.universe() != objects.front().octree.universe())
     throw std::invalid_argument(
-        "the samples that colour surfaces are of another universe than the objects: build them for the same");
+        "the samples that colour surfaces are of another universe than the objects: build them in the "
+        "objects'");
   if (options.shading == Shading::Density && !options.densities)
     throw InvalidInput("shading by density needs samples: draw a scan or a grey octree");
   if (options.size_px.x < 1 || options.size_px.y < 1)

@@ -28,8 +28,8 @@ enum class Algorithm { NodeTrace, RayCast, FrontToBack, BackToFront };
 /// visible voxel, darker with its depth (5.2.1.2); needs RenderOptions::densities.
 enum class Shading { Depth, Gradient, Context, PartialVolume, GreyGradient, Silhouette, Outline, Density };
 
-/// Paints cut faces in grey tones, like a slice. Each place shows the sample of the operand that contains it, moved
-/// with that operand. A place in no window keeps the object's colour.
+/// Paints cut faces in grey tones, like a slice. Each place shows the sample of the operand that contains the
+/// place, moved with that operand. A place in no window keeps the object's colour.
 struct CutTones {
   GreyOwners samples;
   double black = 0.0;
@@ -43,8 +43,8 @@ struct DensityColour {
   glm::vec3 colour{1.0f};  ///< sRGB, 0..1
 };
 
-/// Samples that colour surfaces: those of the first voxel that a ray meets behind the surface and that a
-/// window owns.
+/// Samples that colour surfaces. A pixel has the sample of the first voxel on its ray behind the surface that
+/// a window owns.
 struct Densities {
   CutTones tones;                      ///< Shading::Density only
   std::vector<DensityColour> colours;  ///< the first range that holds the sample; none: the object's colour

@@ -17,9 +17,10 @@ namespace octotomy::voxel {
 /// Renderer. One thread at a time may use it.
 ///
 /// Every object has a layer of its own, so that moving a fragment does not redraw the skull's layer. The
-/// nearest surface wins. If node tracing finds two objects within a voxel of each other, render(), which
-/// compares voxels before it interpolates depths, may show the other one. Hidden objects are traced too.
-/// Memory: for each object and size, a depth image and the algorithm's data.
+/// nearest surface wins. Where two objects lie within a voxel of each other along a ray of node tracing,
+/// render() may show the other object, because it compares voxels before it interpolates depths. A hidden
+/// object keeps its layer, but none is traced for it. Memory: for each object and size, a depth image and the
+/// algorithm's data.
 class Renderer {
  public:
   Renderer();

@@ -25,8 +25,9 @@
 namespace octotomy::voxel {
 namespace {
 
-/// The weight of a difference of depth, given 1 / limit^2: 1 for no difference, 0.0001 from the limit on. The
-/// small weight still gives a slope steeper than the limit if no other difference is available.
+/// The weight of a difference of depth, given 1 / limit^2: 1 for no difference, 0.0001 from the limit on.
+/// Because this weight is not zero, a slope steeper than the limit is still computed where no other
+/// difference is available.
 inline float continuity(float difference, float per_limit2) {
   const float relative = 1.0f - difference * difference * per_limit2;
   const float weight = relative > 1e-4f ? relative : 1e-4f;
@@ -396,7 +397,7 @@ std::vector<std::uint8_t> shade(const DepthImage& image, const Scenery& scenery,
 }
 
 std::vector<std::uint32_t> edge_pixels(const DepthImage& image, const Scenery& scenery) {
-  // A break under twice the smallest shows no jagged edge.
+  // A break of less than twice break_mm() shows no jagged edge.
   const auto limit_mm = static_cast<float>(2.0 * break_mm(std::max(scenery.pixel_mm, scenery.voxel_mm)));
   std::vector<std::uint32_t> edges;
   const auto ends = [&](const Seen& a, const Seen& b) {

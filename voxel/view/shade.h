@@ -26,7 +26,7 @@ struct Paint {
   /// Lit: replaces the object's colour under the lights. Tone: the pixel has this colour without lights.
   enum class Kind : std::uint8_t { None, Lit, Tone };
   std::vector<Kind> kinds;         ///< one per pixel, or empty for no paint
-  std::vector<glm::vec3> colours;  ///< sRGB 0..1, one for each of kinds
+  std::vector<glm::vec3> colours;  ///< sRGB 0..1, one for each entry of `kinds`
 };
 
 /// Colours, scale, style and lights for shading a depth image.
@@ -66,8 +66,8 @@ std::vector<std::uint8_t> shade(const DepthImage& image, const Scenery& scenery,
 /// The numbers of the pixels, ascending, at which an object or surface borders on another or the background.
 std::vector<std::uint32_t> edge_pixels(const DepthImage& image, const Scenery& scenery);
 
-/// The mean colour of the parts of an edge pixel. A part takes the colour of the pixel, among this one and
-/// its neighbours, whose surface it belongs to.
+/// The mean colour of the parts of an edge pixel. Each part takes the colour of the pixel, this one or a
+/// neighbour, to whose surface the part belongs.
 std::array<std::uint8_t, 3> blend(const DepthImage& image, const std::vector<std::uint8_t>& rgb,
                                   const Scenery& scenery, std::uint32_t pixel, std::span<const Seen> parts);
 

@@ -107,7 +107,7 @@ TransferTable::TransferTable(const TransferFunction& transfer, const MinMax& sam
   assert(transfer.points.size() >= 2 && samples.low <= samples.high);
   const int count = samples.high - samples.low + 1;
   entries_.reserve(static_cast<std::size_t>(count) + 1);
-  // One more than the samples, so that at() has an upper neighbour for the last.
+  // One entry more than the range has samples, so that at() has an upper neighbour for the last sample.
   for (int i = 0; i <= count; ++i) entries_.push_back(entry_at(transfer, first_ + i));
   visible_before_.assign(entries_.size(), 0);
   for (std::size_t i = 0; i + 1 < entries_.size(); ++i)

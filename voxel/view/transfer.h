@@ -11,7 +11,7 @@ namespace octotomy::voxel {
 
 /// The appearance of one sample value.
 struct TransferPoint {
-  /// Samples are of int16; single precision interpolates between points up to this far apart.
+  /// Samples have 16 bits. Points up to this far apart can be interpolated in single precision.
   static constexpr double max_sample = 1e6;
   /// A nanometre lets through 37 % of the light: opaque at any voxel size.
   static constexpr double max_per_mm = 1e6;

@@ -20,7 +20,7 @@ void add_levels(std::vector<LevelCount>& to, const std::vector<LevelCount>& from
   }
 }
 
-/// Share of the nodes that are not among `visited` of them.
+/// Share of the nodes without a visit, if `visited` nodes have one.
 std::optional<double> share_without(const std::vector<LevelCount>& levels, std::uint64_t visited) {
   std::uint64_t nodes = 0;
   for (const LevelCount& level : levels) nodes += level.partial + level.full + level.empty;
@@ -28,7 +28,7 @@ std::optional<double> share_without(const std::vector<LevelCount>& levels, std::
   return 1.0 - static_cast<double>(visited) / static_cast<double>(nodes);
 }
 
-/// The node's number among all nodes: sixteen bits for each coordinate and for the level.
+/// A key that identifies the node: sixteen bits for each coordinate and for the level.
 std::uint64_t key_of(int level, const glm::ivec3& corner) {
   assert(glm::all(glm::greaterThanEqual(corner, glm::ivec3(0))) && level < 16);
   static_assert(Universe::max_depth <= 12);

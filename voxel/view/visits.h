@@ -77,9 +77,10 @@ class VisitCounter {
 /// axes are of the octree's universe, and the window excludes the background.
 Visits visits_without_ranges(const GreyOctree& grey, Window16 window, const AxisView& axes);
 
-/// Visits of node tracing through a grey octree that interpolates each depth (thesis 5.2.2.2): those that render()
-/// counts with DrawnObject::counted_in_grey, and those to read the samples of the surface's voxels and of the voxels
-/// before them, for which nodes of unequal samples are opened. Preconditions as of visits_without_ranges().
+/// Visits of node tracing through a grey octree if each depth is interpolated (thesis 5.2.2.2): the visits
+/// that render() counts with DrawnObject::counted_in_grey, and the visits to read samples of the surface's
+/// voxels and of the voxels before them. Nodes of unequal samples are opened for these reads. Preconditions
+/// as of visits_without_ranges().
 Visits visits_with_depths(const GreyOctree& grey, Window16 window, const AxisView& axes);
 
 }  // namespace octotomy::voxel

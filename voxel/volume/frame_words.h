@@ -21,7 +21,7 @@ std::optional<PatientFrame> patient_frame(std::string_view words);
 
 struct LengthUnit {
   std::string name = "mm";
-  double mm = 1.0;  ///< in one unit
+  double mm = 1.0;  ///< millimetres in one unit
 };
 
 /// Reads a unit's symbol or its name, singular or plural, British or American: "um", "microns", "inch",

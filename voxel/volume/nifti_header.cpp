@@ -3,11 +3,12 @@
 // Reads headers of NIfTI-1 and NIfTI-2, whose fields nifti1.h and nifti2.h of the NIfTI library define. Does
 // not call the library's own reader: it prints to standard error, trusts the dims and the length of
 // extensions in damaged headers, silently changes negative spacings, forms and slopes, and hangs on some
-// headers. A parser that refuses those headers beforehand would already read everything.
+// headers. A check that refuses such headers beforehand would have to parse every field itself.
 //
 // Geometry: the sform if its code is positive, else the qform if its code is positive, else the spacing
-// alone. The spacing states no frame; the axes are then assumed as in Analyze files, to the left, front and
-// head, centred on the origin, as in nibabel, SPM and FSL. xyzt_units apply to spacing and positions.
+// alone. The spacing states no frame. The axes are then assumed to run to the left, front and head, as in
+// Analyze files, and the volume to be centred on the origin, as in nibabel, SPM and FSL. xyzt_units apply to
+// spacing and positions.
 #include <algorithm>
 #include <array>
 #include <bit>

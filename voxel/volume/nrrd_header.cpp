@@ -110,8 +110,8 @@ class NrrdReader {
     return words;
   }
 
-  /// Finds the spatial axes: those with a direction, or, if there are none, those whose kind is not another
-  /// one.
+  /// Finds the spatial axes: the axes with a direction or, if no axis has one, the axes whose kind may be
+  /// spatial.
   void take_axes() {
     const double axes = text_.number(path_, "dimension").value_or(0.0);
     if (!(axes >= 2.0 && axes <= 16.0) || axes != std::trunc(axes))
@@ -134,12 +134,12 @@ class NrrdReader {
         space_axes_.push_back(axis);
       } else if (sizes[axis] != 1.0) {
         refuse(path_,
-               print("its axis %d of %g numbers is none of space (%s); a scan has one value a sample: "
+               print("its axis %d of %g numbers is not spatial (%s); a scan has one value a sample: "
                      "extract one volume from it",
                      static_cast<int>(axis + 1), sizes[axis], kind.empty() ? "no direction" : kind.c_str()));
       }
     }
-    if (lengths.size() < 2) refuse_field("sizes", "has fewer than two axes of space");
+    if (lengths.size() < 2) refuse_field("sizes", "has fewer than two spatial axes");
     header_.geometry.dims = dims_of(path_, lengths);
     if (header_.geometry.dims.x > std::numeric_limits<int>::max() / header_.layers)
       refuse_field("sizes", "are too large");
@@ -261,8 +261,8 @@ class NrrdReader {
                                "the file's measurement frame is of vectors and tensors; a scan has none"});
   }
 
-  /// NRRD defines no meaning for an axis's own ends if there are directions. They are not used; warns of
-  /// them.
+  /// NRRD defines no meaning for axis mins and axis maxs if there are directions. They are not used; the
+  /// audit warns of them.
   void warn_of_ends() {
     for (const char* name : {"axismins", "axismaxs"}) {
       const std::vector<double> ends = numbers_an_axis(name);

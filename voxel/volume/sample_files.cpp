@@ -131,7 +131,7 @@ std::pair<const char*, std::errc> whole_number(const char* begin, const char* en
   return {rest, error == std::errc() && real != std::trunc(real) ? std::errc::invalid_argument : error};
 }
 
-/// Parses numbers of a type from text; returns what follows the last one.
+/// Parses numbers of a type from text; returns the text after the last number.
 template <typename Number>
 std::string_view parse(const fs::path& path, std::string_view text, char* to, std::uintmax_t count) {
   for (std::uintmax_t i = 0; i < count; ++i) {

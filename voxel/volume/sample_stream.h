@@ -13,13 +13,13 @@ namespace octotomy::voxel {
 /// independent of what the file claims.
 class SampleStream {
  public:
-  /// Throws Error, Input, with the path if the file cannot be opened.
+  /// Throws Error (Input) with the path if the file cannot be opened.
   SampleStream(const std::filesystem::path& path, std::uintmax_t at, bool is_packed);
   SampleStream(SampleStream&&) noexcept;
   ~SampleStream();
 
   /// Reads up to `count` bytes into `to`; returns their number, which is smaller only at the end. Throws
-  /// Error, Input, with the path, if a packed stream is damaged, ends early or fails its checksum.
+  /// Error (Input) with the path, if a packed stream is damaged, ends early or fails its checksum.
   std::size_t read(char* to, std::size_t count);
   /// Reads to the end, so that checksums are verified; returns the number of bytes read.
   std::uintmax_t skip_rest();

@@ -38,7 +38,7 @@ using SmallNumbers = std::optional<std::bitset<256>>;
 /// Sets the scene's samples: as int16 if every value is an integer in its range, else as float. `fill` writes
 /// the stored samples to memory; if they are int16 without a rescale, that memory is the scene's own. The
 /// audit reports every change. Values that are not finite, or beyond single precision, become padding below
-/// all others. Throws Error, Input, naming the scene's source, if there are no other values; rethrows
+/// all others. Throws Error (Input) naming the scene's source, if there are no other values; rethrows
 /// exceptions of `fill`. Parallel. Memory: the stored samples and the scene's.
 SmallNumbers take_stored(const StoredSamples& stored, Scene& scene,
                          const std::function<void(char* memory, std::size_t bytes)>& fill);

@@ -43,9 +43,9 @@ struct SampleFiles {
   Encoding encoding = Encoding::Raw;
   std::vector<std::filesystem::path> files;  ///< each holds an equal part, in this order
   std::uintmax_t file_at = 0;    ///< offset of the samples, or of their encoded stream, in each file
-  std::uintmax_t line_skip = 0;  ///< lines to skip there
+  std::uintmax_t line_skip = 0;  ///< lines to skip from there on
   std::uintmax_t byte_skip = 0;  ///< bytes to skip next, counted after decoding
-  bool at_end = false;           ///< the samples are the last bytes of each file instead
+  bool at_end = false;           ///< instead, the samples are the last bytes of each file
 };
 
 /// The statements of a volume file's header.
@@ -78,7 +78,7 @@ inline constexpr std::string_view nifti_padding_mark = "padding=";
 inline constexpr std::string_view nifti_geometry_mark = "octotomy lps_from_voxel ";
 inline constexpr std::int32_t nifti_text_extension = 6;
 
-/// Reads a header. Throws Error, Input, with path and reason, if it is damaged, does not describe a scan
+/// Reads a header. Throws Error (Input) with path and reason, if it is damaged, does not describe a scan
 /// (more than one value per sample, several volumes), or claims more samples than its files can hold. Memory:
 /// a few megabytes.
 VolumeHeader read_volume_header(const std::filesystem::path& path, VolumeFormat format);
@@ -87,9 +87,10 @@ VolumeHeader read_volume_header(const std::filesystem::path& path, VolumeFormat 
 /// nothing if there is no text.
 void take_padding(const std::optional<std::string>& text, VolumeHeader& header);
 
-/// The audit's line on slope and intercept. `says` names them as the format does.
+/// The audit's line on slope and intercept. `says` contains the format's names for both.
 Finding rescale_finding(const StoredSamples& stored, const std::string& says);
-/// Adds a third axis to a file of two: perpendicular to these, with a spacing of 1 mm. The audit warns of it.
+/// Adds a third axis to a header of two axes: perpendicular to both, with a spacing of 1 mm. The audit warns
+/// of the assumption.
 void add_third_axis(VolumeHeader& header);
 
 /// Adds a line to the audit if a spacing of the field `name` has a minus sign, which the formats do not
@@ -101,7 +102,7 @@ VolumeHeader read_nifti_header(const std::filesystem::path& path);
 VolumeHeader read_nrrd_header(const std::filesystem::path& path);
 VolumeHeader read_meta_header(const std::filesystem::path& path);
 
-/// The numbers of samples along the first three axes; 1 for absent axes. Throws Error, Input, if a number is
+/// The numbers of samples along the first three axes; 1 for absent axes. Throws Error (Input) if a number is
 /// not an integer from 1 to 2^31 - 1, or if a further axis has more than one sample.
 glm::ivec3 dims_of(const std::filesystem::path& path, const std::vector<double>& lengths);
 
