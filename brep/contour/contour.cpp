@@ -174,8 +174,9 @@ class Enclosure {
   }
 
  private:
-  /// Near a piece's box, within this distance, rounding may decide the side of a piece. cross() rounds a few
-  /// products of the box's sides and the way to the point, and 2^-40 of their size is far larger.
+  /// Within this distance of a piece's box, rounding may decide on which side of the piece the point lies.
+  /// cross() rounds a few products of the box's sides and the distances to the point; 2^-40 of their size is
+  /// far above that rounding.
   static double rounding_of_sides(const PlaneBox& box, const glm::dvec2& p) {
     return 0x1p-40 * (std::abs(p.x) + std::abs(box.low.x) + std::abs(box.high.x));
   }

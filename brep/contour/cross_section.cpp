@@ -141,7 +141,7 @@ CrossSection cross_section(const Mesh& mesh, const Plane& plane) {
 }
 
 void part_touching(std::vector<Contour>& contours) {
-  std::map<std::pair<double, double>, int> passes;  // of contours through a point
+  std::map<std::pair<double, double>, int> passes;  // number of times that contours pass a point
   for (const Contour& contour : contours)
     for (const glm::dvec2& p : contour.points_mm) ++passes[{p.x, p.y}];
   constexpr double share = 1.0 / 1024.0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// For each gap between two drawn sections: 1 take the distances to both outlines at the samples beside them or
-// between them, once; 2 for each section between, follow the weighted sum's zero; 3 move each point along its
-// edge between samples onto the exact zero, which changes no contour's order.
+// For each gap between two drawn sections: 1 compute once the distances to both outlines at the samples
+// beside or between these; 2 for each section between, follow the weighted sum's zero; 3 move each point
+// along its edge between samples onto the exact zero, which changes no contour's order.
 #include "brep/contour/sections_between.h"
 
 #include <algorithm>
@@ -50,7 +50,7 @@ class Outline {
         add(contour.points_mm[i], contour.points_mm[(i + 1) % contour.points_mm.size()]);
   }
 
-  /// By the even-odd rule.
+  /// Whether a point lies inside the outline, by the even-odd rule.
   bool contains(const glm::dvec2& p) const {
     const double row = std::floor((p.y - low_.y) / cell_mm_);
     if (row < 0.0 || row >= height_) return false;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 turn all contours with the object on their left and move every other section a little; 2 for each slab
-// overlay its sections, then put strips where a contour has one counterpart, clear those that cross anything
-// of contours, narrow those that still do, and take back those that always do; 3 number all points in one row.
+// overlay its sections, then put strips where a contour has one counterpart; replace a strip that crosses
+// anything by one whose spans are clear of contours, then by one near the shortest spans, at last by the
+// overlay; 3 number all points in one sequence.
 #include "brep/contour/tile_sections.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -83,8 +84,8 @@ struct Tiled {
   std::size_t strips = 0, clear_strips = 0, narrowed_strips = 0, crossed_strips = 0, overlaid = 0;
 };
 
-/// Whether a strip is a surface. It is none if all its triangles meet at the two points of one span, as the
-/// strip of least area may between rings that hardly overlap.
+/// Whether a strip is a surface. False if all triangles meet at the two points of one span, which the strip
+/// of least area may do between rings that hardly overlap.
 bool is_surface(const FaceList& strip) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   edges.reserve(3 * strip.size());
