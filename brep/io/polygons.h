@@ -15,7 +15,7 @@ namespace octotomy::brep {
 /// Counts of polygons by kind. `first_` is the number of the first such polygon in the file, counted from 0
 /// with triangles included.
 struct PolygonCounts {
-  std::size_t faces = 0;         ///< polygons and triangles
+  std::size_t faces = 0;         ///< all faces, triangles included
   std::size_t polygons = 0;      ///< faces with more than three corners
   std::size_t bent = 0;          ///< not planar to the file's precision
   std::size_t crossing = 0;      ///< cross themselves, so that no triangles fill them

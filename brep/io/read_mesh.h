@@ -53,7 +53,7 @@ bool is_mesh_file(const std::filesystem::path& path);
 ///   hold.
 MeshFile read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
-/// The triangles alone.
+/// The triangles of read_mesh() alone.
 Triangles read_triangles(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
 }  // namespace octotomy::brep
