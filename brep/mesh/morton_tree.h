@@ -108,7 +108,7 @@ class MortonTree {
   static constexpr std::uint32_t leaf_size = 4;
   static constexpr std::uint32_t parallel_size = 4096;
 
-  /// A run of the order; an inner node's children are the next one and `second`.
+  /// A run of the order; an inner node's children are the next node and node `second`.
   struct Node {
     OuterBox box;
     std::uint32_t begin = 0, end = 0, second = 0;
