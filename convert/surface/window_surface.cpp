@@ -136,8 +136,8 @@ bool separates(const std::array<glm::dvec3, 3>& plane, const std::array<glm::dve
   return low > least || high < -least;
 }
 
-/// The facets of the convex hull of a loop's outside that span the loop, by gift wrapping: from each edge to
-/// the corner that has all others of the loop on the outside.
+/// Appends the facets of a convex hull that span a loop, by gift wrapping: joins each edge to the corner for
+/// which all others of the loop lie on the outside.
 void append_hull(const std::vector<int>& loop, const std::array<glm::dvec3, 12>& at, std::size_t first,
                  std::size_t last, std::vector<std::array<int, 3>>& triangles) {
   if (last - first < 2) return;
