@@ -33,7 +33,7 @@ struct MesherRequest {
   std::array<double, 3> spacing_mm{};
   std::uint64_t memory_limit_bytes = 0;
   std::uint64_t cpu_limit_seconds = 0;
-  std::int64_t parent = 0;  ///< process id of the parent, with which the child ends
+  std::int64_t parent = 0;  ///< process id of the parent; the child ends when the parent does
 };
 struct MesherAnswer {
   std::uint64_t version = MesherRequest::this_version;
@@ -61,7 +61,7 @@ struct MesherLimits {
   /// most_clock_times() as long and ends a process that hangs.
   std::chrono::milliseconds time{60000};
   std::uint64_t memory_bytes = 4ull << 30;
-  voxel::Progress progress{};  ///< reports the share of the time limit that is gone
+  voxel::Progress progress{};  ///< reports the share of the time limit that is used up
 };
 constexpr int most_clock_times() {
   return 10;

@@ -16,13 +16,13 @@
 #include "voxel/space/rounded.h"
 #include "voxel/space/shared_progress.h"
 
-// 1 A region's Full nodes become cells; where cells at the boundary are voxels, its inner voxels' nodes do,
-//   and each other voxel.
+// 1 A region's Full nodes become cells; with BoundaryCells::Voxels, the nodes of its inner voxels do, and
+//   each other voxel.
 // 2 A cell is divided if a neighbour across a face, edge or corner has less than half its side.
-// 3 A cell's faces become triangles. If smaller cells lie on a face or touch its edges, a fan about its
-//   middle with their corners on the edges; else two, along the diagonal that ends in the middle of the face
-//   of twice the side. So both sides of a face see the same triangles: two of the fan's are those of a
-//   smaller cell's face. Each triangle and the cell's middle form an element.
+// 3 A cell's faces become triangles. If smaller cells lie on a face or touch its edges, the triangles are a
+//   fan about the face's middle with the smaller cells' corners on the edges; else two, along the diagonal
+//   that ends in the middle of the face of twice the side. So both sides of a face see the same triangles:
+//   two of the fan's are those of a smaller cell's face. Each triangle and the cell's middle form an element.
 // 4 All cells are cut twice: first to mark the lattice's corners that are nodes and to count elements; then,
 //   once there is memory for them, to number nodes in the order of their first mention.
 //
@@ -101,7 +101,7 @@ class CornerNumbers {
       for (const CornerBlock& word : page) count += static_cast<std::uint64_t>(std::popcount(word.marked));
     return count;
   }
-  /// Gives every corner marked the number `none`. Precondition: 32 bits hold their count.
+  /// Gives every corner marked the number `none`. Precondition: 32-bit numbers can name all of these corners.
   void start_numbering() {
     std::uint32_t before = 0;
     for (auto& page : corners_.pages())
@@ -236,7 +236,7 @@ class Filling {
            ((glm::ivec3(along(place, 0), along(place, 1), along(place, 2)) << cell.side_log2) >> 1);
   }
 
-  /// The node's number, which is new with its first mention.
+  /// The node's number, which is assigned at the node's first mention.
   std::uint32_t node(const OctreeCell& cell, int place, const std::array<std::uint32_t, place_count>& known) {
     if (const std::uint32_t number = known[static_cast<std::size_t>(place)]; number != CornerNumbers::none)
       return number;
