@@ -16,8 +16,8 @@ constexpr double matching_cosine() {
 }
 
 /// A right fit matches at least `least_ratio` times as much of the surface as any other motion, and exceeds it
-/// by at least `least_lead` of the surface. Both constants were chosen by trials, not derived: fits of bones,
-/// and of generated bodies of which up to 60 % is missing or foreign.
+/// by at least `least_lead` of the surface. Both constants are not derived; they were chosen by trial fits of
+/// bones and of generated bodies, up to 60 % of which was missing or foreign.
 constexpr double least_ratio() {
   return 2.0;
 }
@@ -47,7 +47,7 @@ constexpr double most_growth() {
   return 1.5;
 }
 
-/// Motions that match at least this share of what the best one matches are equal answers.
+/// Motions are equal answers if each matches at least this share of the area that the best one matches.
 constexpr double equal_ratio() {
   return 0.75;
 }

@@ -105,7 +105,7 @@ Cloud mirrored_cloud(Cloud cloud, const MirrorPlane& plane) {
   return cloud;
 }
 
-/// The plane half way between points and their images under a fit from `start`.
+/// The plane half way between the points and their images, from a fit that began at `start`.
 MirrorFit plane_of(const SurfaceFit& fit, const MirrorPlane& start, const glm::dvec3& centre) {
   const glm::dmat4 image_of = fit.fixed_from_moving * reflection(start);
   MirrorFit found;

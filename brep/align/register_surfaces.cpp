@@ -73,10 +73,10 @@ double noise_limit_mm(double median_mm) {
   return 3.0 / 0.6745 * median_mm;
 }
 
-/// Surfaces with a lower stiffness count as sliding. There, a millimetre along the least determined motion
-/// changes distances by less than a twentieth of what a millimetre along the best determined one does, so
-/// noise of 0.1 mm leaves an uncertainty of 2 mm per sample. A sphere of about a thousand triangles reaches
-/// 0.02, a person's face 0.35.
+/// Surfaces with a lower stiffness count as sliding. Below it, a millimetre of the least determined motion
+/// changes distances less than a twentieth as much as a millimetre of the best determined one, so noise of
+/// 0.1 mm leaves an uncertainty of 2 mm per sample. A sphere of about a thousand triangles reaches 0.02, a
+/// person's face 0.35.
 constexpr double sliding_stiffness() {
   return 0.05;
 }
@@ -349,7 +349,7 @@ void sort_by_score(std::vector<Fit>& fits) {
 /// The result of a search with few samples.
 struct Searched {
   glm::dmat4 best{1.0};
-  std::vector<glm::dmat4> ends;    ///< of all starts, the best first
+  std::vector<glm::dmat4> ends;    ///< motions at which the starts ended, the best first
   std::vector<glm::dmat4> others;  ///< different motions, the best first, refined further
 };
 

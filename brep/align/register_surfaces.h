@@ -66,9 +66,10 @@ struct FitTrust {
 
 struct SurfaceFit {
   glm::dmat4 fixed_from_moving{1.0};  ///< rigid
-  double rms_mm = 0.0;                ///< point to surface, over the samples that were kept
+  double rms_mm = 0.0;                ///< root mean square distance to the surface of the samples that were
+                                      ///< kept
   double kept_share = 0.0;            ///< share of the samples that were kept
-  int rounds = 0;                     ///< of the last two refinements
+  int rounds = 0;                     ///< rounds of the last two refinements
   bool converged = false;             ///< the fit came to rest within max_rounds
   double last_step_mm = 0.0;          ///< root mean square displacement of the samples in the last round
   double rest_mm = 0.0;               ///< last_step_mm below this counts as rest

@@ -183,7 +183,7 @@ glm::dvec3 normal_of(const std::vector<glm::dvec3>& points_mm) {
 struct Distances {
   std::vector<glm::dvec3> at_mm;
   std::vector<double> mm;
-  std::size_t samples = 0;  ///< also those without a counterpart
+  std::size_t samples = 0;  ///< number of samples, also those without a counterpart
 };
 
 /// A sample has a counterpart if the foot lies within the fixed surface and both normals agree to 60 degrees.
@@ -283,7 +283,7 @@ bool matches(const LaidToothScan& laid) {
   return laid.matched_share >= least_matched;
 }
 
-/// The part of a laid surface that is crowns: near the points, and no deeper than asked.
+/// The crowns of a laid surface: its part near the points, down to the depth of the options.
 Triangles crowns_of(const Triangles& surface, const glm::dmat4& motion, const ToothPoints& points,
                     const LaidToothScan& laid, const ToothScanOptions& options) {
   Triangles crowns = part_where(surface, [&](const glm::dvec3& p) {

@@ -45,7 +45,7 @@ struct LaidToothScan {
   glm::dvec3 to_roots{0, 0, 1};  ///< unit normal of the plane of the points, from the tips to the roots
   double tips_mm = 0.0;          ///< p . to_roots for the points p of the plane
   double points_rms_mm = 0.0;    ///< root mean square residual of the points, before the surfaces are fitted
-  SurfaceFit fit;                ///< of the patches that were fitted
+  SurfaceFit fit;                ///< fit of the patches that were not held back
   std::vector<HeldPatch> held;
   std::size_t fitted_patches = 0;
   double matched_share = 0.0;  ///< share of the held patches' samples with a counterpart on the fixed surface
