@@ -161,8 +161,8 @@ struct Question {
 };
 
 /// The union of pieces that share whole triangles with opposite winding, such as both differences and the
-/// intersection of two solids. Its sheets may touch along edges, where corefinement alone has no union. None if
-/// the rest is not closed.
+/// intersection of two solids. Its sheets may touch along edges, where corefinement alone has no union. None
+/// if the remaining triangles are not closed.
 std::optional<Triangles> union_of_pieces(const std::array<const Triangles*, 3>& pieces) {
   Triangles all;
   PointNumbers numbers(all.points_mm);

@@ -45,7 +45,8 @@ void add_box(const Triangles& operand, const std::vector<std::uint32_t>& part, T
 /// Groups of parts whose boxes overlap, in the order of their first parts; none if there cannot be two groups
 /// with parts of both operands, or if boxes overlap too often for the groups to be worth their cost.
 std::vector<Faces> groups_of(const std::array<Linked, 2>& operands) {
-  std::vector<std::pair<std::size_t, std::vector<std::uint32_t>>> parts;  // by operand
+  std::vector<std::pair<std::size_t, std::vector<std::uint32_t>>> parts;  // operand, and triangles of the
+                                                                          // part
   Triangles boxes;
   for (const std::size_t side : {0u, 1u})
     for (std::vector<std::uint32_t>& part : shells(operands[side])) {
