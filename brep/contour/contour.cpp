@@ -23,9 +23,9 @@ namespace {
 
 constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
-/// The least distance, as a share of an edge, of a crossing from a sample. Otherwise a sample exactly at the
-/// threshold would move the crossings of all its edges to one point, where contours touch. A thousandth of a
-/// sample is far below what a scan resolves, and far above the rounding of coordinates (2^-52 times the
+/// The least distance of a crossing from a sample, as a share of the edge. Without it, a sample exactly at
+/// the threshold would move the crossings of all its edges to one point, where contours touch. A thousandth
+/// of a sample is far below what a scan resolves, and far above the rounding of coordinates (2^-52 times the
 /// number of samples along a side).
 constexpr double least_fraction() {
   return 1.0 / 1024.0;

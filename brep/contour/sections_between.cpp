@@ -281,8 +281,9 @@ std::vector<Section> sections_in_gap(const Section& below, const Section& above,
   return sections;
 }
 
-/// Moves the tiles' points back to the points of their sections, and those of a step half way into one plane.
-/// The tiles' points begin with those of the sections, in the sections' order; contours may be reversed.
+/// Moves the tiles' points back to the points of their sections. Moves the points of both sections at a step
+/// into one plane half way. The tiles' points begin with those of the sections, in the sections' order;
+/// contours may be reversed.
 Triangles put_back(const Triangles& tiles, const std::vector<Section>& sections) {
   Triangles back = tiles;
   std::size_t first = 0;

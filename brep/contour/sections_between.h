@@ -49,7 +49,7 @@ std::vector<Section> sections_between(const std::vector<Section>& drawn,
 /// The surface tiled from sections_between().
 struct TiledBetween {
   Triangles surface;           ///< as tile_sections() makes it
-  std::size_t sections = 0;    ///< that were tiled
+  std::size_t sections = 0;    ///< number of sections that were tiled
   bool is_whole_flat = false;  ///< flat ends, steps and upright walls lie exactly in their planes
   bool is_apart = false;       ///< no two of its triangles meet, by an exact search
 };

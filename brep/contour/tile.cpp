@@ -181,7 +181,7 @@ class Blame {
   std::size_t m_, n_;
   double reach_mm_;
   std::vector<std::uint8_t>& of_;
-  std::array<std::unordered_map<std::size_t, int>, 2> of_step_;  ///< of triangles to be avoided
+  std::array<std::unordered_map<std::size_t, int>, 2> of_step_;  ///< scores of triangles to be avoided
 };
 
 /// Among the pairs of points with the lowest score, the pair that is nearest after both rings are scaled to
@@ -619,8 +619,8 @@ class LeastPath {
                                          ///< empty: not used
 };
 
-/// About 1 GB. least_angle takes two bytes per pair of points: one for the path and one for the span's score. Paths
-/// from all starts take at most 14.
+/// The number of pairs of points whose tables take about 1 GB. least_angle takes two bytes per pair: one for
+/// the path and one for the span's score. Paths from all starts take at most 14 bytes.
 std::size_t most_pairs(TileCost cost) {
   return std::size_t{1} << (cost == TileCost::least_angle ? 29 : 26);
 }

@@ -319,9 +319,11 @@ class Strips {
   std::optional<double> most_span_mm_;
   std::vector<FaceList> strips_;  ///< of each group; empty where the surface is overlay()'s
   SpanClearance sides_;
-  std::vector<int> attempts_;                      ///< of each group, after the first
-  std::vector<FaceList> avoided_;                  ///< of each group, in the numbers of its rings
-  std::vector<std::vector<std::uint8_t>> scores_;  ///< of each group's spans, for further clear attempts
+  std::vector<int> attempts_;                      ///< number of each group's attempt
+  std::vector<FaceList> avoided_;                  ///< triangles that each group avoids, numbered by its
+                                                   ///< rings
+  std::vector<std::vector<std::uint8_t>> scores_;  ///< scores of each group's spans, for further clear
+                                                   ///< attempts
 };
 
 Tiled tile_slab(const Slab& slab, const TileSectionsOptions& options) {
