@@ -120,7 +120,7 @@ Syntax syntax_of(std::string_view bytes) {
   return {scanner.bytes(scanner.rest()), syntax == "1.2.840.10008.1.2.1"};
 }
 
-/// The word for length_unit() that a UCUM code means; empty if it is not a unit of length.
+/// The unit that a UCUM code means, as a word for length_unit(); empty if it is not a unit of length.
 std::string word_of_unit(std::string_view code) {
   constexpr std::array<std::string_view, 6> metric{"nm", "um", "mm", "cm", "dm", "m"};
   if (std::find(metric.begin(), metric.end(), code) != metric.end()) return std::string(code);

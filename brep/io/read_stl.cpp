@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Reads STL. The file's length decides whether it is binary, not its first word: binary files that begin with
 // "solid" are common. If the count and the length of a binary file disagree:
-// - fewer bytes than a triangle has follow the counted triangles: they are ignored and reported; - whole
-// triangles follow: the count is too small, as when a writer stopped before updating it; they are
+// - fewer bytes than a triangle has follow the counted triangles: these bytes are ignored and reported;
+// - whole triangles follow: the count is too small, as when a writer stopped before updating it; they are
 //   read, with a warning;
 // - the count is larger than the file: it is truncated, and refused.
 #include <algorithm>
