@@ -191,7 +191,8 @@ struct SurfaceTree::Tree {
                            ///< the origin loses no digits
   bool is_halved;          ///< nodes were split at the median centre
   std::vector<FourBoxes> boxes_of_leaf;    ///< boxes of each leaf's triangles; for segments only
-  std::vector<std::uint32_t> leaf_number;  ///< by node; for segments only
+  std::vector<std::uint32_t> leaf_number;  ///< for each node, the index of a leaf in boxes_of_leaf; for
+                                           ///< segments only
 
   Tree(const Triangles& source, SurfaceTree::Build build) : is_halved(build != SurfaceTree::Build::Hasty) {
     const auto count = static_cast<std::uint32_t>(source.faces.size());

@@ -58,9 +58,9 @@ class SurfaceTree {
   /// the surface has no triangles. Cost: about log n per point, parallel.
   std::vector<double> distances_mm(const std::vector<glm::dvec3>& points_mm) const;
 
-  /// The distance of one point. The search starts with `triangle`, a number in the tree (such as 0), and stores
-  /// the nearest one there, which makes the next search fast if its point is near. The search ends at the
-  /// first distance below `enough_mm`, which need not be the least.
+  /// The distance of one point. The search starts with `triangle`, a number in the tree (such as 0), and
+  /// stores the nearest triangle there, which makes the next search fast if its point is near. The search
+  /// ends at the first distance below `enough_mm`, even if it is not the least.
   double distance_mm(const glm::dvec3& p_mm, std::uint32_t& triangle, double enough_mm = 0.0) const;
 
   /// The foot of one point, by the same search. If a triangle is nearer than `enough_mm`, the foot may be

@@ -57,7 +57,7 @@ struct Health {
   /// shells around it, and the total volume is positive.
   bool oriented = false;
   std::vector<std::string> findings;   ///< each names its first triangle by number and position
-  std::optional<Defect> first_defect;  ///< that of the first finding
+  std::optional<Defect> first_defect;  ///< defect of the first finding
 
   bool solid() const { return !first_defect; }
 };

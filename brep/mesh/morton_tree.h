@@ -207,7 +207,7 @@ class MortonTree {
     for (const auto& [half, other_half] : halves) near(half, other, other_half, limit_mm2, visit_pair);
   }
 
-  std::vector<std::uint32_t> faces_;  ///< in the order
+  std::vector<std::uint32_t> faces_;  ///< numbers of the faces, in Morton order
   std::vector<OuterBox> boxes_;       ///< boxes of the faces, in Morton order
   std::vector<Node> nodes_;           ///< a parent before its children
 };
