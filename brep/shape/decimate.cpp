@@ -109,7 +109,7 @@ class ErrorThenShape : public OpenMesh::Decimater::ModQuadricT<CollapsedMesh> {
     };
   }
 
-  std::vector<Collapse> made;  ///< in their order
+  std::vector<Collapse> made;  ///< the collapses made, in order
 
   void limit(const DecimateOptions& options, double mean_mm2) {
     // The library keeps errors as floats, and weighs each plane's squared distance by its triangle's area.
@@ -192,7 +192,7 @@ std::vector<bool> border_of(const Mesh& mesh) {
 /// A mesh and the collapses that made it.
 struct Coarse {
   Mesh mesh;
-  std::vector<Collapse> collapses;            ///< of the given mesh's vertices
+  std::vector<Collapse> collapses;            ///< collapses in terms of the given mesh's vertices
   std::vector<OpenMesh::VertexHandle> given;  ///< for each vertex, the same vertex of the given mesh
 };
 

@@ -122,7 +122,7 @@ class CoarseDistances {
   double edge_mm_;
   std::unordered_map<std::uint64_t, Cell> cells_;
   std::vector<glm::dvec3> middles_mm_;
-  std::vector<std::vector<double>> at_middle_mm_;  ///< by level and cell
+  std::vector<std::vector<double>> at_middle_mm_;  ///< distances at the cells' middles, by level and cell
 };
 
 /// Calls `take(i, distance)` with the signed distance to a level of each point for which `needs(i)` is true.

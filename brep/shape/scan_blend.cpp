@@ -325,7 +325,8 @@ LatticeValues values_about(const Size& size, const MixedField& field, double ste
   lattice.origin_mm = size.low_mm - options.cell_mm * glm::dvec3(1.2718281828, 1.3141592653, 1.1414213562);
   lattice.blocks = glm::ivec3(
       glm::ceil((size.high_mm + 2.0 * options.cell_mm - lattice.origin_mm) / (block * options.cell_mm)));
-  // A block takes 48 bytes, and each of its points, near the surface, 32 and as much again while their list grows.
+  // A block takes 48 bytes. Near the surface, each point of a block takes 32 bytes, and 32 more while the
+  // list of points grows.
   constexpr double most_blocks = double(1 << 21);
   constexpr std::size_t most_near_blocks = 1 << 17;
   const auto too_many = [&] {

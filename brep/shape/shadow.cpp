@@ -4,8 +4,8 @@
 // 2 Draw the edges of those triangles into a constrained triangulation of the view: none crosses its faces.
 // 3 Each face of the view has the triangle that the line of sight through its middle meets first.
 // 4 At each point of the view, the faces around it lie at one depth or at several. Each depth is one point of
-// the shadow: the object's own point if it has one there. 5 Each covered face makes one triangle at its depth
-// and one in the end plane; each edge between faces of
+//   the shadow: the object's own point if it has one there.
+// 5 Each covered face makes one triangle at its depth and one in the end plane; each edge between faces of
 //   different depths makes a wall.
 //
 // Step 5 closes the surface for any triangle that step 3 finds: each wall's upper and lower edges are those
@@ -94,7 +94,7 @@ class PointsByPlace {
 /// A depth at a point of the view. Depths in from..to count as this depth.
 struct Level {
   double from = 0.0, to = 0.0;
-  std::uint32_t point = 0;  ///< of the shadow
+  std::uint32_t point = 0;  ///< number of the shadow's point
 };
 
 class ShadowSurface {
@@ -160,12 +160,12 @@ class ShadowSurface {
   const Solid& solid_;
   const Progress& progress_;
   ViewAxes axes_;
-  std::vector<glm::dvec3> points_;  ///< of the object, in the view
+  std::vector<glm::dvec3> points_;  ///< points of the object, in the view
   PointsByPlace by_place_;
   FrontFaces faces_;
   double same_depth_mm_ = 0.0, end_ = 0.0;
   ViewPlane view_;
-  std::vector<std::vector<Level>> levels_;  ///< of a point of the view, ascending
+  std::vector<std::vector<Level>> levels_;  ///< for each point of the view, its levels, ascending
   Triangles surface_;
 };
 
