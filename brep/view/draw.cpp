@@ -120,7 +120,7 @@ class Painter {
 
  private:
   struct Grid {
-    int first_row = 0, rows = 0;  ///< of points
+    int first_row = 0, rows = 0;  ///< rows of points
     int points_per_px = 1;        ///< along each axis
     int columns = 0;
 
