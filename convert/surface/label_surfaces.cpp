@@ -46,7 +46,7 @@ constexpr std::uint32_t code_count = 128, first_tetrahedron_code = 64;
 constexpr double least_part = 0.1;
 
 struct PointName {
-  std::uint8_t corner = 0;  ///< of the cell: the point's lowest sample
+  std::uint8_t corner = 0;  ///< corner of the cell: the point's lowest sample
   std::uint8_t code = 0;
 };
 
@@ -433,7 +433,8 @@ class Extraction {
   std::vector<double> weights_;
   std::vector<std::vector<Face>> faces_;                 ///< by the plane of samples below
   std::vector<std::vector<Key>> keys_;                   ///< by the plane of the lowest sample
-  std::vector<std::uint64_t> first_point_, first_face_;  ///< of each plane; of faces, their number at the end
+  std::vector<std::uint64_t> first_point_, first_face_;  ///< first number of each plane; of faces, the total
+                                                         ///< at the end
   brep::PartedSurface made_;
 };
 

@@ -11,8 +11,8 @@ namespace octotomy::convert {
 
 struct LabelSurfaceOptions {
   std::set<int> labels = {};  ///< the parts; empty: all but 0. Samples with other labels belong to no part.
-  /// 0..4: radius s, in voxels, of the neighbourhood that decides where a surface passes between two samples;
-  /// 0: half-way. Larger is smoother, and shrinks a ball of radius r by s / 2r voxels.
+  /// Radius s, in voxels, 0..4, of the neighbourhood that decides where a surface passes between two samples.
+  /// 0: half-way. A larger radius is smoother, and shrinks a ball of radius r by s / 2r voxels.
   int smooth_voxels = 1;
   voxel::Progress progress = {};
 };

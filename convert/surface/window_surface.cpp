@@ -94,7 +94,7 @@ std::vector<std::uint64_t> cells_of(const brep::Triangles& surface, const CellNu
   return cells;
 }
 
-/// A cell that both surfaces cross: the ranges of its triangles, and what replaces them.
+/// A cell that both surfaces cross: the ranges of its triangles, and the triangles that replace them.
 struct SharedCell {
   std::uint64_t number = 0;
   std::size_t low_begin = 0, low_end = 0, high_begin = 0, high_end = 0;
