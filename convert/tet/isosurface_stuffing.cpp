@@ -238,7 +238,7 @@ class Stuffing {
         }
   }
 
-  /// Pass 2: cut points as shares of the way from the side's key end.
+  /// Pass 2. Stores cut points as shares of the side, from the end that the side's key names.
   void cut(const CubeLists& triangles) {
     struct Side {
       LatticePoint from{0}, to{0};

@@ -29,7 +29,7 @@ struct MesherRequest {
   std::uint64_t holes = 0;             ///< three doubles each
   std::uint64_t sizes = 0;             ///< a double each; for an image of labels, the number of its shares
   std::uint64_t labels = 0;            ///< a byte each, x fastest
-  std::array<std::int32_t, 3> dims{};  ///< of the labels
+  std::array<std::int32_t, 3> dims{};  ///< voxels of the image along each axis
   std::array<double, 3> spacing_mm{};
   std::uint64_t memory_limit_bytes = 0;
   std::uint64_t cpu_limit_seconds = 0;

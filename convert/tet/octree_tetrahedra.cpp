@@ -119,8 +119,8 @@ class CornerNumbers {
 
  private:
   struct CornerBlock {
-    std::uint64_t marked = 0;  ///< of 4 x 4 x 4 corners
-    std::uint32_t before = 0;  ///< marked in the words before
+    std::uint64_t marked = 0;  ///< bits of the marked ones of 4 x 4 x 4 corners
+    std::uint32_t before = 0;  ///< number of corners marked in the words before
   };
   static int bit_of(const glm::ivec3& corner) {
     return voxel::child_index(corner.x & 3, corner.y & 3, corner.z & 3);
@@ -222,8 +222,8 @@ class Filling {
         });
   }
 
-  /// The bit of the half cube across a fan's triangle, by its two places on the round. An undivided edge
-  /// consists of two quarters, neither of which has a cell beyond it.
+  /// The bit of the half cube beyond a fan's triangle, by the triangle's two places on the face's edges. For
+  /// an undivided edge, no half cube beyond either half of the edge is a cell.
   static std::uint64_t half_beyond(int face, int b, int c) {
     glm::ivec3 half(0);
     for (int axis = 0; axis < 3; ++axis) half[axis] = along(b, axis) + along(c, axis) > 2 ? 2 : 1;

@@ -68,7 +68,7 @@ void for_each_run(const voxel::Octree& region, const F& f) {
 /// Pass 1.
 struct Labelled {
   LabelImage image;
-  glm::ivec3 first_voxel{0};  ///< of the universe, at the image's (0, 0, 0)
+  glm::ivec3 first_voxel{0};  ///< voxel of the universe at the image's (0, 0, 0)
 
   std::size_t number(const glm::ivec3& v) const {
     return (static_cast<std::size_t>(v.z) * static_cast<std::size_t>(image.dims.y) +

@@ -43,7 +43,7 @@ class SurfaceSizes {
   const MesherInput& surface_;
   double grading_;
   std::vector<double> sizes_mm_;
-  std::vector<std::size_t> first_;  ///< of each point in `beside_`, and the end
+  std::vector<std::size_t> first_;  ///< index in `beside_` of each point's first entry, then the end
   std::vector<std::uint32_t> beside_;
 };
 
