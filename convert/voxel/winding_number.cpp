@@ -46,7 +46,7 @@ using BlockWinds = std::array<std::int32_t, std::size_t{row_count} * slab_layers
 
 /// Consecutive blocks in a row of blocks. Begins where the stretch before it ends.
 struct Stretch {
-  int end = 0;  ///< in blocks
+  int end = 0;  ///< first block after the stretch
   std::optional<std::int32_t> winds;
   voxel::Block block;  ///< if `winds` is empty: the voxels of each block of the stretch
 };
