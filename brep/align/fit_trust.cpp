@@ -16,13 +16,13 @@ constexpr double matching_cosine() {
 }
 
 /// A right fit matches at least `least_ratio` times as much of the surface as any other motion, and exceeds it
-/// by at least `least_lead` of the surface. Both constants were chosen by trials, not derived: fits of bones,
-/// and of generated bodies of which up to 60 % is missing or foreign.
+/// by at least `least_lead` of the surface. Both constants are not derived; they were chosen by trial fits of
+/// bones and of generated bodies, up to 60 % of which was missing or foreign.
 constexpr double least_ratio() {
   return 2.0;
 }
-/// If a fit matches less than `small_share` of the surface, its match must exceed every other by
-/// `least_small_ratio`: caps of rounded bodies exceed others by 2.5 times by chance.
+/// If a fit matches less than `small_share` of the surface, its match must be `least_small_ratio` times that
+/// of any other motion: caps of rounded bodies reach 2.5 times by chance.
 constexpr double small_share() {
   return 0.4;
 }
@@ -32,21 +32,22 @@ constexpr double least_small_ratio() {
 constexpr double least_lead() {
   return 0.12;
 }
-/// A fit that matches less than this is no evidence, however little others match: bumps of a rounded body
-/// match a fifth of it by chance.
+/// A match of less than this share of the surface is no evidence, however little other motions match: bumps
+/// of a rounded body match a fifth of the body by chance.
 constexpr double least_share() {
   return 0.2;
 }
 
-/// The distances of samples that coincide but for noise have about the noise as their standard deviation. So at least
-/// 68 % of them lie within a rung as wide as the noise, and four times that distance holds at most 1.46 times as many.
-/// Samples that are scattered evenly about a surface, as where caps of two bodies happen to be alike, are then
-/// several times as many. A small match that grows by more than this is chance.
+/// If surfaces coincide except for noise, the noise is about the standard deviation of the samples'
+/// distances. So at least 68 % of the samples lie within a rung as wide as the noise, and at most 1.46 times
+/// as many within four times that distance. If samples are scattered evenly about a surface, for example
+/// where caps of two bodies happen to be alike, several times as many lie within four times the distance. A
+/// small match that grows by more than this factor is chance.
 constexpr double most_growth() {
   return 1.5;
 }
 
-/// Motions that match at least this share of what the best one matches are equal answers.
+/// Motions are equal answers if each matches at least this share of the area that the best one matches.
 constexpr double equal_ratio() {
   return 0.75;
 }
@@ -56,9 +57,9 @@ constexpr double equal_share() {
   return 0.35;
 }
 
-/// The fits of a symmetric shape match equally much, apart from the noise of samples. Fits whose matches
-/// differ by more than this ratio, and that match less than this share, are chance: caps of two unrelated
-/// bodies match like that.
+/// The fits of a symmetric shape match equally much, apart from the noise of samples. If the smaller of two
+/// matches is below this ratio of the larger one, and the fit matches less than this share, the matches are
+/// chance, as for caps of two unrelated bodies.
 constexpr double chance_ratio() {
   return 0.95;
 }
@@ -72,7 +73,7 @@ constexpr double same_share() {
   return 0.1;
 }
 
-/// A residual above this multiple of the noise, or above this share of the spread, comes from parts without a
+/// A residual above both this multiple of the noise and this share of the spread comes from parts without a
 /// counterpart.
 constexpr double most_noises() {
   return 5.0;
@@ -82,7 +83,7 @@ constexpr double most_residual_share() {
 }
 
 constexpr std::size_t near_rungs =
-    3;  ///< of trust_ladder_mm(); the last one decides only between doubt and failure
+    3;  ///< the first rungs of trust_ladder_mm(); the last rung decides only between Doubtful and Failed
 
 std::string per_cent(double share) {
   return short_text(100.0 * share) + " %";

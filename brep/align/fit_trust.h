@@ -30,9 +30,9 @@ std::vector<glm::dmat4> different_motions(const Cloud& cloud, const std::vector<
 std::vector<double> matched_shares(const Cloud& cloud, const OrientedSurface& fixed, const glm::dmat4& motion,
                                    const std::vector<double>& ladder_mm);
 
-/// The distances at which fits are compared: three rungs, each twice the one before, from a quarter of a
-/// per cent of the spread or from a quarter of the surfaces' noise, because rungs wider than the noise also
-/// match wrong fits; a last rung of at least 2 % of the spread.
+/// The distances at which fits are compared: three rungs, each twice the one before, and a last rung of at
+/// least 2 % of the spread. The first is 0.25 % of the spread or, if larger, a quarter of the surfaces' noise
+/// (at most 1 % of the spread), because rungs wider than the noise also match wrong fits.
 std::vector<double> trust_ladder_mm(double spread_mm, double noise_mm);
 
 /// The data with which a fit is compared.
@@ -47,10 +47,10 @@ struct TrustedFrom {
 
 /// Judges a motion. A right one brings much more of the surface to within the noise than any other motion
 /// that the search found; at a wrong one, the search's other ends match about as much. Motions that match
-/// equally much, each to within the noise, are equal answers of a symmetric shape; those that match little, and
-/// not the same, are doubtful. So is a small match whose distances are scattered evenly instead of ending within the
-/// noise, whatever other motions match. Without a search the share
-/// alone decides, and a small one is doubtful. A residual far above the noise is doubtful, too.
+/// equally much, each to within the noise, are equal answers of a symmetric shape. If their matches are small
+/// and differ, the motion is not right. Neither is a small match whose distances are scattered evenly instead
+/// of ending within the noise, however little other motions match. Without a search the share alone decides,
+/// and a small one is doubtful. A residual far above the noise is doubtful, too.
 FitTrust trust_of(const glm::dmat4& motion, const TrustedFrom& from);
 
 }  // namespace octotomy::brep

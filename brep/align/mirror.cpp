@@ -26,8 +26,9 @@ constexpr std::size_t voting_samples = 1000, voted_count = 24, sift_samples = 15
 constexpr int sift_rounds = 15, trial_rounds = 60;
 constexpr std::size_t tried_count = 4;
 
-/// The share of the overlap that trials keep. A loss on one side may move the surface's centre and axes, or
-/// exceed the stated overlap; with this share it does not decide the plane.
+/// The share of the overlap that trials keep. A missing part on one side may shift the surface's centre and
+/// axes, or be larger than the stated overlap allows. With this share the trials find the plane in spite of
+/// it.
 constexpr double trial_overlap() {
   return 0.5;
 }
@@ -38,7 +39,7 @@ constexpr double same_plane_deg() {
   return 10.0;
 }
 
-/// A plane whose residual is up to this times the best one's fits nearly as well.
+/// A plane fits nearly as well as the best one if its residual is at most this many times as large.
 constexpr double rival_share() {
   return 1.5;
 }
@@ -104,7 +105,7 @@ Cloud mirrored_cloud(Cloud cloud, const MirrorPlane& plane) {
   return cloud;
 }
 
-/// The plane half way between points and their images under a fit from `start`.
+/// The plane half way between the points and their images, from a fit that began at `start`.
 MirrorFit plane_of(const SurfaceFit& fit, const MirrorPlane& start, const glm::dvec3& centre) {
   const glm::dmat4 image_of = fit.fixed_from_moving * reflection(start);
   MirrorFit found;
@@ -196,8 +197,8 @@ bool are_same(const MirrorPlane& a, const MirrorPlane& b, const Spread& spread) 
          std::abs(apart_mm) < 0.05 * size_mm;
 }
 
-/// The planes at which fits from the starts end, each once, the best first; among equal ones that of the
-/// earlier start.
+/// Fits from each start. Returns the different planes at which the fits end, the best first; of equally good
+/// ones, that of the earlier start first.
 std::vector<Tried> tried(const std::vector<MirrorPlane>& starts, const Cloud& cloud,
                          const OrientedSurface& surface, const Spread& spread, SurfaceFitOptions options,
                          int rounds) {
@@ -220,8 +221,8 @@ std::vector<Tried> tried(const std::vector<MirrorPlane>& starts, const Cloud& cl
   return different;
 }
 
-/// A residual this many times that of the trials, which keep less of the surface, shows samples without a
-/// counterpart.
+/// If the residual is this many times that of the trials, which keep less of the surface, some kept samples
+/// have no counterpart.
 constexpr double far_worse() {
   return 5.0;
 }

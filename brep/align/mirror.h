@@ -28,7 +28,7 @@ struct MirrorFitOptions {
   std::optional<MirrorPlane> start = std::nullopt;
   /// Share of the surface's area that has a counterpart on the other side, as in SurfaceFitOptions: the
   /// missing or crooked part of one side must be less than the rest. Without a start, half of this share is
-  /// used, with a finding, if the residual shows that less has a counterpart.
+  /// used, with a finding, if the residual shows that a smaller share has a counterpart.
   double overlap = 0.7;
   int max_rounds = 100;                          ///< as in SurfaceFitOptions
   std::optional<double> rest_mm = std::nullopt;  ///< as in SurfaceFitOptions
@@ -45,17 +45,17 @@ struct MirrorFit {
   /// and shift in the plane. Both are near zero if the surface has a mid-plane.
   double twist_deg = 0.0, slide_mm = 0.0;
   int rounds = 0;                            ///< number of rounds of the last two refinements
-  bool converged = false;                    ///< both came to rest within max_rounds
+  bool converged = false;                    ///< both refinements came to rest within max_rounds
   double last_step_mm = 0.0, rest_mm = 0.0;  ///< as in SurfaceFit
   /// Doubts. Without a start also another plane that fits nearly as well, and the use of a smaller overlap.
   std::vector<std::string> findings;
 };
 
 /// The plane about which a surface is most nearly its own mirror image. Throws as register_surfaces(). Cost:
-/// that of one such fit, and without a start 27 short ones with a few samples and four with more. Source:
-/// Benz et al., "The symmetry of faces", VMV 2002: mirror about any plane, register, and take the plane half
-/// way between points and their images; starts by votes of pairs after Mitra, Guibas, Pauly, "Partial and
-/// approximate symmetry detection for 3D geometry", SIGGRAPH 2006.
+/// one fit of register_surfaces(); without a start, also 27 short fits with few samples and four with more.
+/// Source: Benz et al., "The symmetry of faces", VMV 2002: mirror about any plane, register, and take the
+/// plane half way between points and their images; starts by votes of pairs after Mitra, Guibas, Pauly,
+/// "Partial and approximate symmetry detection for 3D geometry", SIGGRAPH 2006.
 MirrorFit fit_mirror_plane(const Mesh& mesh, const MirrorFitOptions& options = {});
 
 }  // namespace octotomy::brep

@@ -27,10 +27,10 @@ std::vector<Kernel::Point_3> points_of(const Mesh& mesh) {
   return points;
 }
 
-/// With more points on the hull, the search takes those that lie furthest along `most_points / 2` directions
-/// and against them. Every direction is within about 2 degrees of one of these. The box is measured again
-/// over all points, so it holds all of them; on a rounded body its edges exceed the shortest possible ones by
-/// less than 1e-3.
+/// If the hull has more points, the search uses those that lie furthest in `most_points / 2` directions and
+/// in the opposite ones. Every direction is within about 2 degrees of one of these directions. The box is
+/// measured again over all points, so it holds all of them; on a rounded body its edges exceed the shortest
+/// possible ones by less than 1e-3.
 constexpr std::size_t most_points = 4000;
 
 glm::dvec3 as_vector(const Kernel::Point_3& p) {
@@ -63,7 +63,7 @@ std::vector<Kernel::Point_3> furthest_points(const std::vector<Kernel::Point_3>&
   return points;
 }
 
-/// The box with the same axes that holds all points.
+/// Resizes the box, with the same axes, to hold all points.
 void hold(const std::vector<Kernel::Point_3>& points, OrientedBox& box) {
   glm::dvec3 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
   const glm::dmat3 frame_from_lps = glm::transpose(glm::dmat3(box.axes[0], box.axes[1], box.axes[2]));
@@ -76,7 +76,7 @@ void hold(const std::vector<Kernel::Point_3>& points, OrientedBox& box) {
   box.edges_mm = high - low;
 }
 
-/// Axes and edges in the order of falling edges.
+/// Sorts axes and edges, the longest edge first.
 void order(OrientedBox& box) {
   std::array<int, 3> by_length{0, 1, 2};
   std::stable_sort(by_length.begin(), by_length.end(),
@@ -119,7 +119,7 @@ OrientedBox oriented_box(const Mesh& mesh) {
   OrientedBox box;
   box.centre_mm = at(0) + 0.5 * (edges[0] + edges[1] + edges[2]);
   for (int k = 0; k < 3; ++k) box.edges_mm[k] = glm::length(edges[static_cast<std::size_t>(k)]);
-  // A flat box keeps its two axes.
+  // A flat box is valid: two edges suffice for three axes.
   if (!(box.edges_mm.y > 0.0))
     throw InvalidInput("oriented_box: all points lie in one line, so a box has no axes");
   box.axes[0] = forward(edges[0] / box.edges_mm.x);

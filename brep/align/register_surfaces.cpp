@@ -2,8 +2,8 @@
 // 1 spread samples over the moving surface; 2 without a start, refine each of a set of rotations briefly with
 // few samples and keep the best; 3 refine with all samples: find their nearest points, drop samples without a
 // counterpart, trim the furthest, solve for the linearised motion that moves the rest onto the tangent
-// planes, until nothing moves; 4 refine again with all samples within the noise of those kept. Step 4 is a
-// departure from trimming; it uses the whole overlap. Sums run in the order of the samples.
+// planes, until nothing moves; 4 refine again with all samples within the noise of those kept. Step 4 departs
+// from trimming, to use the whole overlap. Sums run in the order of the samples.
 #include "brep/align/register_surfaces.h"
 
 #include <Eigen/Dense>
@@ -55,13 +55,13 @@ constexpr double rest_share() {
 /// trimming limit are then kept and dropped in turn, and none of these choices is better than another.
 constexpr int cycle_rounds = 12;
 
-/// A fit hardly improves if its rms falls by less than this share in those rounds.
+/// A fit hardly improves if its rms falls by less than this share in cycle_rounds rounds.
 constexpr double settled_share() {
   return 1e-4;
 }
 
-/// The step has no component along a mode with less than this share of the largest stiffness: it would be
-/// rounding divided by nearly zero. Eigenvalues of sums of about 1e4 terms are accurate to 1e-12 of the
+/// Modes with less than this share of the largest stiffness are left out of the step: their component would
+/// be rounding divided by nearly zero. Eigenvalues of sums of about 1e4 terms are accurate to 1e-12 of the
 /// largest.
 constexpr double softest_share() {
   return 1e-9;
@@ -73,10 +73,10 @@ double noise_limit_mm(double median_mm) {
   return 3.0 / 0.6745 * median_mm;
 }
 
-/// Surfaces with a lower stiffness count as sliding. There, a millimetre along the least determined motion
-/// changes distances by less than a twentieth of what a millimetre along the best determined one does, so
-/// noise of 0.1 mm leaves an uncertainty of 2 mm per sample. A sphere of about a thousand triangles reaches
-/// 0.02, a person's face 0.35.
+/// Surfaces with a lower stiffness count as sliding. Below it, a millimetre of the least determined motion
+/// changes distances less than a twentieth as much as a millimetre of the best determined one, so noise of
+/// 0.1 mm leaves an uncertainty of 2 mm per sample. A sphere of about a thousand triangles reaches 0.02, a
+/// person's face 0.35.
 constexpr double sliding_stiffness() {
   return 0.05;
 }
@@ -85,7 +85,7 @@ glm::dvec3 through(const glm::dmat4& motion, const glm::dvec3& p) {
   return glm::dvec3(motion * glm::dvec4(p, 1.0));
 }
 
-/// The motion that makes both clouds' centres and axes coincide, with `turn` in between.
+/// The motion that makes both clouds' centres coincide, and their axes after the rotation `turn`.
 glm::dmat4 laid_on(const Cloud& moving, const Cloud& fixed, const glm::dmat3& turn) {
   const glm::dmat3 rotation = fixed.axes * turn * glm::transpose(moving.axes);
   glm::dmat4 motion(rotation);
@@ -103,7 +103,8 @@ std::vector<glm::dmat3> icosahedral_turns() {
   std::vector<glm::dmat3> turns = {glm::dmat3(1.0)};
   const auto known = [&](const glm::dmat3& turn) {
     return std::any_of(turns.begin(), turns.end(), [&](const glm::dmat3& other) {
-      // The trace of the rotation between the two; the smallest rotation of the group is 72 degrees.
+      // The products sum to the trace of the rotation between both: 3 if they are equal, else at most 1.62,
+      // because the group's smallest rotation is 72 degrees.
       return glm::dot(turn[0], other[0]) + glm::dot(turn[1], other[1]) + glm::dot(turn[2], other[2]) > 2.5;
     });
   };
@@ -126,7 +127,7 @@ struct Fit {
   MotionDoubt doubt;
   int rounds = 0;
   bool converged = false;
-  double last_step_mm = 0.0;  ///< by which the last round moved the samples, root mean square
+  double last_step_mm = 0.0;  ///< root mean square displacement of the samples in the last round
   double best_mm = std::numeric_limits<double>::infinity();  ///< least rms so far of the samples kept
   glm::dmat4 best_motion{1.0};
   int since_best = 0;  ///< rounds since best_mm fell noticeably
@@ -348,7 +349,7 @@ void sort_by_score(std::vector<Fit>& fits) {
 /// The result of a search with few samples.
 struct Searched {
   glm::dmat4 best{1.0};
-  std::vector<glm::dmat4> ends;    ///< of all starts, the best first
+  std::vector<glm::dmat4> ends;    ///< motions at which the starts ended, the best first
   std::vector<glm::dmat4> others;  ///< different motions, the best first, refined further
 };
 
@@ -359,7 +360,7 @@ std::vector<glm::dmat4> motions_of(const std::vector<Fit>& fits) {
   return motions;
 }
 
-/// The best of all rotations, each refined with few samples.
+/// Refines each rotation with few samples and sorts the results.
 Searched search(const Cloud& cloud, const Cloud& fixed, const OrientedSurface& surface,
                 const SurfaceFitOptions& options) {
   const Refinement refinement(cloud, surface, options);
@@ -388,7 +389,7 @@ Searched search(const Cloud& cloud, const Cloud& fixed, const OrientedSurface& s
   return searched;
 }
 
-/// The search's results, refined again with a smaller overlap, the one that matches most first.
+/// Refines the search's results with a smaller overlap. Returns the one that matches most first.
 std::vector<glm::dmat4> narrowed(const Cloud& cloud, const Searched& searched, const OrientedSurface& surface,
                                  double noise_mm, const SurfaceFitOptions& options) {
   const std::vector<double> ladder_mm = trust_ladder_mm(cloud.spread_mm, noise_mm);
@@ -512,7 +513,7 @@ SurfaceFit fit_cloud(const Cloud& cloud, const OrientedSurface& fixed, const glm
 
 namespace {
 
-/// Words the verdict on a fit.
+/// Adds findings that state the verdict on a fit.
 void tell_trust(SurfaceFit& fit) {
   const FitTrust& trust = *fit.trust;
   // Surfaces that slide on each other have a finding already.

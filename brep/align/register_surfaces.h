@@ -40,8 +40,8 @@ struct MotionDoubt {
   std::array<double, 36> covariance{};  ///< of rotations about x, y, z times the spread, then of shifts; row
                                         ///< by row
 
-  /// Standard deviation of a point's displacement along a unit direction, both in the fixed surface's frame;
-  /// without unit.
+  /// Standard deviation of a point's displacement along a unit direction, in millimetres per millimetre of
+  /// the samples' error. Point and direction are in the fixed surface's frame.
   double deviation(const glm::dvec3& p_mm, const glm::dvec3& along) const;
   /// Standard deviation of the rotation about a unit axis, in radians per millimetre of the samples' error.
   double turn_deviation(const glm::dvec3& axis) const;
@@ -50,46 +50,50 @@ struct MotionDoubt {
 /// Whether a fit is the true position. Doubtful: there is evidence for it, but not enough.
 enum class FitVerdict { Right, Doubtful, Failed };
 
-/// Why a fit can be relied on, or not.
+/// The evidence for or against a fit.
 struct FitTrust {
   FitVerdict verdict = FitVerdict::Right;
-  double noise_mm = 0.0;            ///< of the rougher surface's points, against their neighbours
+  double noise_mm = 0.0;            ///< own_noise_mm() of the rougher surface
   double tolerance_mm = 0.0;        ///< distance at which surfaces match
-  double matched_share = 0.0;       ///< share of the moving surface within it, with normals that agree
-  double rival_share = 0.0;         ///< the largest such share at another motion of the search
-  std::size_t starts = 0;           ///< of the search; 0 if a start was given
-  std::size_t agreeing_starts = 0;  ///< starts that ended at the answer
+  double matched_share = 0.0;       ///< share of the moving surface within tolerance_mm, with normals that
+                                    ///< agree
+  double rival_share = 0.0;         ///< the largest matched share at another motion of the search
+  std::size_t starts = 0;           ///< starts of the search; 0 if a start was given
+  std::size_t agreeing_starts = 0;  ///< starts that ended at this fit
   std::vector<glm::dmat4> equals;   ///< other motions that match as much: the shape is symmetric
   std::string reason;               ///< figures behind a verdict that is not Right
 };
 
 struct SurfaceFit {
   glm::dmat4 fixed_from_moving{1.0};  ///< rigid
-  double rms_mm = 0.0;                ///< point to surface, over the samples that were kept
-  double kept_share = 0.0;            ///< of the samples
-  int rounds = 0;                     ///< of the last two refinements
-  bool converged = false;             ///< it came to rest within max_rounds
+  double rms_mm = 0.0;                ///< root mean square distance to the surface of the samples that were
+                                      ///< kept
+  double kept_share = 0.0;            ///< share of the samples that were kept
+  int rounds = 0;                     ///< rounds of the last two refinements
+  bool converged = false;             ///< the fit came to rest within max_rounds
   double last_step_mm = 0.0;          ///< root mean square displacement of the samples in the last round
   double rest_mm = 0.0;               ///< last_step_mm below this counts as rest
-  /// Ratio of the changes of distance caused by the worst and the best determined motion of equal size: near
-  /// zero if the surfaces can slide on each other, as spheres and planes can.
+  /// Change of the distances under the worst determined motion, divided by that under the best determined
+  /// motion of equal size: near zero if the surfaces can slide on each other, as spheres and planes can.
   double stiffness = 0.0;
   MotionDoubt doubt;
-  /// Computed by register_surfaces() only. Its verdict, and equal answers, are findings too.
+  /// Computed by register_surfaces() only. Equal answers, and a verdict that is not Right, are also in
+  /// `findings`.
   std::optional<FitTrust> trust = std::nullopt;
   std::vector<std::string> findings;
 };
 
 /// The rigid motion that fits the moving surface to the fixed one, both in LPS millimetres. Parts of either
 /// may be missing: samples whose nearest point lies on the other's border, or whose normal points the other
-/// way, have no counterpart, and the furthest of the others are trimmed. The last refinement uses all samples
-/// within three standard deviations of those kept. A fit without a start that is not trusted is tried again
-/// with a half and a quarter of the overlap, with a finding where that is used. Throws std::invalid_argument if a surface has no area, an
-/// option is out of its range, or the overlap keeps fewer than six samples; Stopped. The same bits on any
-/// number of threads. Cost: about 75 short searches of 500 samples, then about 50 rounds of `samples`: a
-/// second for heads, up to three times that for a fit that is tried again. Source: Chen and Medioni, "Object modelling by registration of multiple range images",
-/// IVC 10, 1992 (point to plane); Chetverikov et al., "Robust Euclidean alignment of 3D point sets: the
-/// trimmed iterative closest point algorithm", IVC 23, 2005; Turk and Levoy 1994 (borders).
+/// way, have no counterpart, and the furthest of the others are trimmed. The last refinement uses all samples whose
+/// distance is within three standard deviations of the kept ones' noise. Without a start, a fit that is not trusted
+/// is repeated with a half and a quarter of the overlap; a finding reports if such a fit is returned. Throws
+/// std::invalid_argument if a surface has no area, an option is out of its range, or the overlap keeps fewer than six
+/// samples; Stopped. The same bits on any number of threads. Cost: about 75 short searches of 500 samples, then about
+/// 50 rounds of `samples`: a second for heads, up to three times that for a fit that is tried again. Source: Chen and
+/// Medioni, "Object modelling by registration of multiple range images", IVC 10, 1992 (point to plane); Chetverikov
+/// et al., "Robust Euclidean alignment of 3D point sets: the trimmed iterative closest point algorithm", IVC 23,
+/// 2005; Turk and Levoy 1994 (borders).
 SurfaceFit register_surfaces(const Mesh& moving, const Mesh& fixed, const SurfaceFitOptions& options = {});
 
 }  // namespace octotomy::brep

@@ -8,12 +8,13 @@
 // 4 The distances of the held patches from that surface are measured. Patches much farther off than the others,
 //   where streaks or fillings hide the teeth, are left out. The remaining ones bound the error.
 //
-// The bound. With e the error of the scan at a point and c that of the object's surface, both along the normal, a
-// held patch shows d = e - c. The fit has not used the patch. So e and c are independent there, except for an offset
-// that the whole surface of the object shares: the fit follows it, and it is at most a share of the samples'
-// spacing. In squares, rms(e) is at most rms(d), widened because the patches are few, plus that share, and at least
-// rms(d) less the largest rms(c). Along the surface the error is not measured. In each of these two directions it
-// is between none and as much as along the normal, so that the upper bound counts three times.
+// The bound. Let e be the error of the scan at a point and c the error of the object's surface there, both
+// along the normal. A held patch shows d = e - c. The fit has not used the patch, so e and c are independent
+// there, except for an offset that is equal all over the object's surface. The fit follows this offset, which
+// is at most a share of the samples' spacing. In squares, rms(e) is at most rms(d) plus the offset, and at
+// least rms(d) less the largest rms(c); both bounds are widened because the patches are few. The error along
+// the surface is not measured. In each of the two directions it is assumed to be between zero and the error
+// along the normal, so the upper bound counts three times.
 #include "brep/align/tooth_scan.h"
 
 #include <Eigen/Eigenvalues>
@@ -52,7 +53,7 @@ constexpr double least_matched = 0.55;
 constexpr double common_share = 0.05, own_share = 0.25;
 constexpr double deviations_99 = 2.58;
 
-/// The distance at which the scan matches the object's surface: what the scan's points and the samples resolve.
+/// The scan matches the object's surface within this distance, which the points and the samples resolve.
 double match_mm(const ToothScanOptions& options) {
   return std::max(0.3, 0.5 * options.sample_mm);
 }
@@ -70,7 +71,7 @@ glm::dvec3 through(const glm::dmat4& motion, const glm::dvec3& p_mm) {
   throw Error(ErrorCode::Geometry, why);
 }
 
-/// The triangles for which `keeps` their middle is true, with their own points.
+/// The triangles for whose middle `keeps` returns true, and only the points of these.
 template <typename Keeps>
 Triangles part_where(const Triangles& whole, const Keeps& keeps) {
   constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
@@ -143,7 +144,7 @@ std::vector<Landmark> named(const std::vector<glm::dvec3>& points_mm, bool is_mi
 constexpr const char* mirrored_words =
     " fits only mirrored: left and right are exchanged, by the order of the points or the frame of the file";
 
-/// The motion of the points alone.
+/// Fits the points alone.
 LandmarkFit by_points(const ToothPoints& points, const ToothScanOptions& options) {
   if (points.fixed_mm.size() != points.scan_mm.size())
     refuse(std::to_string(points.fixed_mm.size()) + " points of " + options.fixed + " and " +
@@ -178,11 +179,11 @@ glm::dvec3 normal_of(const std::vector<glm::dvec3>& points_mm) {
   return glm::normalize(glm::dvec3(normal.x(), normal.y(), normal.z()));
 }
 
-/// The distances of a surface's samples from the fixed one.
+/// Distances of a surface's samples from the fixed surface.
 struct Distances {
   std::vector<glm::dvec3> at_mm;
   std::vector<double> mm;
-  std::size_t samples = 0;  ///< also those without a counterpart
+  std::size_t samples = 0;  ///< number of samples, also those without a counterpart
 };
 
 /// A sample has a counterpart if the foot lies within the fixed surface and both normals agree to 60 degrees.
@@ -282,7 +283,7 @@ bool matches(const LaidToothScan& laid) {
   return laid.matched_share >= least_matched;
 }
 
-/// The part of a laid surface that is crowns: near the points, and no deeper than asked.
+/// The crowns of a laid surface: its part near the points, down to the depth of the options.
 Triangles crowns_of(const Triangles& surface, const glm::dmat4& motion, const ToothPoints& points,
                     const LaidToothScan& laid, const ToothScanOptions& options) {
   Triangles crowns = part_where(surface, [&](const glm::dvec3& p) {
@@ -308,7 +309,7 @@ Triangles reflected(Triangles surface, const glm::dmat4& motion, const LaidTooth
   return surface;
 }
 
-/// The side of the roots, by where the object lies about the points.
+/// Sets the plane of the tips and its normal. The roots are on the side where the object lies at the points.
 void find_roots(const Solid& fixed, const ToothPoints& points, const ToothScanOptions& options,
                 LaidToothScan& laid) {
   constexpr double step_mm = 1.5;
@@ -326,7 +327,7 @@ void find_roots(const Solid& fixed, const ToothPoints& points, const ToothScanOp
     laid.tips_mm += glm::dot(p, laid.to_roots) / static_cast<double>(points.fixed_mm.size());
 }
 
-/// Whether the scan laid by the points has its roots on the side of the object's.
+/// Whether the roots of the scan, laid by the points, lie on the same side as the object's.
 bool is_upright(const Triangles& surface, const glm::dmat4& motion, const ToothPoints& points,
                 const LaidToothScan& laid) {
   double depths = 0.0;
@@ -344,7 +345,7 @@ void bound_error(const ToothScanOptions& options, LaidToothScan& laid) {
   constexpr double far = 4.0;  // times the middle patch
   std::vector<double> squares;
   for (const HeldPatch& patch : laid.held) squares.push_back(patch.mean_mm2);
-  // Patches nearer than samples resolve are never far.
+  // A patch whose distance is below the samples' resolution is never far.
   const double resolved_mm = 0.1 * options.sample_mm;
   const double most_mm2 =
       squares.empty() ? 0.0 : std::max(far * far * middle_of(squares), resolved_mm * resolved_mm);

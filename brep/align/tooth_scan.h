@@ -20,11 +20,11 @@ struct ToothPoints {
 };
 
 struct ToothScanOptions {
-  /// The crowns are fitted from their tips, the plane of the points, to this depth, mm, above 0. What the scan
-  /// shows beyond is gum.
+  /// The crowns are fitted from their tips, the plane of the points, down to this depth in mm, above 0.
+  /// Deeper parts of the scan are gum.
   double depth_mm = 5.0;
-  /// The largest spacing of the samples from which the fixed surface was made, mm, at least 0. This surface
-  /// may be off by a part of the spacing, by the same length on all teeth.
+  /// The largest spacing of the samples from which the fixed surface was made, mm, at least 0. The fixed
+  /// surface may be off by a share of the spacing, by the same length on all teeth.
   double sample_mm = 1.0;
   std::size_t samples = 6000;                           ///< as in SurfaceFitOptions
   std::string scan = "the scan", fixed = "the object";  ///< names for messages
@@ -33,38 +33,39 @@ struct ToothScanOptions {
 
 /// A patch of the scan's surface, a few millimetres wide, that the fit did not use.
 struct HeldPatch {
-  glm::dvec3 at_mm{0.0};     ///< its middle, where the scan was laid
+  glm::dvec3 at_mm{0.0};     ///< middle of the patch in the laid scan
   double mean_mm = 0.0;      ///< mean distance from the fixed surface, negative inside
   double mean_mm2 = 0.0;     ///< mean of the squared distances
-  bool is_left_out = false;  ///< it lies farther off than chance and the other patches explain
+  bool is_left_out = false;  ///< much farther from the fixed surface than the other patches
 };
 
-/// A scan laid onto the teeth, and its error there.
+/// A scan laid onto the teeth, and the error of its position.
 struct LaidToothScan {
   glm::dmat4 fixed_from_scan{1.0};
   glm::dvec3 to_roots{0, 0, 1};  ///< unit normal of the plane of the points, from the tips to the roots
-  double tips_mm = 0.0;          ///< p . to_roots of that plane
-  double points_rms_mm = 0.0;    ///< of the points alone, before the surfaces were fitted
-  SurfaceFit fit;                ///< of the patches that were fitted
+  double tips_mm = 0.0;          ///< p . to_roots for the points p of the plane
+  double points_rms_mm = 0.0;    ///< root mean square residual of the points, before the surfaces are fitted
+  SurfaceFit fit;                ///< fit of the patches that were not held back
   std::vector<HeldPatch> held;
   std::size_t fitted_patches = 0;
-  double matched_share = 0.0;  ///< of the held patches' samples, with a counterpart on the fixed surface
+  double matched_share = 0.0;  ///< share of the held patches' samples with a counterpart on the fixed surface
   double distance_mm = 0.0;    ///< root mean square distance of the held patches from the fixed surface
-  /// In 99 of 100 cases the root mean square distance of the scan's points, as laid, from where they truly are
-  /// differs from error_mm by at most half_width_mm.
+  /// The root mean square distance of the laid scan's points from their true positions is error_mm +-
+  /// half_width_mm in 99 of 100 cases.
   double error_mm = 0.0, half_width_mm = 0.0;
 
   /// The depth of a point below the tips.
   double depth_mm(const glm::dvec3& p_mm) const { return glm::dot(p_mm, to_roots) - tips_mm; }
 };
 
-/// Lays a scan of teeth, open and with holes, onto a solid that shows the same teeth: by the points, then by the
-/// surfaces of the crowns, of which the farthest parts are trimmed. Patches of a quarter of the crowns are held
-/// back: their distances bound the error. Both in LPS millimetres. Throws Error (Input or Geometry) in one sentence
-/// that states the cause: a wrong unit; points that are too few, off their surface or fit only mirrored; a scan
-/// that does not match the teeth, as that of the other jaw; too little of the crowns. Throws std::invalid_argument
-/// if the points lie on one line, and Stopped. The same bits on any number of threads. Cost: that of
-/// register_surfaces() with a start. Sources: as register_surfaces(); held-out patches are a cross-validation.
+/// Lays a scan of teeth, open and with holes, onto a solid that shows the same teeth: first by the points, then by
+/// the surfaces of the crowns, without their farthest parts. A quarter of the crowns, in patches, is not fitted: the
+/// distances of these patches bound the error. Both in LPS millimetres. Throws Error (Input or Geometry) in one
+/// sentence that states the cause: a wrong unit; points that are too few, off their surface or fit only mirrored; a
+/// scan that does not match the teeth, such as one of the other jaw; too little of the crowns. Throws
+/// std::invalid_argument if the points lie on one line, and Stopped. The same bits on any number of threads. Cost:
+/// that of register_surfaces() with a start. Sources: as register_surfaces(); held-out patches are a
+/// cross-validation.
 LaidToothScan lay_tooth_scan(const Mesh& scan, const Solid& fixed, const ToothPoints& points,
                              const ToothScanOptions& options);
 

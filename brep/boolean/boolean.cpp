@@ -3,9 +3,9 @@
 // nor on addresses; 3 where faces lie on one plane but for rounding, go on in a frame in which they do
 // exactly; 4 cut near the common lines only, or corefine the whole where that fails; 5 check the volumes
 // against each other, and the places of all shells by lines through them; 6 where a wanted result is not
-// manifold, these do not agree or triangles intersect, try cells between the planes, then operands that have
-// the same triangles on planes in common; 7 where none has a result, move the second operand by far less than
-// any bound, and report it.
+// manifold, a check of step 5 fails or triangles intersect, try cells between the planes, then operands that
+// have the same triangles on planes in common; 7 where all of this fails, move the second operand by a
+// negligible length, and report that.
 #include "brep/boolean/boolean.h"
 
 #include <algorithm>
@@ -161,8 +161,8 @@ struct Question {
 };
 
 /// The union of pieces that share whole triangles with opposite winding, such as both differences and the
-/// intersection of two solids. Its sheets may touch along edges, where corefinement alone has no union. None if
-/// the rest is not closed.
+/// intersection of two solids. Its sheets may touch along edges, where corefinement alone has no union. None
+/// if the remaining triangles are not closed.
 std::optional<Triangles> union_of_pieces(const std::array<const Triangles*, 3>& pieces) {
   Triangles all;
   PointNumbers numbers(all.points_mm);
@@ -366,8 +366,8 @@ Answer answer_of(const Question& question, Attempt attempt, SettleReach reach = 
   return answer;
 }
 
-/// Reports that faces were moved onto one plane, unless by no more than the rounding of doubles, which moves
-/// every new point.
+/// Reports that faces were moved onto one plane. Moves within the rounding of doubles, which every new point
+/// undergoes, are not reported.
 void tell_coplanar(const Question& question, double moved_mm, Attempt& attempt) {
   const double area_mm2 = question.a.size().area_mm2 + question.b.size().area_mm2;
   if (moved_mm <= volume_tolerance_mm3(question.a.size(), question.b.size()) / area_mm2) return;

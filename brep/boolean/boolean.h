@@ -27,15 +27,15 @@ struct BooleanResult {
 /// shell is surplus, missing or inverted, see disagreement_along_lines(). Shells of one operand may lie on
 /// the other's, with the same sense or the contrary one, in whole or in part. Faces that lie on one plane
 /// but for the rounding of the points, as of boxes turned as one, count as lying on it exactly, see
-/// common_frame.h; where that leaves triangles that intersect, solids whose faces are all square to one
-/// frame are cut by cells, see rectilinear.h, and others are divided alike first, see imprint.h. An operand
-/// that meets itself, which a proof below Health allows, is found near the cut only. The bits are the same
-/// on any number of threads and for either order of the operands. Throws std::invalid_argument if an
-/// operand is inside out; Error (Geometry) if the result cannot be represented as a manifold surface, the
-/// volumes do not add up or the lines disagree, after the remedy below; Stopped. Cost: linear in all
-/// triangles, some 0.4 us each, and n log n, about 2 us each, for those near the common lines. Source:
-/// CGAL's Polygon Mesh Processing, corefinement (Loriot et al.), EPICK predicates; only triangles near the
-/// common lines are given to it, see near_boolean().
+/// common_frame.h; where that leaves triangles that intersect, solids whose faces are all square to the axes
+/// of one frame are cut by cells, see rectilinear.h; the coplanar faces of others are first divided into the
+/// same triangles, see imprint.h. An operand with a proof below Health may intersect itself; this is detected
+/// near the cut only. The bits are the same on any number of threads and for either order of the operands.
+/// Throws std::invalid_argument if an operand is inside out; Error (Geometry) if the result cannot be
+/// represented as a manifold surface, the volumes do not add up or the lines disagree, after the remedy
+/// below; Stopped. Cost: linear in all triangles, some 0.4 us each, and n log n, about 2 us each, for those
+/// near the common lines. Source: CGAL's Polygon Mesh Processing, corefinement (Loriot et al.), EPICK
+/// predicates; it processes only triangles near the common lines, see near_boolean().
 BooleanResult boolean(const Solid& a, Operation operation, const Solid& b, const std::stop_token& stop = {});
 
 /// The Boolean of any number of solids: their union, their intersection, or the first minus all others. The

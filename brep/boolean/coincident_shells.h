@@ -119,9 +119,9 @@ std::vector<std::array<Shell, 2>> coincident_shells(const PointTriangles<Point>&
 }
 
 /// Corrects the results of corefined operands for whole shells that coincide with opposite orientation:
-/// neither belongs to union and intersection, and each belongs to its operand's difference. CGAL assumed the
-/// same orientation for the shell of `a`. This does not affect other parts. Returns the number of pairs.
-/// Cost: linear if there are none.
+/// neither belongs to the union or the intersection, and each belongs to its operand's difference. CGAL
+/// assumed the same orientation for the shell of `a`. This does not affect other parts. Returns the number of
+/// pairs. Cost: linear if there are none.
 template <typename Point, typename Less>
 std::size_t correct_contrary_shells(const PointTriangles<Point>& a, const PointTriangles<Point>& b,
                                     std::array<std::optional<PointTriangles<Point>>, 4>& results,

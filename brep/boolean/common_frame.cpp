@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A turned box has corners that lie beside the planes of its faces by their last places. Faces of two such
-// boxes that are flush then cross at angles of rounding, and what is between them is thinner than any point
-// can be placed: results cross themselves. No rounding of the points makes them coplanar in that pose.
-// 1 find pairs of triangles of both solids that lie on one plane; 2 take the direction of most area in common,
-// and square to it another one, or else that of the largest triangle; 3 turn the solids so that these are
+// The corners of a rotated box lie off the planes of its faces by last places. Flush faces of two such boxes then
+// cross at angles of rounding, and the space between them is thinner than the rounding of points, so results
+// intersect themselves. No rounding of the points makes the faces coplanar in that pose. 1 find pairs of triangles of
+// both solids that lie on one plane; 2 choose the direction with the largest common area, and one square to
+// it: another common direction, or else that of the largest triangle; 3 turn the solids so that these are
 // axes; 4 put points that lie beside a plane square to an axis by rounding onto it.
 #include "brep/boolean/common_frame.h"
 
@@ -115,7 +115,7 @@ double on_plane(double coordinate, const std::vector<double>& offsets, double to
   return coordinate;
 }
 
-/// Whether all different points are still at different places.
+/// Whether points that differ in `given` still differ in `turned`.
 bool are_apart(const std::vector<glm::dvec3>& given, const std::vector<glm::dvec3>& turned) {
   std::map<CommonFrame::PointKey, glm::dvec3> at;
   for (std::size_t i = 0; i < turned.size(); ++i) {

@@ -13,29 +13,29 @@ namespace octotomy::brep {
 /// a plane, except for rounding, lie on it exactly in the frame, so the faces are coplanar.
 struct CommonFrame {
   Solid a, b;
-  double moved_mm = 0.0;      ///< largest move of a point beside the change of frame
+  double moved_mm = 0.0;      ///< largest displacement of a point, apart from the change of frame
   double tolerance_mm = 0.0;  ///< coordinates along an axis that are nearer to each other count as one
 
-  /// A surface of the frame in LPS millimetres. A point of a solid gets its exact original coordinates back
-  /// if it lay on the planes to the last places of doubles, or on none. If both solids have the point, the
-  /// first solid's coordinates are used. New points that are nearer to each other than that become one.
+  /// Converts a surface from the frame to LPS millimetres. A point of a solid gets its exact original
+  /// coordinates back, unless it was moved by more than kept_mm. If both solids have the point, the first
+  /// solid's coordinates are used. New points are merged with points within kept_mm on the same triangle.
   Triangles moved_back(const Triangles& triangles) const;
 
   using PointKey = std::array<double, 3>;
   glm::dmat3 lps_from_frame{1.0};
   glm::dvec3 origin_mm{0.0};
-  double kept_mm = 0.0;  ///< points that come back this near to a given point are that point: rounding moved
-                         ///< them
+  double kept_mm = 0.0;  ///< a point of a solid that comes back this near to its original place was moved
+                         ///< only by rounding
   std::map<PointKey, glm::dvec3> given_mm;
 };
 
 /// The frame of two solids that have faces on a common plane, except for the rounding of their points: to
 /// doubles, or to floats if all coordinates are floats. The first axis is square to the plane of largest
-/// common area. The second is square to the largest plane perpendicular to that one, preferably a common
-/// plane. None if there is no common plane, if all common planes are already square to the axes of LPS, if
-/// points of a solid are nearer to each other than their rounding, or if more than 200 000 triangles reach
-/// into the other's box. Cost: n log n of the triangles in the common box, their pairs on planes that lie
-/// equally far from one point, and n log n of all points where there is a frame.
+/// common area. The second is square to the largest plane that is perpendicular to the first one's,
+/// preferably a common plane. None if there is no common plane, if all common planes are already square to
+/// the axes of LPS, if points of a solid are nearer to each other than their rounding, or if more than
+/// 200 000 triangles reach into the other's box. Cost: n log n of the triangles in the common box, their
+/// pairs on planes that lie equally far from one point, and n log n of all points where there is a frame.
 std::optional<CommonFrame> common_frame(const Solid& a, const Solid& b);
 
 }  // namespace octotomy::brep

@@ -12,22 +12,22 @@
 namespace octotomy::brep {
 
 struct PointRounding {
-  bool are_floats = false;  ///< all coordinates of both surfaces are
+  bool are_floats = false;  ///< all coordinates of both surfaces are floats
   double reach_mm = 0.0;    ///< the largest coordinate
   double mm = 0.0;          ///< spacing of floats, or else of doubles, at the largest coordinate
 };
 PointRounding point_rounding(const Triangles& a, const Triangles& b);
 
-/// Normals that differ by less have one direction. Rounding of the points turns a triangle's normal by the
-/// rounding divided by the triangle's height, so that triangles whose height is below a million roundings may
-/// be missed.
+/// Normals that differ by less than this count as one direction. Rounding of the points turns a triangle's
+/// normal by the rounding divided by the triangle's height, so that triangles whose height is below a million
+/// roundings may be missed.
 constexpr double same_direction() {
   return 1e-6;
 }
 
-/// A triangle as a part of its plane.
+/// A triangle and its plane.
 struct Plane {
-  glm::dvec3 normal{0.0}, on_mm{0.0};  ///< the normal's largest part is positive
+  glm::dvec3 normal{0.0}, on_mm{0.0};  ///< the normal's largest component is positive
   double area_mm2 = 0.0;
   std::array<glm::dvec3, 3> corners_mm;
   std::uint32_t face = 0;

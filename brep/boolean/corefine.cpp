@@ -180,8 +180,8 @@ Films drop_films(Mesh& mesh, double thickness) {
   return films;
 }
 
-/// For each part, connected across edges, without an edge on the cut: one of its points that the operand had
-/// (numbers below `known`).
+/// For each part that has no edge on the cut: one of its points that the operand had (numbers below `known`).
+/// Parts are connected across edges.
 std::vector<std::uint32_t> uncut_parts(const Mesh& mesh, const std::vector<bool>& on_cut, std::size_t known) {
   std::vector<bool> seen(mesh.n_faces(), false);
   std::vector<Mesh::FaceHandle> flood;

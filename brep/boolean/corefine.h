@@ -29,9 +29,9 @@ struct Corefined {
   std::array<std::size_t, 4> films{};
   bool has_open_film = false;  ///< an equally thin part ends at a border, so it is unknown whether it is a
                                ///< film
-  /// For each part of the operands, connected across edges, without an edge on the cut: one of its points.
-  /// Its triangles may touch the other surface. Such parts count as outside if the other surface is open.
-  /// Points are numbered as in the operand if `flat` is 0.
+  /// One point of each part of the operands that has no edge on the cut; parts are connected across edges.
+  /// Such a part may touch the other surface. It counts as outside if the other surface is open. Points are
+  /// numbered as in the operand if `flat` is 0.
   std::array<std::vector<std::uint32_t>, 2> uncut;
   /// Number of the operands' triangles without area that were removed by another diagonal, see
   /// flat_triangles.h.

@@ -22,14 +22,14 @@
 namespace octotomy::brep {
 namespace {
 
-/// By operand, triangles.
+/// For each operand, numbers of triangles.
 using Faces = std::array<std::vector<std::uint32_t>, 2>;
 
 std::size_t count_of(const Faces& faces) {
   return faces[0].size() + faces[1].size();
 }
 
-/// A triangle that has the box of a part.
+/// Adds a triangle whose bounding box is that of a part.
 void add_box(const Triangles& operand, const std::vector<std::uint32_t>& part, Triangles& boxes) {
   glm::dvec3 low = operand.points_mm[operand.faces[part.front()][0]], high = low;
   for (const std::uint32_t f : part)
@@ -42,10 +42,11 @@ void add_box(const Triangles& operand, const std::vector<std::uint32_t>& part, T
   boxes.faces.push_back({first, first + 1, first + 1});
 }
 
-/// Groups of parts whose boxes overlap, in the order of their first parts; none if there cannot be two with parts of
-/// both operands, or if boxes overlap too often for the groups to be worth their cost.
+/// Groups of parts whose boxes overlap, in the order of their first parts; none if there cannot be two groups
+/// with parts of both operands, or if boxes overlap too often for the groups to be worth their cost.
 std::vector<Faces> groups_of(const std::array<Linked, 2>& operands) {
-  std::vector<std::pair<std::size_t, std::vector<std::uint32_t>>> parts;  // by operand
+  std::vector<std::pair<std::size_t, std::vector<std::uint32_t>>> parts;  // operand, and triangles of the
+                                                                          // part
   Triangles boxes;
   for (const std::size_t side : {0u, 1u})
     for (std::vector<std::uint32_t>& part : shells(operands[side])) {
@@ -107,7 +108,7 @@ std::vector<Faces> batches_of(const std::vector<Faces>& groups, std::size_t batc
   return batches;
 }
 
-/// Puts the batches' results together. A result is there if it is in all of them.
+/// Puts the batches' results together. A result exists only if every batch has it.
 Corefined together(std::vector<Corefined> parts) {
   Corefined whole;
   for (Corefined& part : parts) {
@@ -140,7 +141,7 @@ Corefined corefine_in_batches(const Mesh& a, const Mesh& b, const Wanted& wanted
   assert(batch_size > 0);
   const std::size_t all = a.n_faces() + b.n_faces();
   if (all <= batch_size) return corefine(a, b, wanted, stop);
-  constexpr std::size_t most_batches = 64;  // each looks at all points
+  constexpr std::size_t most_batches = 64;  // each batch visits all points
   const std::array<Linked, 2> operands{linked_of(a), linked_of(b)};
   const std::vector<Faces> batches =
       batches_of(groups_of(operands), std::max(batch_size, all / most_batches));

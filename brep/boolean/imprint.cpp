@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A new point is rounded, so a piece's triangles lie beside the bone's that they were cut from by the last
-// places, and the two surfaces cross there over and over.
-// 1 find pairs of triangles on one plane; 2 make points of both one where they are within rounding; 3 list the
-// points of either that lie in the other's triangles or on their sides, and where sides cross; 4 divide the
-// first solid's triangles by these points and by the other's sides; 5 divide the second's by the sides that
-// the first then has.
+// Points made by a cut are rounded. The triangles of a piece therefore deviate by last places from the bone's
+// triangles that they were cut from, and the two surfaces cross there many times. 1 find pairs of triangles on one
+// plane; 2 merge points of both that differ only by rounding; 3 list the points of either that lie in the other's
+// triangles or on their sides, and where sides cross; 4 divide the first solid's triangles by these points and by the
+// other's sides; 5 divide the second solid's triangles by the sides that the first solid then has.
 #include "brep/boolean/imprint.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
@@ -166,7 +165,7 @@ class Imprint {
            (found != on_side_[solid].end() && found->second.count(v) != 0);
   }
 
-  /// A point where sides of both cross, on each.
+  /// Adds the point where a side of each solid cross to both sides.
   void cross_sides(std::uint32_t f, std::size_t i, std::uint32_t g, std::size_t j) {
     const FacePoints &of_a = faces_[0][f], &of_b = faces_[1][g];
     const SidePoints a = side_points(of_a[i], of_a[(i + 1) % 3]), b = side_points(of_b[j], of_b[(j + 1) % 3]);

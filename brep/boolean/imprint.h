@@ -12,12 +12,12 @@ struct Imprinted {
   double moved_mm = 0.0;  ///< largest distance of a new point from the triangle or side that it divides
 };
 
-/// Two solids divided so that, where their triangles lie on one plane, apart from the rounding of the points,
-/// both have the same triangles; for example a bone and a piece of it, in any pose. Points of one solid that
-/// lie on triangles or sides of the other divide these. Points of both that differ only by rounding become
-/// the point of the first solid. None if no triangles meet on one plane, if more than 200 000 triangles reach
-/// into the other's box, or if rounding leaves sides that cross. Cost: as for_each_coplanar_pair(), and n log
-/// n.
+/// Divides two solids so that both have the same triangles wherever triangles of both lie on one plane,
+/// except for the rounding of points; for example a bone and a piece cut from it, in any pose. Points of one
+/// solid that lie on triangles or sides of the other divide these. Points of both that differ only by
+/// rounding become the point of the first solid. None if no triangles meet on one plane, if more than 200 000
+/// triangles reach into the other's box, or if rounding leaves sides that cross. Cost: as
+/// for_each_coplanar_pair(), and n log n.
 std::optional<Imprinted> imprinted(const Solid& a, const Solid& b);
 
 }  // namespace octotomy::brep

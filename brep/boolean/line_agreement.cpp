@@ -3,7 +3,7 @@
 // one pass; 3 follow each line: the intervals inside a result must be those that the operation makes from the
 // intervals inside the operands; 4 check a line that disagrees with two further lines through the same
 // triangle. Most triangles lie between two lines; they are skipped by comparing the y intervals of their
-// points, two bytes each. Where there are many lines, those of an interval are found by z.
+// points, two bytes each. Where there are many lines, those of a y interval are searched by z.
 #include "brep/boolean/line_agreement.h"
 
 #include <algorithm>
@@ -54,8 +54,8 @@ struct Line {
   std::size_t result = operand_count;
 };
 
-/// A point inside the triangle, a different one in each round. Its fractions are not simple, so that sides of
-/// neighbours and of triangles of the other surface are unlikely to pass through it.
+/// A point inside the triangle, a different one in each round. Its barycentric coordinates are not simple
+/// fractions, so sides of neighbours and of the other surface's triangles are unlikely to pass through it.
 glm::dvec3 point_in(const Corners& t, std::size_t round) {
   constexpr std::array<glm::dvec2, 3> shares = {{{0.41592, 0.30901}, {0.23606, 0.44721}, {0.28171, 0.17157}}};
   return t[0] + shares.at(round).x * (t[1] - t[0]) + shares.at(round).y * (t[2] - t[0]);
@@ -83,7 +83,8 @@ struct Crossing {
   double x;
 };
 
-/// The lines by intervals of y, into which points are sorted, and in each by z.
+/// The lines, sorted by intervals of y and, within an interval, by z. Points are sorted into the same
+/// intervals.
 class LinesByPlace {
  public:
   explicit LinesByPlace(const std::vector<Line>& lines) : before_(stretch_count + 1, 0) {
@@ -107,8 +108,8 @@ class LinesByPlace {
     return static_cast<std::uint16_t>(std::clamp(1.0 + (y - low_) * scale_, 0.0, last));
   }
 
-  /// Calls visit(line) for the lines of the intervals from `least` to `greatest`, without those beyond the range of z
-  /// if there are many. `z_range` is called only then.
+  /// Calls visit(line) for the lines of the intervals from `least` to `greatest`. If there are many, calls
+  /// z_range() and leaves out lines beyond it.
   template <typename Range, typename Visit>
   void visit(std::uint16_t least, std::uint16_t greatest, const Range& z_range, const Visit& visit) const {
     constexpr std::uint32_t few = 16;

@@ -17,7 +17,7 @@ namespace octotomy::brep {
 struct LineDisagreement {
   ResultPlace result = of_union;
   glm::dvec3 at_mm{0.0};   ///< where the line crosses the shell for which it was chosen
-  double length_mm = 0.0;  ///< total length inside only one of the two
+  double length_mm = 0.0;  ///< total length inside only the result or only the Boolean of the intervals
 };
 
 /// The corners of a triangle in mm.

@@ -77,8 +77,8 @@ struct Side {
   std::vector<std::uint8_t> touching;      ///< 1 for each far point that may lie on the other surface
   std::vector<double> volumes_mm3;         ///< volumes of the cones over each part
   std::vector<std::uint32_t> widest;       ///< widest face of each part as seen along x
-  std::map<Edge, std::uint32_t> border;    ///< for each edge between near and far, by its points: the part
-                                           ///< beyond it
+  std::map<Edge, std::uint32_t> border;    ///< for each edge between near and far triangles, by its points:
+                                           ///< the far part
   std::map<EdgePlace, Edge> border_edges;  ///< the same edges by position, with points in that order
   std::vector<std::uint8_t> inside;        ///< 1 for each part inside the other solid
   std::vector<std::uint8_t> known;         ///< 1 for each part that a border has classified
@@ -229,7 +229,8 @@ void take_as_far(const Operand& operand, const std::vector<std::uint32_t>& point
 
 /// The points of a near result that lie on a border, matched to points of an operand.
 struct Seam {
-  std::vector<std::uint32_t> on_a, on_b;  ///< operand's point of each point, or none
+  std::vector<std::uint32_t> on_a, on_b;  ///< for each point of the result: its number in the operand, or
+                                          ///< none
   std::set<Edge> edges_a, edges_b;        ///< border edges at which the result ends
 };
 
@@ -260,7 +261,7 @@ Seam seam_of(const Triangles& result, const Side& a, const Side& b) {
   return seam;
 }
 
-/// Whether a result contains an operand's inside parts (true) or its outside parts.
+/// Whether a result contains an operand's inside parts (true) or its outside parts (false).
 bool takes_inside(std::size_t result, bool of_a) {
   return result == of_intersection || result == (of_a ? of_b_minus_a : of_a_minus_b);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 list the planes of both surfaces along each axis; 2 number each point by its three planes; 3 count, along
-// the line in x through each row of cells, where it enters and leaves each surface; 4 combine the cells; 5
-// draw the faces between cells that are in and cells that are out.
+// 1 list the planes of both surfaces along each axis; 2 number each point by its three planes; 3 follow the
+// line along x through each row of cells and count where it enters and leaves each surface; 4 combine the
+// cells; 5 draw the faces between cells that are in and cells that are out.
 #include "brep/boolean/rectilinear.h"
 
 #include <algorithm>
@@ -83,21 +83,21 @@ class Grid {
 
 using Cells = std::vector<std::int8_t>;
 
-/// Twice the area of a triangle of places in the plane of y and z.
+/// Twice the signed area of a triangle projected along x, in numbers of planes.
 long turn(const Place& p, const Place& q, const Place& r) {
   return static_cast<long>(q[1] - p[1]) * (r[2] - p[2]) - static_cast<long>(q[2] - p[2]) * (r[1] - p[1]);
 }
 
 /// Whether the line along x through a row of cells crosses the triangle: +1 or -1 for the triangle's
-/// orientation, else 0. The line passes so little beside the cells' middles that it meets no side of a
-/// triangle.
+/// orientation, else 0. The line passes the cells' middles at an infinitesimal distance, so that it meets no
+/// side of a triangle.
 int crossing(const std::array<Place, 3>& corners, int y, int z) {
   int inside = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const Place &p = corners[k], &q = corners[(k + 1) % 3];
     const long dy = q[1] - p[1], dz = q[2] - p[2];
-    // Twice the area that the side spans with the middle; if it is 0, with a point beside it along y, then
-    // along z.
+    // Twice the area of the triangle of the side and the cell's middle; if it is 0, its sign after the middle
+    // is moved along y, then along z.
     long side = dy * (2L * (z - p[2]) + 1) - dz * (2L * (y - p[1]) + 1);
     if (side == 0) side = dz != 0 ? -dz : dy;
     if (side == 0) return 0;
@@ -106,7 +106,8 @@ int crossing(const std::array<Place, 3>& corners, int y, int z) {
   return inside == 3 ? 1 : inside == -3 ? -1 : 0;
 }
 
-/// The cells inside a surface; none if a triangle is square to no axis, or if a cell is inside twice.
+/// Finds the cells inside a surface; none if a triangle is square to no axis, or if the surface winds around
+/// a cell other than 0 or 1 times.
 std::optional<Cells> cells_in(const Triangles& surface, const Grid& grid) {
   std::vector<Place> places;
   places.reserve(surface.points_mm.size());

@@ -8,13 +8,13 @@
 
 namespace octotomy::brep {
 
-/// The wanted results of two surfaces whose triangles are all square to an axis, as sets of voxels and boxes
-/// are, whether or not they touch themselves or each other: the planes of both divide space into cells, which
-/// are in or out. Coordinates that are nearer to each other than `tolerance_mm` count as one. Results that
-/// touch themselves have a vertex for each sheet. A result has two triangles for each cell's face, so that it
-/// may have many more than the operands. None if a triangle is square to no axis, if there are more than
-/// 4 million cells, or if an operand overlaps itself. Cost: the cells, and for each triangle those that it
-/// covers.
+/// The wanted results of two surfaces whose triangles are all square to an axis, for example surfaces of
+/// voxels and boxes. The surfaces may touch themselves and each other. Their planes divide space into cells,
+/// each of which is inside or outside of each surface. Coordinates that are nearer to each other than
+/// `tolerance_mm` count as one. Results that touch themselves have a vertex for each sheet. A result has two
+/// triangles for each face of a cell on its surface, so it may have many more triangles than the operands.
+/// None if a triangle is square to no axis, if there are more than 4 million cells, or if an operand overlaps
+/// itself. Cost: linear in the cells, plus the cells that each triangle covers.
 std::optional<Results> rectilinear_results(const Triangles& a, const Triangles& b, const Wanted& wanted,
                                            double tolerance_mm);
 

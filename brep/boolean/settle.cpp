@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 find the points that are no operand's, and the triangles around them; 2 test these for intersections and
-// triangles without area; 3 where there are any, contract sides and exchange diagonals of the thin triangles
-// with a new point, until none is left or the steps are used up; 4 test again, and go on with a wider
-// tolerance where triangles still intersect.
+// 1 find the points that neither operand has, and the triangles around them; 2 test these for intersections
+// and triangles without area; 3 where there are any, contract sides and exchange diagonals of the thin
+// triangles with a new point, until none is left or the steps are used up; 4 test again, and go on with a
+// wider tolerance where triangles still intersect.
 #include "brep/boolean/settle.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -92,7 +92,8 @@ class Origins {
   std::array<std::vector<glm::dvec3>, 2> given_mm_;
 };
 
-/// Marks the corners of triangles that no operand has: with a new point, or with points of both operands.
+/// Marks the corners of triangles that neither operand has: those with a new point, or with points of both
+/// operands.
 std::vector<std::uint8_t> corners_of_new(const Triangles& surface, const std::vector<std::uint8_t>& origin) {
   std::vector<std::uint8_t> is_corner(origin.size(), 0);
   for (const auto& face : surface.faces)

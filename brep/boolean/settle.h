@@ -13,25 +13,25 @@ namespace octotomy::brep {
 struct Settled {
   Triangles surface;
   std::size_t crossing = 0;  ///< pairs of triangles beside new points that still intersect
-  std::size_t flat = 0;      ///< triangles beside new points that have no area still
-  glm::dvec3 at_mm{0.0};     ///< a corner of the first of them
+  std::size_t flat = 0;      ///< triangles beside new points that still have no area
+  glm::dvec3 at_mm{0.0};     ///< a corner of the first of these triangles
 };
 
-/// Where folds are looked for: beside new points, or in all of the operands' common box. The latter is needed
-/// where faces of both lie on one plane, as triangles of either may then intersect without a new point, and
-/// costs an intersection test of all triangles there.
+/// Where folds are searched: beside new points, or in the whole common box of the operands. CommonBox is
+/// needed where faces of both operands lie on one plane, because their triangles may then intersect without a
+/// new point. It costs an intersection test of all triangles in the box.
 enum class SettleReach { NewPoints, CommonBox };
 
 /// The surface that a Boolean made, without the folds that rounding its points left. A new point lies within a
-/// rounding of the planes that meet there, but where these are nearly parallel it may lie far from where they
-/// meet, along them: small triangles are then turned over and intersect their neighbours. Where triangles
-/// beside new points intersect or have no area, sides of thin triangles are contracted and their long sides
-/// exchanged for the other diagonal, each only if the surface moves by at most 2^6 roundings of the largest
-/// coordinate along its normal. Thin is 2^4 roundings, then up to 2^34 (as far as a shift, see boolean.h) until
-/// no triangles intersect. Otherwise the surface is returned unchanged, to the last bit. Points of the operands
-/// are kept in preference to new ones. The same result on any number of threads. Precondition: mesh_of()
-/// accepts the triangles. Cost: n log n of the operands' points in their common box and of the triangles beside
-/// new points, linear in all.
+/// rounding of the planes that meet there. Where the planes are nearly parallel, it may still lie far along them from
+/// their true common point: small triangles are then turned over and intersect their neighbours. Where triangles
+/// beside new points intersect or have no area, sides of thin triangles are contracted and their long sides exchanged
+/// for the other diagonal, each only if the surface moves by at most 2^6 roundings of the largest coordinate along
+/// its normal. A triangle is thin if its height is at most 2^4 roundings; this limit grows to at most 2^34 (the
+/// length of a shift, see boolean.h) until no triangles intersect. A surface without such defects is returned
+/// unchanged, to the last bit. Points of the operands are kept in preference to new ones. The same result on any
+/// number of threads. Precondition: mesh_of() accepts the triangles. Cost: n log n of the operands' points in their
+/// common box and of the triangles beside new points, linear in all.
 Settled settled(Triangles surface, const std::array<const Triangles*, 2>& operands,
                 SettleReach reach = SettleReach::NewPoints);
 

@@ -23,9 +23,9 @@ namespace {
 
 constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
-/// The least distance, as a share of an edge, of a crossing from a sample. Otherwise a sample exactly at the
-/// threshold would move the crossings of all its edges to one point, where contours touch. A thousandth of a
-/// sample is far below what a scan resolves, and far above the rounding of coordinates (2^-52 times the
+/// The least distance of a crossing from a sample, as a share of the edge. Without it, a sample exactly at
+/// the threshold would move the crossings of all its edges to one point, where contours touch. A thousandth
+/// of a sample is far below what a scan resolves, and far above the rounding of coordinates (2^-52 times the
 /// number of samples along a side).
 constexpr double least_fraction() {
   return 1.0 / 1024.0;
@@ -174,8 +174,9 @@ class Enclosure {
   }
 
  private:
-  /// Near a piece's box, within this distance, rounding may decide the side of a piece. cross() rounds a few
-  /// products of the box's sides and the way to the point, and 2^-40 of their size is far larger.
+  /// Within this distance of a piece's box, rounding may decide on which side of the piece the point lies.
+  /// cross() rounds a few products of the box's sides and the distances to the point; 2^-40 of their size is
+  /// far above that rounding.
   static double rounding_of_sides(const PlaneBox& box, const glm::dvec2& p) {
     return 0x1p-40 * (std::abs(p.x) + std::abs(box.low.x) + std::abs(box.high.x));
   }

@@ -40,8 +40,8 @@ Contour closed(const Contour& contour);
 std::optional<std::pair<std::size_t, std::size_t>> first_crossing(const Contour& contour);
 
 /// As first_crossing(), after an edit that created or moved the pieces `changed`. Precondition: no two other
-/// pieces have such a common point, which holds if the contour did not cross itself before the edit. Cost:
-/// linear for each changed piece.
+/// pieces have a common point except a shared corner, which holds if the contour did not cross itself before
+/// the edit. Cost: linear for each changed piece.
 std::optional<std::pair<std::size_t, std::size_t>> first_crossing_of(const Contour& contour,
                                                                      std::span<const std::size_t> changed);
 

@@ -63,7 +63,7 @@ class PlaneSection {
     assert(below > 0.0 && above >= 0.0);
     const glm::dvec3 from = glm_of(mesh_.point(low)) - plane_.origin_mm,
                      to = glm_of(mesh_.point(high)) - plane_.origin_mm;
-    // All edges to a point in the plane give that point, without a rounding of their own.
+    // If the upper end lies in the plane, it is the result, unrounded: all edges to this end then agree.
     const glm::dvec3 p = above == 0.0 ? to : from + below / (below + above) * (to - from);
     return {glm::dot(p, plane_.right), glm::dot(p, plane_.up)};
   }
@@ -141,7 +141,7 @@ CrossSection cross_section(const Mesh& mesh, const Plane& plane) {
 }
 
 void part_touching(std::vector<Contour>& contours) {
-  std::map<std::pair<double, double>, int> passes;  // of contours through a point
+  std::map<std::pair<double, double>, int> passes;  // number of times that contours pass a point
   for (const Contour& contour : contours)
     for (const glm::dvec2& p : contour.points_mm) ++passes[{p.x, p.y}];
   constexpr double share = 1.0 / 1024.0;

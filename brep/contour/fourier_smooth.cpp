@@ -101,7 +101,7 @@ Contour fourier_smooth(const Contour& contour, const FourierOptions& options) {
   const auto& p = contour.points_mm;
 
   struct EdgeSpan {
-    double turn;  ///< where it begins
+    double turn;  ///< where the piece begins, in turns
     Complex direction;
   };
   std::vector<EdgeSpan> pieces;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// For each gap between two drawn sections: 1 take the distances to both outlines at the samples beside them or
-// between them, once; 2 for each section between, follow the weighted sum's zero; 3 move each point along its
-// edge between samples onto the exact zero, which changes no contour's order.
+// For each gap between two drawn sections: 1 compute once the distances to both outlines at the samples
+// beside or between these; 2 for each section between, follow the weighted sum's zero; 3 move each point
+// along its edge between samples onto the exact zero, which changes no contour's order.
 #include "brep/contour/sections_between.h"
 
 #include <algorithm>
@@ -50,7 +50,7 @@ class Outline {
         add(contour.points_mm[i], contour.points_mm[(i + 1) % contour.points_mm.size()]);
   }
 
-  /// By the even-odd rule.
+  /// Whether a point lies inside the outline, by the even-odd rule.
   bool contains(const glm::dvec2& p) const {
     const double row = std::floor((p.y - low_.y) / cell_mm_);
     if (row < 0.0 || row >= height_) return false;
@@ -281,8 +281,9 @@ std::vector<Section> sections_in_gap(const Section& below, const Section& above,
   return sections;
 }
 
-/// Moves the tiles' points back to the points of their sections, and those of a step half way into one plane.
-/// The tiles' points begin with those of the sections, in the sections' order; contours may be reversed.
+/// Moves the tiles' points back to the points of their sections. Moves the points of both sections at a step
+/// into one plane half way. The tiles' points begin with those of the sections, in the sections' order;
+/// contours may be reversed.
 Triangles put_back(const Triangles& tiles, const std::vector<Section>& sections) {
   Triangles back = tiles;
   std::size_t first = 0;

@@ -19,14 +19,15 @@ enum class Between {
 
 struct SectionsBetweenOptions {
   Between between = Between::shape_based;
-  /// The largest distance of sections that tile_sections() joins, and twice that of samples in a section
-  /// between: above 0. Straight tiles leave a rounded surface by about its square over eight radii.
+  /// The largest distance between sections that tile_sections() joins, and twice the spacing of samples in an
+  /// added section; above 0. Straight tiles deviate from a rounded surface by about step_mm squared over
+  /// eight radii.
   double step_mm = 1.0;
   std::stop_token stop = {};
 };
 
-/// Half the height of the step between two sections that are not joined, unless they are nearer together than
-/// eight times this.
+/// Half the height of the step between two sections that are not joined; an eighth of their distance if that
+/// is less.
 constexpr double half_terrace_mm() {
   return 1e-3;
 }
@@ -48,7 +49,7 @@ std::vector<Section> sections_between(const std::vector<Section>& drawn,
 /// The surface tiled from sections_between().
 struct TiledBetween {
   Triangles surface;           ///< as tile_sections() makes it
-  std::size_t sections = 0;    ///< that were tiled
+  std::size_t sections = 0;    ///< number of sections that were tiled
   bool is_whole_flat = false;  ///< flat ends, steps and upright walls lie exactly in their planes
   bool is_apart = false;       ///< no two of its triangles meet, by an exact search
 };

@@ -34,7 +34,7 @@ class SpanClearance {
   glm::dvec2 low_{0.0};
   double cell_mm_ = 1.0;
   glm::ivec2 cells_{1};
-  std::vector<std::uint32_t> first_;  ///< of each cell in `held_`, and the end
+  std::vector<std::uint32_t> first_;  ///< index in `held_` of each cell's first side, then the end
   std::vector<std::uint32_t> held_;   ///< sides whose boxes touch each cell
 };
 

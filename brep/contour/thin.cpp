@@ -109,8 +109,8 @@ class Thinner {
   // For the points passed so far:
   double farthest_mm_ = 0.0;             ///< from the anchor
   bool is_wedged_ = false;               ///< one point is farther from the anchor than sure_mm_
-  glm::dvec2 reference_{1, 0};           ///< direction of the first such point
-  double lowest_ = 0.0, highest_ = 0.0;  ///< range of angles from it in which a piece may run
+  glm::dvec2 reference_{1, 0};           ///< direction of the first point farther than sure_mm_
+  double lowest_ = 0.0, highest_ = 0.0;  ///< range of angles from reference_ in which a piece may run
 };
 
 }  // namespace

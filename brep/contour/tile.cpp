@@ -2,14 +2,14 @@
 // A strip is a path in a graph: node (i, j) is the span from the lower ring's point i to the upper ring's
 // point j, and a step to (i + 1, j) or (i, j + 1) is a triangle. A path's sum is first the blame of its spans,
 // which is 0 unless spans are to be clear of contours, then its cost. Passes: 1 choose the start; 2 walk greedily
-// from there, or 3 find the path with the least sum of those near the greedy one: no better path has a larger sum
-// at any node, so 4 find the path with the least sum among nodes whose sums are not above it, trying smaller
-// limits of the blame first. If costs depend on single triangles, the strip may start elsewhere: every strip has
-// a span at the lower ring's first point. Therefore 5 find the path that starts half way between two known ones,
-// which it need not cross, and so on; 6 write the triangles of the best.
-// Over 600 lines, because all passes share the rings' scores, costs and bounds.
-// Departure from Fuchs, Kedem and Uselton: nodes whose sums exceed that of a known path are left out, which
-// changes no result, because steps have no cost below zero; of greatest_volume only the blame is limited.
+// from there, or 3 find the path with the least sum among those near the greedy one. No better path has a larger sum
+// at any node, so 4 find the path with the least sum over nodes whose sums do not exceed that limit, after trials
+// with smaller limits of the blame. If costs depend on single triangles, the strip may start elsewhere: every strip
+// has a span at the lower ring's first point. Therefore 5 find the path that starts half way between two known ones,
+// which it need not cross, and so on; 6 write the triangles of the best. Over 600 lines, because all passes share the
+// rings' scores, costs and bounds. Departure from Fuchs, Kedem and Uselton: nodes whose sums exceed that of a known
+// path are left out, which changes no result, because steps have no cost below zero; of greatest_volume only the
+// blame is limited.
 #include "brep/contour/tile.h"
 
 #include <algorithm>
@@ -181,7 +181,7 @@ class Blame {
   std::size_t m_, n_;
   double reach_mm_;
   std::vector<std::uint8_t>& of_;
-  std::array<std::unordered_map<std::size_t, int>, 2> of_step_;  ///< of triangles to be avoided
+  std::array<std::unordered_map<std::size_t, int>, 2> of_step_;  ///< scores of triangles to be avoided
 };
 
 /// Among the pairs of points with the lowest score, the pair that is nearest after both rings are scaled to
@@ -310,13 +310,13 @@ class LeastPath {
             const Blame* blame = nullptr)
       : pair_(pair), cost_(cost), start_(start), blame_(blame), m_(pair.m()), n_(pair.n()) {}
 
-  /// The path of least sum from (0, 0), which no path near these steps from (0, 0) can exceed.
+  /// The path of least sum from (0, 0). The sum of the best path near `steps_near` limits the search.
   Found find_from_start(const std::vector<Step>& steps_near) {
     bound_rest();
     constexpr std::size_t reach = 8;
     const Sum known = from(0, about(steps_near, reach), no_limit)->sum;
     const Band all = all_of(pair_);
-    // Most strips need little blame, and few nodes are reached with little.
+    // Most strips need little blame, and with a low limit few nodes are reached.
     const int least = least_rest(0, 0, 0).blame;
     for (int more = 0; least + more < known.blame; more = std::max(1, 4 * more))
       if (auto found = from(0, all, {least + more, no_limit.cost})) return *std::move(found);
@@ -391,7 +391,8 @@ class LeastPath {
   }
 
  private:
-  /// A node within the limit, with the best path to it by each last step, as an angle is between two triangles.
+  /// A node within the limit and the best path to it for each last step: the angle at the next step depends
+  /// on the last triangle.
   struct Node {
     std::size_t column = 0;
     std::array<Sum, 2> sums{no_limit, no_limit};
@@ -425,7 +426,7 @@ class LeastPath {
   /// The last step by which a path is chosen among paths with equal sums.
   Step preferred() const { return cost_ == TileCost::least_angle ? along_lower : along_upper; }
 
-  /// A limit for sums at nodes of paths that end with at most this sum.
+  /// The limit for the sums at all nodes of a path whose sum at the end is at most `end`.
   Sum limit(const Sum& end) const {
     return {end.blame, cost_ == TileCost::greatest_volume ? no_limit.cost : end.cost};
   }
@@ -526,8 +527,8 @@ class LeastPath {
     }
   }
 
-  /// The path of least sum from (0, start) to (m, start + n) in a band. None if at any of its nodes its sum so
-  /// far, with the least of the rest, exceeds `most`.
+  /// The path of least sum from (0, start) to (m, start + n) in a band. None if on every path some node's
+  /// sum, plus least_rest() from there, exceeds `most`.
   std::optional<Found> from(std::size_t start, const Band& band, const Sum& most) {
     // Sums in another order differ by rounding, a part of 2^-53 for each of their terms.
     const double rounding = 0x1p-50 * static_cast<double>(m_ + n_);
@@ -584,7 +585,8 @@ class LeastPath {
     return found;
   }
 
-  /// Improves the best path by those between two others that start after one column and before another.
+  /// Searches paths between the two of `between` that start after column `after` and before `before`; updates
+  /// the best.
   void search(const Band& between, std::size_t after, std::size_t before, Found& best) {
     if (before - after < 2) return;
     const std::size_t middle = (after + before) / 2;
@@ -612,12 +614,13 @@ class LeastPath {
   const Blame* blame_;
   std::size_t m_, n_;
   std::size_t reached_count_ = 0;        ///< nodes of the last search
-  std::size_t failed_count_ = 0;         ///< nodes of failed searches since the last without a limit
-  std::vector<Sum> to_row_, to_column_;  ///< the least from the first row and column; empty for none
+  std::size_t failed_count_ = 0;         ///< nodes of failed searches since the last search without a limit
+  std::vector<Sum> to_row_, to_column_;  ///< least sums of steps from the first row and column to each;
+                                         ///< empty: not used
 };
 
-/// About 1 GB. least_angle takes two bytes per pair of points: one for the path and one for the span's score. Paths
-/// from all starts take at most 14.
+/// The number of pairs of points whose tables take about 1 GB. least_angle takes two bytes per pair: one for
+/// the path and one for the span's score. Paths from all starts take at most 14 bytes.
 std::size_t most_pairs(TileCost cost) {
   return std::size_t{1} << (cost == TileCost::least_angle ? 29 : 26);
 }

@@ -36,25 +36,24 @@ struct Ring {
 /// papers named above.
 std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& upper, TileCost cost);
 
-/// The best strip by the cost among those near the strip of shortest spans: from the lower ring's point i, its
-/// spans lead to no upper point more than `band` points before or behind those that the shortest spans lead
-/// to. With a band of 0 it is the strip of shortest spans. Throws and costs as tile().
+/// The best strip by the cost among those near the strip of shortest spans: at each lower point, its spans
+/// end at most `band` upper points before or behind the ends of the shortest spans. With a band of 0 it is
+/// the strip of shortest spans. Throws and costs as tile().
 std::vector<std::array<std::uint32_t, 3>> tile_near(const Ring& lower, const Ring& upper, TileCost cost,
                                                     std::size_t band);
 
 /// The best strip by the cost among those whose spans cross the fewest sides of contours in projection and
 /// lie over the area of exactly one ring. This keeps a strip from crossing itself: apart from crossings of
 /// the rings themselves, such a strip exists unless one ring has folds that are invisible from the other.
-/// Spans longer than twice the largest distance of a point to the nearest of the other ring, plus the longest
-/// side, count as crossing the most sides. `avoided` are triangles of earlier strips of these rings that
-/// crossed something, repeated once for each crossing: each weighs as a side that a span crosses.
-/// shortest_span and least_angle start at the shortest of the best spans. With triangles to avoid,
-/// shortest_span minimises the sum of its spans instead of choosing step by step, because a single step does
-/// not show which triangles follow; rings too long for the tables are still tiled step by step. If the best
-/// strip by least_area or greatest_volume is two cones that meet at one span, which is no surface, the best
-/// surface that contains this span is returned. `scores` keeps a byte per pair of points from one call for the
-/// same rings and sides to the next; empty at first. Throws and costs as tile(), plus a test against the sides
-/// near it of each span that a good strip may contain.
+/// Spans longer than twice the largest distance from a point to the nearest point of the other ring, plus the longest
+/// side, count as crossing the most sides. `avoided` are triangles of earlier strips of these rings that crossed
+/// something, repeated once for each crossing: each weighs as a side that a span crosses. shortest_span and
+/// least_angle start at the shortest of the best spans. With triangles to avoid, shortest_span minimises the sum of
+/// its spans instead of choosing step by step, because a single step does not show which triangles follow; rings too
+/// long for the tables are still tiled step by step. If the best strip by least_area or greatest_volume is two cones
+/// that meet at one span, which is no surface, the best surface that contains this span is returned. `scores` keeps a
+/// byte per pair of points from one call for the same rings and sides to the next; empty at first. Throws and costs
+/// as tile(), plus, for each span that a good strip may contain, a test against the sides near the span.
 std::vector<std::array<std::uint32_t, 3>> tile_clear(
     const Ring& lower, const Ring& upper, TileCost cost, const SpanClearance& sides,
     std::vector<std::uint8_t>& scores, const std::vector<std::array<std::uint32_t, 3>>& avoided = {});

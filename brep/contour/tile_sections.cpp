@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 turn all contours with the object on their left and move every other section a little; 2 for each slab
-// overlay its sections, then put strips where a contour has one counterpart, clear those that cross anything
-// of contours, narrow those that still do, and take back those that always do; 3 number all points in one row.
+// overlay its sections, then put strips where a contour has one counterpart; replace a strip that crosses
+// anything by one whose spans are clear of contours, then by one near the shortest spans, at last by the
+// overlay; 3 number all points in one sequence.
 #include "brep/contour/tile_sections.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -83,8 +84,8 @@ struct Tiled {
   std::size_t strips = 0, clear_strips = 0, narrowed_strips = 0, crossed_strips = 0, overlaid = 0;
 };
 
-/// Whether a strip is a surface. It is none if all its triangles meet at the two points of one span, as the
-/// strip of least area may between rings that hardly overlap.
+/// Whether a strip is a surface. False if all triangles meet at the two points of one span, which the strip
+/// of least area may do between rings that hardly overlap.
 bool is_surface(const FaceList& strip) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   edges.reserve(3 * strip.size());
@@ -318,9 +319,11 @@ class Strips {
   std::optional<double> most_span_mm_;
   std::vector<FaceList> strips_;  ///< of each group; empty where the surface is overlay()'s
   SpanClearance sides_;
-  std::vector<int> attempts_;                      ///< of each group, after the first
-  std::vector<FaceList> avoided_;                  ///< of each group, in the numbers of its rings
-  std::vector<std::vector<std::uint8_t>> scores_;  ///< of each group's spans, for further clear attempts
+  std::vector<int> attempts_;                      ///< number of each group's attempt
+  std::vector<FaceList> avoided_;                  ///< triangles that each group avoids, numbered by its
+                                                   ///< rings
+  std::vector<std::vector<std::uint8_t>> scores_;  ///< scores of each group's spans, for further clear
+                                                   ///< attempts
 };
 
 Tiled tile_slab(const Slab& slab, const TileSectionsOptions& options) {

@@ -26,21 +26,21 @@ struct TileSectionsOptions {
   std::optional<TileCost> cost = TileCost::shortest_span;
   std::function<void(double)> progress = {};  ///< called with 0..1, from any thread, one call at a time
   std::stop_token stop = {};
-  /// The longest way in the plane from a point of one contour to a point of the other that a strip may join; a pair
-  /// whose strips are longer is joined by overlay(). Not set: any.
+  /// The largest distance in the plane between two points, one of each contour, that a strip may join. A pair
+  /// whose strips need longer spans is joined by overlay(). Not set: no limit.
   std::optional<double> most_span_mm = std::nullopt;
 };
 
 struct TiledSections {
   Triangles surface;
   std::size_t strips = 0;  ///< pairs of contours joined by cost
-  /// Of these, pairs whose best strip crossed itself or another surface, or would enclose a volume twice, and
-  /// which were joined by the best one by the cost whose spans are clear of contours (tile_clear()).
+  /// Of `strips`: pairs joined by tile_clear(), by the best strip whose spans cross no contour, because the
+  /// best of all strips crossed itself or another surface, or would enclose a volume twice.
   std::size_t clear_strips = 0;
-  /// Of these, pairs whose clear strip crossed something, too. They were joined by the best strip near the
+  /// Of `strips`: pairs whose clear strip crossed something, too. They were joined by the best strip near the
   /// strip of shortest spans (tile_near()), by the strip of shortest spans, or by the strip of least area.
   std::size_t narrowed_strips = 0;
-  /// Pairs all of whose strips crossed something or were too long, and which were joined by overlay() instead.
+  /// Pairs joined by overlay() because each of their strips crossed something or was too long.
   std::size_t crossed_strips = 0;
   std::size_t overlaid = 0;  ///< further groups of contours: branchings, ends, contours within contours
 };

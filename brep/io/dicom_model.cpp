@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // Reads a surface that is encapsulated in DICOM (PS3.3, A.85): finds the document, its media type and its unit
-// among the file's top attributes, little-endian with explicit or implicit VR, and passes over everything else.
-// Every length is held against the rest of the file before it is used; nothing but the document's triangles is
-// allocated.
+// among the file's top attributes, little-endian with explicit or implicit VR, and skips everything else.
+// Every length is compared with the rest of the file before it is used; nothing but the document's triangles
+// is allocated.
 #include "brep/io/dicom_model.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ std::string_view trimmed(std::string_view value) {
   return value.substr(first, value.find_last_not_of(blank) - first + 1);
 }
 
-/// The values of the attributes of one level, by tag. Those of sequences are their items' bytes.
+/// The values of the attributes of one level, by tag. The value of a sequence is the bytes of its items.
 using Values = std::map<std::uint32_t, std::string_view>;
 
 class AttributeWalk {
@@ -120,7 +120,7 @@ Syntax syntax_of(std::string_view bytes) {
   return {scanner.bytes(scanner.rest()), syntax == "1.2.840.10008.1.2.1"};
 }
 
-/// The word for length_unit() that a UCUM code means; empty if it is not a unit of length.
+/// The unit that a UCUM code means, as a word for length_unit(); empty if it is not a unit of length.
 std::string word_of_unit(std::string_view code) {
   constexpr std::array<std::string_view, 6> metric{"nm", "um", "mm", "cm", "dm", "m"};
   if (std::find(metric.begin(), metric.end(), code) != metric.end()) return std::string(code);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads each occurrence of a key in four steps: the word before it (skips the key of another quantity), the
-// sign after it, the small words up to the unit or frame, and the text after that (m is not a unit of length
-// in m/s, and two units joined by "to" are a conversion). If the steps fail but the sentence names a unit or
-// frame, it is Unclear, so that readers do not silently assume a unit.
+// Reads each occurrence of a key in four steps: the word before it (a key of another quantity is skipped),
+// the sign after it, the small words up to the unit or frame, and the text after that (m is not a unit of
+// length in m/s, and two units joined by "to" are a conversion). If the steps fail but the sentence names a
+// unit or frame, it is Unclear, so that readers do not silently assume a unit.
 #include "brep/io/free_text.h"
 
 #include <algorithm>

@@ -48,10 +48,11 @@ struct Extent {
 };
 
 /// Reasons to doubt a mesh that is used together with a larger object, which `beside` names ("the scan"):
-/// - scale: its longest side is less than a hundredth, or more than ten times, of the other's. A screw is a
-///   fiftieth of a head, a cutting box at most a few heads. Names the unit in which the mesh would fit.
-/// - place: it lies wholly outside the other. Reports if it would lie inside with x and y negated. Empty if
-///   there is no doubt.
+/// - scale: its longest side is shorter than a hundredth of the other's, or longer than ten times that. A
+///   screw is a fiftieth of a head, a cutting box at most a few heads. Names the unit in which the mesh would
+///   fit.
+/// - place: it lies wholly outside the other. Reports if it would lie inside with x and y negated.
+/// Empty if there is no doubt.
 std::vector<MeshFinding> findings_beside(const Extent& mesh, const Extent& other, const std::string& beside);
 
 }  // namespace octotomy::brep

@@ -21,8 +21,8 @@ struct CellData {
   std::vector<std::string> part_names;
 };
 
-/// VTK's XML polydata with raw data appended: points and vertex data as doubles, normals in single precision,
-/// which are omitted if there are numbers of cells.
+/// VTK's XML polydata with raw data appended: points and vertex data as doubles, normals in single precision.
+/// Normals are omitted if `cells` has numbers.
 std::string vtp_of(const Triangles& triangles, const VertexData& data, const CellData& cells = {});
 
 /// glTF 2.0, binary: single precision millimetres, and a node that transforms them to the format's metres

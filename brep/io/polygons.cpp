@@ -158,7 +158,7 @@ class Ears {
 
   bool blocks(std::size_t i, const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) const {
     const glm::dvec2& q = p_[i];
-    // If another corner coincides with the ear's tip, its sides must not run through the ear.
+    // If another corner coincides with the ear's tip, the sides at that corner must not run through the ear.
     if (q == b) return cross(a, c, q, p_[next_[i]]) || cross(a, c, q, p_[before_[i]]);
     if (q == a || q == c) return false;
     return orientation(a, b, q) >= 0 && orientation(b, c, q) >= 0 && orientation(c, a, q) >= 0;
@@ -201,7 +201,7 @@ class Ears {
   const std::vector<glm::dvec2>& p_;
   std::vector<std::size_t> next_, before_;
   std::vector<std::uint32_t> version_;
-  std::vector<std::size_t> blocking_;  ///< by x
+  std::vector<std::size_t> blocking_;  ///< sorted by x
   std::priority_queue<Ear> ears_;
 };
 
@@ -260,7 +260,7 @@ void PolygonSplitter::add(std::span<const long long> given) {
   const bool fits_fan = corners.size() == 3 || is_fan(flat);
   const bool crosses = !fits_fan && crosses_itself(flat);
   if (length == 0.0 && !crosses) {
-    // Adds it in spite of that, so that its neighbours have their sides.
+    // Adds the polygon even without area, so that its neighbours' sides have partners.
     note(counts_.without_area, counts_.first_without_area);
     return add_fan(corners);
   }

@@ -12,19 +12,20 @@
 // Triangulates polygons of mesh files.
 namespace octotomy::brep {
 
-/// Counts of polygons by kind. `first_` is the number of the first such polygon in the file, counted from 0
-/// with triangles included.
+/// Counts of polygons by kind. A member `first_...` is the number of the first polygon of that kind among all
+/// faces of the file, from 0.
 struct PolygonCounts {
-  std::size_t faces = 0;         ///< polygons and triangles
+  std::size_t faces = 0;         ///< all faces, triangles included
   std::size_t polygons = 0;      ///< faces with more than three corners
-  std::size_t bent = 0;          ///< not planar to the file's precision
-  std::size_t crossing = 0;      ///< cross themselves, so that no triangles fill them
-  std::size_t repeating = 0;     ///< with a corner twice in a row
-  std::size_t without_area = 0;  ///< all corners on a line, or fewer than three left
+  std::size_t bent = 0;          ///< polygons that are not planar to the file's precision
+  std::size_t crossing = 0;      ///< polygons that cross themselves, so that no triangles fill them
+  std::size_t repeating = 0;     ///< polygons with a corner twice in a row
+  std::size_t without_area = 0;  ///< polygons with all corners on a line, or with fewer than three different
+                                 ///< ones
   std::size_t first_bent = 0, first_crossing = 0, first_without_area = 0;
   double most_bent = 0.0;  ///< largest distance of a corner from its polygon's plane, file's unit
 
-  /// The audit's lines about them; `unit_mm` is the file's unit.
+  /// The audit's lines about the polygons; `unit_mm` is the file's unit.
   std::vector<MeshFinding> findings(double unit_mm) const;
 };
 

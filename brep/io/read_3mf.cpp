@@ -3,9 +3,9 @@
 // spreads objects over several parts of the archive):
 //   1 The archive's relationships name the model. 2 Its XML defines objects: a mesh, or components that place
 //   other objects. 3 The items of the build place objects; without a build, all objects that no component
-//   places. A matrix has twelve numbers, four rows of three; a row of coordinates is multiplied by it from
-//   the left. Support structures are left out. Other extensions that a file requires are refused, because
-//   they may change the solid.
+//   places. A matrix has twelve numbers, four rows of three; it is multiplied from the left by the row of a
+//   point's coordinates. Support structures are left out. Other extensions that a file requires are refused,
+//   because they may change the solid.
 #include <algorithm>
 #include <cmath>
 #include <exception>

@@ -26,7 +26,7 @@ MeshContent refuse_gltf_text(std::string_view /*bytes*/) {
 struct Format {
   std::string_view extension;
   MeshContent (*read)(std::string_view bytes);
-  bool is_text;         ///< or may be text
+  bool is_text;         ///< the format is text, or may be
   bool repeats_points;  ///< repeats a point if its attributes differ between triangles
 };
 constexpr Format dicom_format{".dcm", read_dicom_model, false, true};

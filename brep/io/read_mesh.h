@@ -41,19 +41,18 @@ bool is_mesh_file(const std::filesystem::path& path);
 /// - .glb, binary glTF 2.0: the triangles of the scene's nodes, transformed; equal points welded;
 /// - .3mf: the objects of the build, transformed;
 /// - .dcm: STL or OBJ that is encapsulated in DICOM, with the unit of its header.
-/// PLY, OBJ and VTK files repeat points at which normals,
-///   colours or textures differ. Such points are merged if that closes open sides and leaves every edge with
-///   two triangles (weld_seams.h); points of OFF and 3MF are not merged. Triangles that repeat a corner are
-///   left out. The audit reports both. For an unstructured grid with volume cells, the result is the surface
-///   around these. Larger polygons and strips are triangulated (polygons.h); colours, normals, textures,
-///   lines and loose points are ignored. Frame and unit are those of the options, else those stated by the
-///   file (mesh_statements.h; glTF has metres with y up and z to the front, 3MF names its unit), else LPS
-///   millimetres are assumed. The audit reports which. Coordinates beyond 1.2e19 mm are refused. Throws Error
-///   (Input) with path, place and reason; never allocates beyond a fixed multiple of what the file's size can
-///   hold.
+/// PLY, OBJ and VTK files repeat points at which normals, colours or textures differ. Such points are merged
+/// if that closes open sides and leaves every edge with two triangles (weld_seams.h); points of OFF and 3MF
+/// are not merged. Triangles that repeat a corner are left out. The audit reports both. For an unstructured
+/// grid with volume cells, the result is the surface around these. Larger polygons and strips are
+/// triangulated (polygons.h); colours, normals, textures, lines and loose points are ignored. Frame and unit
+/// are those of the options, else those stated by the file (mesh_statements.h; glTF has metres with y up and
+/// z to the front, 3MF names its unit), else LPS millimetres are assumed. The audit reports which.
+/// Coordinates beyond 1.2e19 mm are refused. Throws Error (Input) with path, place and reason; never
+/// allocates beyond a fixed multiple of what the file's size can hold.
 MeshFile read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
-/// The triangles alone.
+/// The triangles of read_mesh() alone.
 Triangles read_triangles(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
 }  // namespace octotomy::brep

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Reads STL. The file's length decides whether it is binary, not its first word: binary files that begin with
 // "solid" are common. If the count and the length of a binary file disagree:
-// - less than a triangle follows the counted ones: these bytes are ignored and reported;
+// - fewer bytes than a triangle has follow the counted triangles: these bytes are ignored and reported;
 // - whole triangles follow: the count is too small, as when a writer stopped before updating it; they are
 //   read, with a warning;
 // - the count is larger than the file: it is truncated, and refused.
@@ -158,7 +158,8 @@ MeshContent read_stl(std::string_view bytes) {
   const std::size_t start = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
   const bool has_word = starts_in_any_case(bytes.substr(start), "solid");
   if (bytes.size() >= header_bytes) {
-    // In a text, the count's four bytes are letters, which form a count larger than any text has bytes for.
+    // In a text file the four bytes of the count are letters. They form a number of triangles that no text
+    // file is long enough to hold.
     const bool fits = count_of(bytes) <= (bytes.size() - header_bytes) / triangle_bytes;
     const bool has_zeros = bytes.substr(0, 1000).find('\0') != std::string_view::npos;
     if (!has_word || fits || has_zeros) return read_binary(bytes);

@@ -214,7 +214,7 @@ std::uint64_t least_mesh_bytes(std::size_t vertex_count, std::size_t face_count,
     std::string_view extension;
     std::uint64_t head, a_vertex, a_face;
   };
-  // For text, from the shortest lines: "v 0 0 0", "f 1 2 3", "0 0 0" and "3 0 1 2".
+  // For formats as text, the bounds count the shortest lines: "v 0 0 0", "f 1 2 3", "0 0 0" and "3 0 1 2".
   constexpr std::array<Least, 6> formats{{{".stl", 84, 0, 50},
                                           {".ply", 0, 24, 13},
                                           {".obj", 0, 8, 8},

@@ -20,7 +20,7 @@ struct PartedSurface {
   };
 
   Triangles triangles;
-  std::vector<Sides> sides;          ///< sides of each triangle; never the same part twice
+  std::vector<Sides> sides;          ///< parts on both sides of each triangle; never the same part
   std::map<int, std::string> names;  ///< names of the parts, whose numbers are above 0
 };
 
@@ -34,9 +34,10 @@ bool is_parts_file(const std::filesystem::path& path);
 /// Writes all parts as one file. .vtp: each triangle once, doubles, with `part_behind` and `part_in_front`
 /// per triangle and `part_numbers` and `part_names` for the file; .obj: a group per part, as text that reads
 /// back to the same doubles; .glb: a named node per part, all with the same points, single precision,
-/// transformed as by write_mesh(). In .obj and .glb a triangle between two parts is in both, once reversed.
-/// LPS millimetres. Written to a temporary file and renamed into place. Preconditions: sides fit triangles,
-/// and every part has a name. Throws std::invalid_argument if they do not; Error as write_mesh() does.
+/// transformed as by write_mesh(). In .obj and .glb both parts contain each triangle between them, one of
+/// them reversed. LPS millimetres. Written to a temporary file and renamed into place. Preconditions: each
+/// triangle has sides, of two different parts, and every part has a name. Throws std::invalid_argument if
+/// not; Error as write_mesh() does.
 void write_parts(const PartedSurface& parted, const std::filesystem::path& path);
 
 }  // namespace octotomy::brep

@@ -17,9 +17,8 @@ class ZipArchive {
 
   /// Whether an entry exists. Ignores case, as 3MF requires.
   bool has(const std::string& name) const;
-  /// An entry's bytes, at most 1032 times as many as it takes in the archive. Verifies its checksum. Throws
-  /// Error (Input), which names the entry, if it is missing, damaged, encrypted or compressed by another
-  /// method.
+  /// An entry's bytes: at most 1032 times its size in the archive. Verifies the checksum. Throws Error
+  /// (Input), which names the entry, if it is missing, damaged, encrypted or compressed by another method.
   std::string read(const std::string& name) const;
 
  private:

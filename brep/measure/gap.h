@@ -14,11 +14,11 @@ struct Gap {
   glm::dvec3 on_a_mm{0.0}, on_b_mm{0.0};
 };
 
-/// Exact up to rounding, also for edges that pass each other; if several pairs of points are equally near,
-/// returns one. For a solid inside another, the distance between their surfaces. Throws std::invalid_argument
-/// if a surface has no triangles. The same bits on any number of threads. Cost: linear, and the pairs of
-/// triangles that are about as near as the nearest. Method: both trees are descended together, nearer halves
-/// first.
+/// The gap of two surfaces, exact up to rounding, also for edges that pass each other; if several pairs of
+/// points are equally near, returns one. For a solid inside another, the distance between their surfaces.
+/// Throws std::invalid_argument if a surface has no triangles. The same bits on any number of threads. Cost:
+/// linear, and the pairs of triangles that are about as near as the nearest. Method: both trees are descended
+/// together, nearer halves first.
 Gap gap(const Triangles& a, const Triangles& b);
 
 }  // namespace octotomy::brep

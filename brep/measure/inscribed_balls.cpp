@@ -19,9 +19,9 @@ namespace octotomy::brep {
 namespace {
 
 constexpr std::uint32_t leaf_size = 4;
-/// Both relative to a radius: the rounding of distances, with three decimals to spare, and the largest
-/// excess of a radius after `exact_nodes`. All triangles of a sphere touch its largest ball, so excluding
-/// each exactly would cost n for each ball.
+/// Shares of a radius. `rounding`: the rounding of distances, with three decimals to spare. `coarse`: the
+/// largest excess of a radius after `exact_nodes` nodes. All triangles of a sphere touch its largest ball, so
+/// excluding each exactly would cost n for each ball.
 constexpr double rounding = 1e-12, coarse = 5e-3;
 constexpr int exact_nodes = 128;
 constexpr double touching_share = 0.025;

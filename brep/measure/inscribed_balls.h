@@ -30,9 +30,9 @@ class InscribedBalls {
   /// The largest ball that touches the surface at a point, has its centre opposite to the unit normal
   /// there, and holds no other sheet; its diameter is at most `ray_mm`, which is ray_mm() of the point. A
   /// triangle whose nearest point to the centre lies within the angle of `least_cosine` of the point, seen
-  /// from the centre, belongs to the point's own sheet. The radius is good to rounding, or where very many
-  /// triangles touch the ball, as of a sphere, too large by at most 0.5 %. Cost: about log n; at most some
-  /// thousand nodes of the tree more.
+  /// from the centre, belongs to the point's own sheet. The radius is exact up to rounding. Where very many
+  /// triangles touch the ball, as on a sphere, it is too large by at most 0.5 %. Cost: about log n, and at
+  /// most some thousand further nodes of the tree.
   Ball touching(const glm::dvec3& p_mm, const glm::dvec3& normal, double ray_mm, double least_cosine) const;
 
   /// Whether the surface touches a ball, within 2.5 % of its radius, at a second place nearly opposite to
@@ -66,8 +66,8 @@ class LargestBall {
  public:
   explicit LargestBall(std::vector<Ball> balls);
 
-  /// The largest ball that holds the point, or `known` where that is larger: its radius is too small by at
-  /// most 0.1 %, so that balls of nearly one size are not all compared. Cost: about log n where radii vary
+  /// The largest ball that holds the point, or `known` if that is larger. The radius may be too small by up
+  /// to 0.1 %, so that not all balls of nearly one size are compared. Cost: about log n where radii vary
   /// slowly from place to place.
   Ball about(const glm::dvec3& p_mm, const Ball& known) const;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 spread points over the surface and over the volume, these along lines; 2 find the largest ball that
-// touches the surface inside at each point of the surface, and at the foot of each point of the volume, whose
-// ball holds that point; 3 find the largest of all these balls that holds each point; 4 repeat step 3 with
-// every fourth ball, to estimate how much the mean rises with more balls.
+// touches the surface from inside at each point of the surface, and at the foot of each point of the volume;
+// the latter ball holds the volume's point; 3 find the largest of all these balls that holds each point; 4
+// repeat step 3 with every fourth ball, to estimate how much the mean rises with more balls.
 #include "brep/measure/local_thickness.h"
 
 #include <algorithm>
@@ -145,8 +145,9 @@ class Measurement {
     return found;
   }
 
-  /// Samples in order of their own balls: a sample's thickness is at least that, so that the search ends at
-  /// the first one whose own ball is larger than the thinnest wall. Blocks are fixed, for any number of threads.
+  /// Processes samples by the size of their own balls. A sample's thickness is at least its ball's diameter,
+  /// so the search ends at the first ball that is larger than the thinnest wall. Blocks are fixed, for any
+  /// number of threads.
   ThinnestWall run_thinnest() {
     ThinnestWall found;
     std::vector<LocalThicknessAt> surface = surface_points(solid_, options_.samples, found.reach_mm);
@@ -191,7 +192,7 @@ class Measurement {
     if (options_.progress) options_.progress(share);
   }
 
-  /// A single point if the surface is not closed and the ray leaves it.
+  /// The ball is a single point if the surface is not closed and the ray leaves it.
   Ball ball_at(const glm::dvec3& p_mm, const glm::dvec3& normal, double ray_mm) const {
     return std::isfinite(ray_mm) ? inscribed_.touching(p_mm, normal, ray_mm, least_cosine_) : Ball{p_mm, 0.0};
   }
@@ -206,7 +207,7 @@ class Measurement {
     on_surface_ = surface.size();
   }
 
-  /// The balls at the feet of the volume's points.
+  /// Finds the balls at the feet of the volume's points.
   void hold() {
     std::vector<glm::dvec3> places;
     for (const VolumePoint& point : points_) places.push_back(point.p_mm);

@@ -14,8 +14,8 @@
 namespace octotomy::brep {
 
 struct LocalThicknessOptions {
-  /// About how many points of the surface, and as many of the volume, are measured; at least 64. Errors of
-  /// the average fall with its square root on solids with edges.
+  /// Approximate number of points that are measured on the surface, and again in the volume; at least 64.
+  /// Errors of the average fall with the square root of this number on solids with edges.
   std::size_t samples = 20000;
   double least_angle_deg = 30.0;  ///< as of ThicknessOptions
   /// A point belongs to a wall if its ball touches the surface, within 2.5 % of its radius, at a second
@@ -37,15 +37,15 @@ struct LocalThicknessAt {
   bool is_wall = false;  ///< by the rule of LocalThicknessOptions::wall_angle_deg
 };
 
-/// Over a solid's volume, each point weighing its part of it.
+/// Statistics over a solid's volume; each point is weighted by its part of the volume.
 struct LocalThickness {
   /// Extrapolated to infinitely many balls, to first order: the mean over all balls, plus the increase from
   /// the mean over a fourth of them. At most largest_mm.
   double mean_mm = 0.0;
   double deviation_mm = 0.0, median_mm = 0.0, largest_mm = 0.0;  ///< over the balls, not extrapolated
-  /// The mean is within this of the true value for the given triangles, in 99 of 100 cases. The sum of
-  /// three terms: twice the change when three balls of four are left out, 2.6 standard errors of the
-  /// points, estimated from sums over every second one, and 0.5 % for the searches.
+  /// The mean is within this length of the true value for the given triangles, in 99 of 100 cases. The sum of
+  /// three terms: twice the change when three balls of four are left out, 2.6 standard errors of the points,
+  /// estimated from sums over every second one, and 0.5 % for the searches.
   double mean_half_width_mm = 0.0;
   std::vector<LocalThicknessAt> surface;
   double reach_mm = 0.0;  ///< largest distance of any point of the surface from the nearest point in the list
@@ -55,13 +55,13 @@ struct LocalThickness {
 };
 
 /// Local thickness: the diameter of the largest ball inside that holds the point. On a smooth part of the
-/// surface that is the ball that touches there; towards a sharp edge it falls to 0, as no ball reaches the
-/// edge. LPS millimetres. Throws std::invalid_argument if the solid is empty or an option is out of its
-/// range; Stopped. The same bits on any number of threads. Cost: n log n for the tree, about log n a sample;
-/// parallel. Source: Hildebrand and Ruegsegger, "A new method for the model-independent assessment of
-/// thickness in three-dimensional images", Journal of Microscopy 185, 1997; balls after Ma, Bae and Choi (see
-/// thickness.h). Departure: balls are those that touch at samples and at the feet of the volume's points, not
-/// all of a distance ridge.
+/// surface this is the ball that touches at the point. Towards a sharp edge the thickness falls to 0, because
+/// no ball reaches the edge. LPS millimetres. Throws std::invalid_argument if the solid is empty or an option
+/// is out of its range; Stopped. The same bits on any number of threads. Cost: n log n for the tree, about
+/// log n a sample; parallel. Source: Hildebrand and Ruegsegger, "A new method for the model-independent
+/// assessment of thickness in three-dimensional images", Journal of Microscopy 185, 1997; balls after Ma, Bae
+/// and Choi (see thickness.h). Departure: balls are those that touch at samples and at the feet of the
+/// volume's points, not all of a distance ridge.
 LocalThickness local_thickness(const Solid& solid, const LocalThicknessOptions& options = {});
 
 struct ThinnestWall {
@@ -69,9 +69,9 @@ struct ThinnestWall {
   double reach_mm = 0.0;               ///< as of LocalThickness
 };
 
-/// The thinnest wall alone, by the same samples of the surface and their balls, without those of the volume's
-/// points: thicknesses are at most those of local_thickness(), because fewer balls are tried. Throws as
-/// local_thickness(). The same bits on any number of threads. Cost: less than half of local_thickness().
+/// The thinnest wall alone, by the same samples of the surface and their balls, but without the balls of the
+/// volume's points: thicknesses are at most those of local_thickness(), because fewer balls are tried. Throws
+/// as local_thickness(). The same bits on any number of threads. Cost: less than half of local_thickness().
 ThinnestWall thinnest_wall(const Solid& solid, const LocalThicknessOptions& options = {});
 
 }  // namespace octotomy::brep

@@ -12,7 +12,7 @@ struct OverhangOptions {
   glm::dvec3 up{0.0, 0.0, 1.0};  ///< unit, LPS: from the printer's bed to the layers above
   /// A face that looks down is an overhang if it is inclined by less than this from the bed, 0..90 degrees.
   double incline_deg = 45.0;
-  /// Faces within this above the lowest point rest on the bed.
+  /// Faces within this height above the lowest point rest on the bed.
   double resting_mm = 0.1;
 };
 
@@ -23,8 +23,8 @@ struct Overhang {
 };
 
 /// The overhangs of a surface, largest first, equal ones by their first triangle. Triangles without area are
-/// none. Exact but for rounding. Throws std::invalid_argument if `up` is not a unit vector or the angle is out
-/// of its range. Cost: linear.
+/// not overhangs. Exact but for rounding. Throws std::invalid_argument if `up` is not a unit vector or the
+/// angle is out of its range. Cost: linear.
 std::vector<Overhang> overhangs(const Linked& surface, const OverhangOptions& options);
 
 }  // namespace octotomy::brep

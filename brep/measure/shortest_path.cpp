@@ -77,8 +77,9 @@ double length_along_edges(const Mesh& mesh, const Triangles& triangles, const Fo
   return shortest;
 }
 
-/// The triangles that a path of at most this length can touch: for its points, the distances to both ends add
-/// up to at most the length, and no point of a triangle is further from a corner than the longest side.
+/// The triangles that a path of at most this length can touch: for each point of the path, the distances to
+/// both ends add up to at most the length, and no point of a triangle is further from a corner than the
+/// longest side.
 std::vector<std::uint32_t> within_reach(const Triangles& triangles, const Foot& from, const Foot& to,
                                         double length_mm) {
   std::vector<std::uint32_t> faces;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 send a ray inward from each point; 2 take the ball through the point whose diameter is the ray's way; 3
-// shrink it until no other sheet lies in it.
+// 1 send a ray inward from each point; 2 start with the ball that touches at the point and has the ray's
+// length as diameter; 3 shrink it until no other sheet lies in it.
 #include "brep/measure/thickness.h"
 
 #include <algorithm>

@@ -20,7 +20,7 @@ struct Thickness {
   /// Distance straight inward along the normal to the next point of the surface.
   double ray_mm = 0.0;
   /// Diameter of the largest ball that touches the surface at the point from inside and contains no other
-  /// point of it.
+  /// point of the surface.
   double ball_mm = 0.0;
 };
 

@@ -41,10 +41,10 @@ TreeBox box_of(const Corners& t) {
 }
 
 /// Bound on the rounding error of distances to boxes and triangles. Floats are accurate to 2^-24. Along each
-/// axis two values are rounded: the point, relative to the middle of all boxes, and its difference from the
-/// box, which is at most the sum of both. 2^-20 of the longest of these lengths is five times the error.
-/// Distances to triangles use doubles, accurate to 2^-53, relative to the origin: 2^-44 of the largest
-/// coordinates covers their products.
+/// axis two values are rounded: the point's offset from the middle of all boxes, and its offset from the box.
+/// The latter is at most the sum of the offsets of point and box from the middle. 2^-20 of the longest of
+/// these lengths is five times the error. Distances to triangles use doubles, accurate to 2^-53, relative to
+/// the origin: 2^-44 of the largest coordinates covers their products.
 double rounding_mm(const glm::dvec3& p, const TreeBox& all, const glm::dvec3& middle) {
   const glm::dvec3 ways = glm::max(glm::abs(p - middle), all.high - middle);
   const glm::dvec3 most = glm::max(glm::abs(p), glm::max(glm::abs(all.low), glm::abs(all.high)));
@@ -176,7 +176,8 @@ bool is_inside(const glm::dvec3& p_mm, const Triangles& surface) {
 }
 
 struct SurfaceTree::Tree {
-  /// A leaf holds `count` triangles from `first`; an inner node's children are the next one and `first`.
+  /// A leaf holds `count` triangles from `first`; an inner node's children are the next node and node
+  /// `first`.
   struct Node {
     TreeBox box;
     std::uint32_t first = 0, count = 0;
@@ -190,7 +191,8 @@ struct SurfaceTree::Tree {
                            ///< the origin loses no digits
   bool is_halved;          ///< nodes were split at the median centre
   std::vector<FourBoxes> boxes_of_leaf;    ///< boxes of each leaf's triangles; for segments only
-  std::vector<std::uint32_t> leaf_number;  ///< by node; for segments only
+  std::vector<std::uint32_t> leaf_number;  ///< for each node, the index of a leaf in boxes_of_leaf; for
+                                           ///< segments only
 
   Tree(const Triangles& source, SurfaceTree::Build build) : is_halved(build != SurfaceTree::Build::Hasty) {
     const auto count = static_cast<std::uint32_t>(source.faces.size());

@@ -58,13 +58,13 @@ class SurfaceTree {
   /// the surface has no triangles. Cost: about log n per point, parallel.
   std::vector<double> distances_mm(const std::vector<glm::dvec3>& points_mm) const;
 
-  /// The distance of one point. The search starts with `triangle`, a number in the tree (such as 0), and stores
-  /// the nearest one there, which makes the next search fast if its point is near. The search ends at the
-  /// first distance below `enough_mm`, which need not be the least.
+  /// The distance of one point. The search starts with `triangle`, a number in the tree (such as 0), and
+  /// stores the nearest triangle there, which makes the next search fast if its point is near. The search
+  /// ends at the first distance below `enough_mm`, even if it is not the least.
   double distance_mm(const glm::dvec3& p_mm, std::uint32_t& triangle, double enough_mm = 0.0) const;
 
-  /// The foot of one point, by the same search. Below `enough_mm` it may be that of any triangle within that
-  /// distance.
+  /// The foot of one point, by the same search. If a triangle is nearer than `enough_mm`, the foot may be
+  /// that on any such triangle.
   Foot foot(const glm::dvec3& p_mm, std::uint32_t& triangle, double enough_mm = 0.0) const;
 
   /// The foot of each point, by the same search. Throws as distances_mm() and costs as much.
@@ -82,21 +82,22 @@ class SurfaceTree {
                                           std::vector<std::uint32_t>& nearest) const;
   static constexpr std::uint32_t unknown_triangle = 0xFFFFFFFFU;
 
-  /// 1 for each point inside, 0 outside, by parity along +x: a ray through an edge or vertex counts once, by
-  /// the half-open rule, and exactly, however near the surface the point is; on it, it may be either.
-  /// Precondition: closed. Parallel.
+  /// 1 for each point inside, 0 outside, by the parity of crossings along +x. A ray through an edge or vertex
+  /// crosses once, by the half-open rule. Exact, however near the surface a point is; a point on the surface
+  /// may be either. Precondition: closed. Parallel.
   std::vector<std::uint8_t> inside(const std::vector<glm::dvec3>& points_mm) const;
 
   /// Whether one point is inside.
   bool is_inside(const glm::dvec3& p_mm) const;
 
-  /// Whether `meets(face)` is true for any triangle that a segment may meet. Calls it for all triangles that
-  /// the segment meets and some near it, until it returns true. Precondition: built ForSegments. Cost: about
-  /// log n, and the triangles along the segment.
+  /// Whether `meets(face)` is true for any triangle that a segment may meet. Calls `meets` for the triangles
+  /// that the segment meets, and some near it, until a call returns true. Precondition: built ForSegments.
+  /// Cost: about log n, and the triangles along the segment.
   bool meets_any(const glm::dvec3& from_mm, const glm::dvec3& to_mm,
                  const std::function<bool(std::uint32_t face)>& meets) const;
 
-  /// The triangles that a ray from a point towards +x crosses, in order of face number, by the same rule.
+  /// The triangles that a ray from a point towards +x crosses, in order of face number, by the rule of
+  /// inside().
   std::vector<Crossing> crossings(const glm::dvec3& p_mm) const;
 
  private:

@@ -21,8 +21,8 @@ Kernel::Point_3 exact(const Point& p) {
   return {p[0], p[1], p[2]};
 }
 
-/// Exact. For most triangles the rounded doubled area decides: its error is less than eight roundings of the
-/// product of the longest sides.
+/// Whether three points are collinear, exactly. For most triangles the rounded doubled area decides: its
+/// error is less than eight roundings of the product of the longest sides.
 template <typename Point>
 bool is_flat(const Point& p, const Point& q, const Point& r) {
   assert(std::isfinite(p[0] + p[1] + p[2] + q[0] + q[1] + q[2] + r[0] + r[1] + r[2]));

@@ -35,11 +35,11 @@ struct Centred {
   std::uint32_t number = 0;
 };
 
-/// Builds such a tree over items. Each node is split at the median centre along its longest axis; equal
-/// centres are ordered by number. Calls leaf(node, begin, end) for each leaf, whose items are begin .. end -
-/// 1, and inner(node, second) for each other node after its children, which are `node` + 1 and `second`; in
-/// parallel. Precondition: item numbers are unique. The result is the same on any number of threads. Cost: n
-/// log n.
+/// Builds a binary tree over items by halving. Each node is split at the median centre along its longest
+/// axis; equal centres are ordered by number. Calls leaf(node, begin, end) for each leaf, whose items are
+/// begin .. end - 1, and inner(node, second) for each other node after its children, which are `node` + 1 and
+/// `second`; in parallel. Precondition: item numbers are unique. The result is the same on any number of
+/// threads. Cost: n log n.
 template <typename Leaf, typename Inner>
 void halve(std::vector<Centred>& items, std::uint32_t leaf_size, const Leaf& leaf, const Inner& inner,
            std::uint32_t self, std::uint32_t begin, std::uint32_t end) {

@@ -37,14 +37,14 @@ struct Health {
   std::size_t components = 0;            ///< triangles connected at corners
   std::size_t shells = 0;                ///< triangles connected across edges
   long euler = 0;                        ///< V - E + F of the vertices in use
-  std::size_t boundary_edges = 0;        ///< with one triangle
+  std::size_t boundary_edges = 0;        ///< edges with one triangle
   std::size_t coincident_points = 0;     ///< points in use that coincide with an earlier one in use
   std::size_t unwelded_edges = 0;        ///< boundary edges that would close if coincident points were merged
-  std::size_t nonmanifold_edges = 0;     ///< with more than two
-  std::size_t nonmanifold_vertices = 0;  ///< where more than one fan of triangles meets
+  std::size_t nonmanifold_edges = 0;     ///< edges with more than two triangles
+  std::size_t nonmanifold_vertices = 0;  ///< vertices where more than one fan of triangles meets
   std::size_t misoriented_edges = 0;     ///< edges of two triangles with the same direction
-  std::size_t degenerate_faces = 0;      ///< area zero in exact arithmetic
-  std::size_t duplicate_faces = 0;       ///< pairs with the same three points
+  std::size_t degenerate_faces = 0;      ///< triangles whose area is zero in exact arithmetic
+  std::size_t duplicate_faces = 0;       ///< pairs of triangles with the same three points
   std::size_t misplaced_shells = 0;      ///< outward shells inside a solid, or inward shells outside of one
   bool intersections_tested = false;
   /// Pairs of triangles that meet outside a shared corner or side, including duplicates. Corners with equal
@@ -57,7 +57,7 @@ struct Health {
   /// shells around it, and the total volume is positive.
   bool oriented = false;
   std::vector<std::string> findings;   ///< each names its first triangle by number and position
-  std::optional<Defect> first_defect;  ///< that of the first finding
+  std::optional<Defect> first_defect;  ///< defect of the first finding
 
   bool solid() const { return !first_defect; }
 };

@@ -38,7 +38,7 @@ struct Lines {
   std::int64_t columns = 0, rows = 0;
   double y(std::int64_t column) const { return low_y + spacing * static_cast<double>(column); }
   double z(std::int64_t row) const { return low_z + spacing * static_cast<double>(row); }
-  /// The first number at or above a coordinate.
+  /// The number of the first line at or above a coordinate.
   static std::int64_t first(double at, double low, double spacing, std::int64_t count) {
     const double number = std::ceil((at - low) / spacing);
     auto k = static_cast<std::int64_t>(std::clamp(number, 0.0, static_cast<double>(count)));

@@ -70,7 +70,7 @@ struct MeshCorners {
   }
   glm::dvec3 end_of(Mesh::HalfedgeHandle h) const { return glm_of(mesh.point(mesh.to_vertex_handle(h))); }
 
-  /// Calls visit(point) for each point of a triangle.
+  /// The number of points for visit_point(), which skips isolated ones.
   std::size_t point_count() const { return mesh.n_vertices(); }
   template <typename Visit>
   void visit_point(std::size_t i, const Visit& visit) const {
@@ -88,7 +88,7 @@ struct ListCorners {
     return {triangles.points_mm[face[0]], triangles.points_mm[face[1]], triangles.points_mm[face[2]]};
   }
 
-  /// In a list only the triangles show which points are in use.
+  /// visit_point() visits the points of one triangle: only triangles show which points of a list are in use.
   std::size_t point_count() const { return count(); }
   template <typename Visit>
   void visit_point(std::size_t i, const Visit& visit) const {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-// OpenMesh checks the type of a property at each access by comparing names, which takes a third of a decimation.
-// Its own assertions are left out, as those of CGAL and Eigen are; this project's stay. A header of OpenMesh that was
-// included before this one, by a source or by a list of precompiled headers, would bring them back.
+// OpenMesh checks the type of a property at each access by comparing names, which takes a third of the time of a
+// decimation. Its own assertions are left out, as those of CGAL and Eigen are; this project's stay. A header of
+// OpenMesh that was included before this one, by a source or by a list of precompiled headers, would bring them back.
 // clang-format off
 #ifdef OPENMESH_PROPERTYCONTAINER
 #error "include brep/mesh/mesh.h before any header of OpenMesh: it leaves OpenMesh's slow assertions out"

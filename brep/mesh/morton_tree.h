@@ -108,7 +108,7 @@ class MortonTree {
   static constexpr std::uint32_t leaf_size = 4;
   static constexpr std::uint32_t parallel_size = 4096;
 
-  /// A run of the order; an inner node's children are the next one and `second`.
+  /// A run of the order; an inner node's children are the next node and node `second`.
   struct Node {
     OuterBox box;
     std::uint32_t begin = 0, end = 0, second = 0;
@@ -207,7 +207,7 @@ class MortonTree {
     for (const auto& [half, other_half] : halves) near(half, other, other_half, limit_mm2, visit_pair);
   }
 
-  std::vector<std::uint32_t> faces_;  ///< in the order
+  std::vector<std::uint32_t> faces_;  ///< numbers of the faces, in Morton order
   std::vector<OuterBox> boxes_;       ///< boxes of the faces, in Morton order
   std::vector<Node> nodes_;           ///< a parent before its children
 };

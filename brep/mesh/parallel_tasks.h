@@ -12,7 +12,7 @@ namespace octotomy::brep {
 /// Calls task(i) for each i below `count`, in parallel. All tasks run to their ends; then the exception of the first
 /// task that threw, in the order of numbers, is thrown. An exception that leaves a plain TBB loop cancels the loops
 /// within its other tasks, and those tasks continue with results that are only half computed. A thread that waits
-/// within a task begins no other task, so data by thread belongs to one task.
+/// within a task begins no other task, so at any time the data of a thread belong to one task.
 template <typename Task>
 void run_parallel_tasks(std::size_t count, const Task& task) {
   std::vector<std::exception_ptr> failed(count);

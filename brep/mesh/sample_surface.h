@@ -27,9 +27,9 @@ SurfaceSamples sample_surface(const Mesh& mesh, double spacing_mm);
 SurfaceSamples sample_surface(const Triangles& triangles, double spacing_mm,
                               std::size_t most_samples = std::size_t{1} << 26);
 
-/// The spacing itself, or a larger one at which long triangles, which may be slivers, need at most about
-/// `most_samples` samples because of their length. For well-shaped triangles the area determines the samples;
-/// pass several times that number.
+/// The spacing, enlarged if long triangles, which may be slivers, would get more than about `most_samples`
+/// samples because of their length. Well-shaped triangles get samples by their area: pass several times that
+/// number of samples.
 double widened_spacing_mm(const Triangles& triangles, double spacing_mm, double most_samples);
 
 }  // namespace octotomy::brep

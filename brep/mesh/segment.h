@@ -6,7 +6,8 @@
 
 namespace octotomy::brep {
 
-/// The position of the nearest point on the segment from a to b, as a share of its length; 0 if it has none.
+/// The position of the nearest point on the segment from a to b, as a share of the segment's length; 0 for a
+/// segment without length.
 template <int dims>
 double share_along(const glm::vec<dims, double>& p, const glm::vec<dims, double>& a,
                    const glm::vec<dims, double>& b) {

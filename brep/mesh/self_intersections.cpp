@@ -49,7 +49,7 @@ class MeetsElsewhere {
       shared_b = static_cast<std::size_t>(at - b.begin());
     }
     if (shared == 3) return true;
-    // One does not reach through the other's plane: they meet at most in the shared corner.
+    // If one triangle does not reach through the other's plane, they meet at most in the shared corner.
     if (shared < 2 &&
         (is_beside(b, shared == 1 ? shared_b : 3, a) || is_beside(a, shared == 1 ? shared_a : 3, b)))
       return false;
@@ -151,7 +151,7 @@ class FirstPairs {
   }
 
   std::size_t most_, count_ = 0;
-  /// Pairs from here on are not among the first.
+  /// This pair and larger ones are not among the first.
   Pair bound_{std::numeric_limits<std::uint32_t>::max(), std::numeric_limits<std::uint32_t>::max()};
   std::vector<Pair> first_;
 };
@@ -335,7 +335,8 @@ std::vector<FirstPairs::Pair> crossings_at_edges(const Triangles& triangles,
   return pairs;
 }
 
-/// The surface whose corners with equal coordinates have one number, and 1 for each point that had several.
+/// The surface in which corners with equal coordinates have one number; `is_copied` is 1 for each point that
+/// had several.
 struct Joined {
   Triangles triangles;
   std::vector<std::uint8_t> is_copied;

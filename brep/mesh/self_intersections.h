@@ -12,7 +12,7 @@
 namespace octotomy::brep {
 
 /// Pairs of triangles of one surface that meet outside a shared corner or side. Corners with equal coordinates
-/// are shared, so sheets may touch at a point or along an edge; where they cross there, one pair counts.
+/// are shared, so sheets may touch at a point or along an edge. If they cross there, one pair is counted.
 struct SelfIntersections {
   std::size_t count = 0;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> first;  ///< lower triangle first, ascending

@@ -128,7 +128,7 @@ void check(const Triangles& triangles) {
     }
 }
 
-/// The defects by which triangles cannot be joined in pairs.
+/// The defects that prevent triangles from being joined in pairs.
 struct Unfit {
   std::size_t open = 0;  ///< edges of one triangle
   bool any = false;      ///< an edge of more than two triangles or with inconsistent winding, or a triangle

@@ -16,7 +16,7 @@ struct SplitEdge {
   std::uint32_t from = 0, to = 0;  ///< points of the input, the lower number first
   std::size_t triangles = 0;       ///< number of triangles that share the edge
   std::size_t pairs = 0;           ///< number of pairs that were joined; the other triangles end at the edge
-  glm::dvec3 at_mm{0.0};           ///< its middle
+  glm::dvec3 at_mm{0.0};           ///< middle of the edge
 };
 
 struct SplitFans {

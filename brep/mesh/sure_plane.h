@@ -33,9 +33,9 @@ class SurePlane {
     py_ = std::abs(zx) + std::abs(xz);
     pz_ = std::abs(xy) + std::abs(yx);
   }
-  /// The side of a point; 0 if rounding may decide. The error of a component of the normal is at most four
-  /// half epsilons of its products, that of its product with a difference two more, and that of their sum two
-  /// more of each.
+  /// The side of a point; 0 if rounding may decide. In half epsilons of the products, the error is at most
+  /// four for a component of the normal, six for its product with a difference, and eight for the sum of
+  /// these products.
   int side(const glm::dvec3& p) const {
     const double x = p.x - a_.x, y = p.y - a_.y, z = p.z - a_.z;
     return sure_sign(nx_ * x + ny_ * y + nz_ * z, px_ * std::abs(x) + py_ * std::abs(y) + pz_ * std::abs(z));

@@ -109,7 +109,8 @@ std::vector<std::uint32_t> pair_sides(const Triangles& triangles) {
 bool has_closed_fans_alone(const Linked& linked) {
   std::atomic<bool> alone = true;
   PointShares(linked.triangles).visit([&](std::uint32_t first, std::uint32_t end, const auto& each) {
-    // For each point, one more than the number of remaining corners of the fan of its first corner.
+    // For each point, 1 plus the corners still to come of one fan, that of the point's first corner; 0 before
+    // that corner.
     std::vector<std::uint32_t> to_come(end - first, 0);
     each([&](std::uint32_t f) {
       if (!alone.load(std::memory_order_relaxed)) return;

@@ -90,7 +90,8 @@ OCTOTOMY_FOR_VECTORS void add_moments(const Cluster& cluster, Points& points) {
 }  // namespace
 
 struct WindingTree::Tree {
-  /// A leaf holds `count` triangles from `first`; an inner node's children are the next one and `first`.
+  /// A leaf holds `count` triangles from `first`; an inner node's children are the next node and node
+  /// `first`.
   struct Node : Cluster {
     std::uint32_t first = 0, count = 0;
   };

@@ -21,10 +21,10 @@ class WindingTree {
   WindingTree(WindingTree&&) noexcept;
   WindingTree& operator=(WindingTree&&) noexcept;
 
-  /// Points near each other share a descent, so a result may depend on the other points, within that error.
-  /// The same bits on any number of threads. Cost: about log n per point, 2 us at 500k triangles; parallel.
-  /// Source: Barill, Dickson, Schmidt, Levin, Jacobson, "Fast winding numbers for soups and clouds", SIGGRAPH
-  /// 2018, with its second order; single triangles after Van Oosterom and Strackee, 1983.
+  /// Points near each other share a descent, so a result may depend on the other points, within the error
+  /// above. The same bits on any number of threads. Cost: about log n per point, 2 us at 500k triangles;
+  /// parallel. Source: Barill, Dickson, Schmidt, Levin, Jacobson, "Fast winding numbers for soups and
+  /// clouds", SIGGRAPH 2018, with its second order; single triangles after Van Oosterom and Strackee, 1983.
   std::vector<double> at(const std::vector<glm::dvec3>& points_mm) const;
 
  private:

@@ -22,7 +22,7 @@ namespace octotomy::brep {
 namespace {
 
 constexpr std::size_t most_simplices = std::size_t{1} << 22;
-constexpr double most_narrow = 64.0;  ///< edges of flat parts, by the narrowest part
+constexpr double most_narrow = 64.0;  ///< longest edge of a flat tetrahedron, in multiples of narrowest_mm
 constexpr std::array<std::array<std::size_t, 2>, 6> sides = {
     {{{0, 1}}, {{0, 2}}, {{0, 3}}, {{1, 2}}, {{1, 3}}, {{2, 3}}}};
 
@@ -118,7 +118,7 @@ class Bisection {
     return is;
   }
 
-  /// Adds the distances at places that have none yet.
+  /// Computes the distances at places that have none yet.
   void learn(const std::vector<std::uint64_t>& keys) {
     const std::vector<std::uint8_t> is_known =
         where(keys.size(), [&](std::size_t i) { return found_.distances_mm.contains(keys[i]); });
@@ -415,7 +415,7 @@ CutEdge edge_between(std::uint64_t a, std::uint64_t b) {
   return a < b ? CutEdge{a, b} : CutEdge{b, a};
 }
 
-/// Twice three times the volume, exactly: coordinates have 20 bits, products of three 60.
+/// Six times the volume, exactly: coordinates have 20 bits, products of three 60.
 std::int64_t volume_of(std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint64_t d) {
   const glm::i64vec3 from(place_of(a)), u = glm::i64vec3(place_of(b)) - from,
                                         v = glm::i64vec3(place_of(c)) - from,

@@ -42,7 +42,8 @@ Polyhedron polyhedron_of(const std::vector<Plane>& planes) {
         const Plane &a = planes[i], &b = planes[j], &c = planes[k];
         const glm::dvec3 bc = glm::cross(b.normal, c.normal);
         const double volume = glm::dot(a.normal, bc);
-        // The smallest product of three faces that share a corner is 0.38, that of a prism's sides and cap.
+        // The smallest triple product of the normals of faces that share a corner is 0.38, of a prism's sides
+        // and cap.
         if (!(std::abs(volume) > 0.1)) continue;
         const glm::dvec3 corner_mm = (a.distance_mm * bc + b.distance_mm * glm::cross(c.normal, a.normal) +
                                       c.distance_mm * glm::cross(a.normal, b.normal)) /

@@ -35,7 +35,7 @@ double slack_mm(const Size& size) {
 
 struct SidePlane {
   glm::dvec3 normal{0.0};
-  double along_mm = 0.0;  ///< of its points, along the normal
+  double along_mm = 0.0;  ///< p . normal of the points of the plane
 };
 
 /// The triangles of the convex hull; none where all points lie in a plane.
@@ -103,7 +103,7 @@ Triangles hull_of_convex(const Solid& solid) {
   return hull;
 }
 
-/// The planes of the hull's triangles; one for neighbours that lie in it.
+/// The planes of the hull's triangles; neighbours in one plane count once.
 std::vector<SidePlane> sides_of(const Triangles& hull) {
   std::vector<std::pair<double, SidePlane>> by_area;
   for (const auto& [i, j, k] : hull.faces) {
@@ -159,7 +159,7 @@ std::vector<Polygon> box_about(const Size& size) {
   return faces;
 }
 
-/// The points in the order of their directions from their middle, each once.
+/// The points, each once, sorted by their directions from the middle of all.
 Polygon ring_of(Polygon points, const glm::dvec3& normal, double slack) {
   glm::dvec3 middle(0.0);
   for (const glm::dvec3& p : points) middle += p / static_cast<double>(points.size());
@@ -216,7 +216,7 @@ void cut(std::vector<Polygon>& faces, const SidePlane& plane, double slack) {
   faces = std::move(kept);
 }
 
-/// Points of several faces, which rounding set apart, as one.
+/// The corners of all faces; corners that only rounding separates become one.
 std::vector<glm::dvec3> corners_of(const std::vector<Polygon>& faces, double slack) {
   std::vector<glm::dvec3> corners;
   std::map<std::array<long long, 3>, std::vector<glm::dvec3>> cells;

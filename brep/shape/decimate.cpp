@@ -25,9 +25,9 @@ namespace octotomy::brep {
 namespace {
 
 /// A mesh whose edges are collapsed. The library's own test allocates memory for each edge and takes half of
-/// the time; this test has the same results if the removed vertex is not on a border. The library looks at
-/// all edges from a vertex in turn and takes the collapse of the least error: one whose error is too large,
-/// or no less than that of one before it, is refused without a test.
+/// the time; this test has the same results if the removed vertex is not on a border. The library visits all
+/// edges from a vertex in turn and chooses the collapse of least error. A collapse whose error is too large,
+/// or not below that of an earlier one in the turn, is refused without a test.
 class CollapsedMesh : public Mesh {
  public:
   explicit CollapsedMesh(const Mesh& mesh) : Mesh(mesh) {}
@@ -35,7 +35,7 @@ class CollapsedMesh : public Mesh {
   /// Returns a collapse's error; negative if it is too large.
   std::function<float(OpenMesh::HalfedgeHandle)> error_of;
 
-  /// The next tested edge does not continue the turn around a vertex.
+  /// The edge that is tested next begins a new turn around a vertex.
   void start_anew() { next_in_turn_.invalidate(); }
 
   /// The error of the collapse that was tested last.
@@ -109,7 +109,7 @@ class ErrorThenShape : public OpenMesh::Decimater::ModQuadricT<CollapsedMesh> {
     };
   }
 
-  std::vector<Collapse> made;  ///< in their order
+  std::vector<Collapse> made;  ///< the collapses made, in order
 
   void limit(const DecimateOptions& options, double mean_mm2) {
     // The library keeps errors as floats, and weighs each plane's squared distance by its triangle's area.
@@ -180,7 +180,7 @@ void check(const DecimateOptions& options) {
   if (options.max_rounds < 1) refuse("there must be at least one round");
 }
 
-/// Whether each vertex stays: those of borders do.
+/// Marks the vertices on borders, which stay.
 std::vector<bool> border_of(const Mesh& mesh) {
   std::vector<bool> locked(mesh.n_vertices(), false);
   for (const auto halfedge : mesh.halfedges())
@@ -192,8 +192,8 @@ std::vector<bool> border_of(const Mesh& mesh) {
 /// A mesh and the collapses that made it.
 struct Coarse {
   Mesh mesh;
-  std::vector<Collapse> collapses;            ///< of the given mesh's vertices
-  std::vector<OpenMesh::VertexHandle> given;  ///< the vertex of the given mesh that each one is
+  std::vector<Collapse> collapses;            ///< collapses in terms of the given mesh's vertices
+  std::vector<OpenMesh::VertexHandle> given;  ///< for each vertex, the same vertex of the given mesh
 };
 
 /// Repeats the collapses of `before` as far as they are allowed. If there are none, searches for collapses.
@@ -242,7 +242,7 @@ std::size_t lock_what_went_into(const std::vector<std::uint32_t>& faces, const C
     for (const auto corner : coarse.mesh.fv_range(OpenMesh::FaceHandle(static_cast<int>(face))))
       is_corner[static_cast<std::size_t>(coarse.given[static_cast<std::size_t>(corner.idx())].idx())] = true;
   std::size_t count = 0;
-  // Backwards, because the vertex that a vertex was merged with may have been merged itself later.
+  // Backwards, because a vertex that received another one may have been merged itself later.
   for (auto collapse = coarse.collapses.rbegin(); collapse != coarse.collapses.rend(); ++collapse) {
     const auto from = static_cast<std::size_t>(collapse->from.idx());
     if (!is_corner[static_cast<std::size_t>(collapse->to.idx())]) continue;

@@ -289,7 +289,7 @@ class Field {
   std::vector<double> values_;
 };
 
-/// Cells beyond the sides of a cell that the surface passes.
+/// Adds the cells beyond those sides of a cell that the surface passes.
 void add_neighbours(const LatticePoint& cell, const std::array<double, 8>& values, const Lattice& lattice,
                     std::vector<std::uint64_t>& cells) {
   for (int axis = 0; axis < 3; ++axis)
@@ -304,7 +304,7 @@ void add_neighbours(const LatticePoint& cell, const std::array<double, 8>& value
     }
 }
 
-/// Every cell that the surface passes, with others, ascending.
+/// Every cell that the surface passes, and some others, ascending.
 std::vector<std::uint64_t> cells_of(const std::vector<Passage>& passages, const Lattice& lattice,
                                     Field& field, const Progress& progress) {
   std::vector<std::uint64_t> cells, fresh;

@@ -23,9 +23,9 @@ struct Hole {
 
 /// The holes of a mesh, in order of their lowest edge. Borders of up to 128 sides are closed by the triangles
 /// of least sharpness and area. For borders of up to 1024 sides, only triangles of the border's Delaunay
-/// tetrahedra are searched. If this finds none, and for longer borders, corners are cut off first, in order
-/// of the third side's length; the triangles may then be sharper than necessary or meet the surface. Cost: n
-/// log n in a border's sides, plus the search, which is at worst cubic in the sides passed to it.
+/// tetrahedra are searched. If the search finds none, and for longer borders, corners are cut off first, in
+/// order of the third side's length; the triangles may then be sharper than necessary or meet the surface.
+/// Cost: n log n in a border's sides, plus the search, which is at worst cubic in the sides passed to it.
 std::vector<Hole> holes(const Mesh& mesh, const std::optional<double>& longest_mm);
 
 }  // namespace octotomy::brep

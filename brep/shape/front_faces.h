@@ -36,7 +36,7 @@ class FrontFaces {
   bool is_seen(std::uint32_t triangle) const { return is_seen_[triangle] != 0; }
   /// The first triangle on the line of sight through a point, or none.
   std::uint32_t first_at(const glm::dvec2& at) const;
-  /// The depth of a triangle's plane, within the depths of its corners.
+  /// The depth of a triangle's plane at a point, limited to the depths of the triangle's corners.
   double depth(std::uint32_t triangle, const glm::dvec2& at) const;
 
  private:

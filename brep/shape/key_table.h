@@ -11,13 +11,14 @@
 namespace octotomy::brep {
 
 /// Values by the keys of lattice places (kuhn_cells.h), in one array with linear probing. Look-ups may run in
-/// parallel while nothing is inserted. Cost: constant each; at most twice 16 bytes a key for values of 8.
+/// parallel while nothing is inserted. Cost: constant each. Memory: at most twice 16 bytes per key if a value
+/// has 8 bytes.
 template <typename Value>
 class KeyTable {
  public:
   std::size_t size() const { return count_; }
 
-  /// The value of a key; null where there is none. An insertion invalidates it.
+  /// The value of a key; null where there is none. An insertion invalidates the pointer.
   const Value* find(std::uint64_t key) const {
     if (count_ == 0) return nullptr;
     const Slot& slot = slots_[slot_of(key)];

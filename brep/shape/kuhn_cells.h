@@ -48,7 +48,7 @@ inline LatticePoint corner_place(int corner) {
 /// linear, because a list that is shifted along an axis stays sorted.
 std::vector<std::uint64_t> points_about(const std::vector<std::uint64_t>& lowest, int width);
 
-/// The items that append(source, items) adds for these sources, in their order; in parallel.
+/// Calls append(source, items) for each source, in parallel. Returns all items in the order of the sources.
 template <typename Item, typename Source, typename Append>
 std::vector<Item> appended(const std::vector<Source>& sources, const Append& append) {
   constexpr std::size_t part = 1024;
@@ -73,7 +73,7 @@ std::vector<Item> appended(const std::vector<Source>& sources, const Append& app
 class LatticeEdge {
  public:
   LatticeEdge() = default;
-  /// `along` is the corner, of the cell whose lowest corner is `from`, at which the edge ends.
+  /// The edge starts at `from`, the lowest corner of a cell, and ends at corner `along` of this cell.
   LatticeEdge(const LatticePoint& from, int along)
       : packed_(key_of(from) << 3 | static_cast<std::uint64_t>(along)) {
     assert(along > 0 && along < 8);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The depth of a point within an intersection is the least of its depths within the operands, and that is exact.
-// The largest depth within the parts of a union is at most the depth within the union, so only balls that fit
+// The depth of a point within an intersection is exactly the least of its depths within the operands. The
+// largest depth within the parts of a union is at most the depth within the union, so only balls that fit
 // into one part count. Both depths change by at most the distance between points. Distances are computed only
 // where they decide: a level is skipped if its box is far, or if its depth can no longer be the least or the
 // largest. Where points are dense, distances at the middles of coarse cells bound those at the points, so
@@ -24,7 +24,8 @@
 namespace octotomy::brep {
 namespace {
 
-/// Edge of the cells whose middles' distances bound others.
+/// Edge of the coarse cells in cells of the options. The distance at a coarse cell's middle bounds the
+/// distances at its points.
 constexpr double coarse_cells = 1.5;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -121,7 +122,7 @@ class CoarseDistances {
   double edge_mm_;
   std::unordered_map<std::uint64_t, Cell> cells_;
   std::vector<glm::dvec3> middles_mm_;
-  std::vector<std::vector<double>> at_middle_mm_;  ///< by level and cell
+  std::vector<std::vector<double>> at_middle_mm_;  ///< distances at the cells' middles, by level and cell
 };
 
 /// Calls `take(i, distance)` with the signed distance to a level of each point for which `needs(i)` is true.

@@ -49,8 +49,8 @@ Lattice lattice_about(const Size& size, const OffsetOptions& options) {
   return lattice;
 }
 
-/// The root between two places of opposite sign, by regula falsi. If the same end stays again, its value is
-/// halved, so that it moves as well (Illinois method).
+/// The root between two places of opposite sign, by regula falsi. If one end stays in place twice in a row,
+/// its value is halved, so that this end moves as well (Illinois method).
 struct Root {
   double low = 0.0, high = 1.0, at_low = 0.0, at_high = 0.0, share = 0.5;
   int kept = 0;  // the end that did not move: -1 low, 1 high

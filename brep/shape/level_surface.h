@@ -19,8 +19,8 @@ namespace octotomy::brep {
 using LevelField = std::function<std::vector<double>(const std::vector<glm::dvec3>& points_mm,
                                                      std::vector<std::uint32_t>& nearest)>;
 
-/// The surface where the field is 0, by cells of the options' size. The field is that of a solid which is
-/// offset by `options.by_mm`; `size` is the solid's before. Guarantees, throws and costs as offset().
+/// The surface where the field is 0, by cells of the options' size. The field is that of a solid offset by
+/// `options.by_mm`; `size` is the solid's size before the offset. Guarantees, throws and costs as offset().
 Solid level_surface(const LevelField& field, const Size& size, const OffsetOptions& options);
 
 }  // namespace octotomy::brep

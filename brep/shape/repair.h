@@ -36,8 +36,8 @@ struct RepairOptions {
   /// Largest share of the volume that removing intersections and enclosing may gain or lose, above 0.
   double max_volume_share = 0.05;
   Progress progress = {};
-  /// With `solid`: makes the surface as given, holes and all, a wall of this thickness, as thickened() does; the
-  /// volume may then change. For sheets, which enclose nothing.
+  /// With `solid`: turns the surface as given, with its holes, into a wall of this thickness, as thickened()
+  /// does; the volume may then change. For sheets, which enclose nothing.
   std::optional<double> wall_mm = std::nullopt;
 };
 
@@ -55,16 +55,17 @@ struct Repair {
   std::optional<double> enclosed_cell_mm;  ///< the lattice's cell, if the surface was reconstructed
 };
 
-/// Repairs a surface as asked and lists each change. Never moves a point but to weld it to the first of its
-/// set, where intersections are taken out or the surface is enclosed. Edges of three and more triangles, and
-/// points where several fans meet, are split as split_fans() does wherever a step or the result needs it.
-/// Orients last, until health() agrees. Triangles with points that are not finite are taken out where `solid`
-/// is asked for. health() reports the faults that remain. Throws std::invalid_argument if an option is out of
-/// its range, Error (Input) if a triangle refers to no point or to one that is not finite, Error (Geometry)
-/// with both volumes if the volume changes by more than its share, of an enclosing with what would be
-/// accepted in its place, or as enclose(); Stopped. Cost: n log n, and most for triangles that intersect:
-/// those are taken out of up to 100 000 triangles only, when `solid` can enclose instead. Source: holes after
-/// Liepa, "Filling holes in meshes", SGP 2003; both holes and intersections as CGAL has them.
+/// Repairs a surface by the options and lists each change. Moves points only to weld each to the first of its
+/// set, to remove intersections or to enclose the surface. Edges of three and more triangles, and points
+/// where several fans meet, are split as split_fans() does wherever a step or the result needs it. Orients
+/// triangles last, until health() finds them consistent. Removes triangles with points that are not finite if
+/// `solid` is set. health() reports the faults that remain. Throws std::invalid_argument if an option is out
+/// of its range, Error (Input) if a triangle refers to no point or to one that is not finite, Error
+/// (Geometry) as enclose(), or if the volume changes by more than `max_volume_share`: with both volumes and,
+/// after enclosing, with options that would be accepted; Stopped. Cost: n log n; removing intersections costs
+/// most. With `solid`, which can enclose instead, they are removed only from surfaces of up to 100 000
+/// triangles. Source: holes after Liepa, "Filling holes in meshes", SGP 2003; holes and intersections as
+/// implemented in CGAL.
 Repair repair(const Triangles& surface, const RepairOptions& options);
 
 /// A surface whose triangles wind alike.

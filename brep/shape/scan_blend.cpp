@@ -10,10 +10,11 @@
 // 3 The solid less a slightly smaller box, united with that. Between both boxes the new surface lies a little
 //   within the solid, so that both cross each other nowhere but at the box.
 //
-// The side of a point of the scan follows from the scan's winding number. Above the plane through its border, that is
-// at least 1/2 inside a scan of crowns and at most 0 outside. The normal at the nearest point decides between both, as
-// inside a flat scan. Normals alone fail where noise makes the scan cross itself, as it does between teeth that touch:
-// the points whose nearest one lies there reach a millimetre and more from the scan.
+// The side of a point of the scan follows from the scan's winding number. Above the plane through its border,
+// this number is at least 1/2 inside a scan of crowns and at most 0 outside. Between these values, which
+// occur inside a flat scan, the normal at the nearest point decides. Normals alone fail where noise makes the
+// scan cross itself, as it does between teeth that touch: points up to a millimetre or more away from the
+// scan have their nearest point there.
 //
 // Where the weight changes, the slope of mixed distances exceeds 1: it is up to 1 plus the distance between scan and
 // solid times 1.5 / width, the steepest slope of the weight.
@@ -139,8 +140,8 @@ class Weight {
   }
 
   std::vector<Mixed> at(const std::vector<glm::dvec3>& points_mm) const {
-    // Between these winding numbers the nearest triangle's normal decides. Sides differ by 1, so that a third is far
-    // more than a number's error.
+    // Between these winding numbers the nearest triangle's normal decides. The numbers on both sides differ
+    // by 1, so a third is far above their error.
     constexpr double surely_inside = 2.0 / 3.0, surely_outside = 0.0;
     const std::vector<Foot> feet = tree_.feet(points_mm);
     const std::vector<double> turns = turns_.at(points_mm);
@@ -192,7 +193,7 @@ struct TurnedBox {
   glm::dvec3 in_box(const glm::dvec3& p) const {
     return {glm::dot(p, right), glm::dot(p, up), glm::dot(p, look)};
   }
-  /// Negative inside; exact inside, and at most the distance outside.
+  /// The signed distance to the box, negative inside: exact inside, a lower bound outside.
   double distance_mm(const glm::dvec3& p) const {
     const glm::dvec3 q = in_box(p), beyond = glm::max(low - q, q - high);
     return std::max({beyond.x, beyond.y, beyond.z});
@@ -285,7 +286,7 @@ class LatticeValues {
   double step_mm = 1.0;
   glm::ivec3 blocks{0};
   std::vector<double> middles;
-  /// Of each block: the number of its points' first value, or far_block.
+  /// For each block: the index of its first value, or far_block.
   std::vector<std::uint32_t> first;
   std::vector<double> values;
   static constexpr std::uint32_t far_block = 0xFFFFFFFFU;
@@ -324,7 +325,8 @@ LatticeValues values_about(const Size& size, const MixedField& field, double ste
   lattice.origin_mm = size.low_mm - options.cell_mm * glm::dvec3(1.2718281828, 1.3141592653, 1.1414213562);
   lattice.blocks = glm::ivec3(
       glm::ceil((size.high_mm + 2.0 * options.cell_mm - lattice.origin_mm) / (block * options.cell_mm)));
-  // A block takes 48 bytes, and each of its points, near the surface, 32 and as much again while their list grows.
+  // A block takes 48 bytes. Near the surface, each point of a block takes 32 bytes, and 32 more while the
+  // list of points grows.
   constexpr double most_blocks = double(1 << 21);
   constexpr std::size_t most_near_blocks = 1 << 17;
   const auto too_many = [&] {
@@ -358,7 +360,7 @@ LatticeValues values_about(const Size& size, const MixedField& field, double ste
   return lattice;
 }
 
-/// The triangles between lattice points inside and outside. They close for all values.
+/// The triangles between lattice points inside and outside. They form a closed surface for any values.
 std::vector<EdgeTriangle> triangles_between(const LatticeValues& lattice, const ScanBlendOptions& options) {
   std::vector<EdgeTriangle> triangles;
   const LatticePoint last = LatticeValues::block * lattice.blocks - 1;
@@ -401,7 +403,7 @@ struct CrossedEdge {
 };
 
 /// The surface between lattice points inside and outside. Its corners lie where the field itself is 0: distances bend at
-/// cusps and between teeth, so that values at the ends of an edge alone do not place them.
+/// cusps and between teeth, so the values at the ends of an edge do not suffice to place the corners.
 Solid surface_of(const LatticeValues& lattice, const MixedField& field, const ScanBlendOptions& options) {
   constexpr int rounds = 2;
   const std::vector<EdgeTriangle> triangles = triangles_between(lattice, options);
@@ -431,7 +433,8 @@ Solid surface_of(const LatticeValues& lattice, const MixedField& field, const Sc
   return trusted_solid(std::move(surface), Proof::Construction);
 }
 
-/// Mixed distances jump at the scan's border, where its nearest point does, and leave specks. Removes these.
+/// Removes the specks that mixed distances leave at the scan's border, where the nearest point of the scan
+/// jumps.
 Solid without_specks(const Solid& solid, ScanBlend& made) {
   constexpr double least_mm3 = 2.0;
   const std::vector<Component>& parts = solid.components();
@@ -497,9 +500,9 @@ double steepness_of(const ScanBlendOptions& options) {
 }  // namespace
 
 double scan_blend_allowance_mm(const ScanBlendOptions& options) {
-  // In a cell's tetrahedron, values that are interpolated between corners differ from those of a field of slope 1 by
-  // at most the mean distance from the corners, each with its weight. That is largest in the middle of the cell's
-  // diagonal, half of which it is there.
+  // In a cell's tetrahedron, values that are interpolated between corners differ from those of a field of
+  // slope 1 by at most the weighted mean distance from the corners. This mean is largest in the middle of the
+  // cell's diagonal, where it is half of the diagonal.
   return 0.5 * std::sqrt(3.0) * options.cell_mm;
 }
 

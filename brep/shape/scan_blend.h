@@ -19,12 +19,15 @@ struct ScanBlendOptions {
   /// Along this width the surface changes from the scan's to the solid's: at the depth, at the scan's borders
   /// and holes, and at `radius_mm`. Above 0.
   double blend_mm = 1.5;
-  /// What the solid has within this distance of the scan is replaced, above 0. Streaks that stick out farther stay.
+  /// The solid's surface within this distance of the scan is replaced, above 0. Streaks that stick out
+  /// farther stay.
   double reach_mm = 1.5;
   std::vector<glm::dvec3> about_mm =
-      {};                  ///< only within `radius_mm` of these; empty: all that the scan shows
+      {};                  ///< replaces only within `radius_mm` of these points; empty: all that the scan
+                           ///< shows
   double radius_mm = 6.0;  ///< above 0
-  /// Of the new triangles, above 0. Sharp edges are cut off within it. Time and memory grow with its inverse square.
+  /// Edge of the cells of the new triangles, above 0. Sharp edges are cut off within a cell. Time and memory
+  /// grow with its inverse square.
   double cell_mm = 0.25;
   Progress progress = {};
 };
@@ -37,20 +40,21 @@ struct SurfaceSources {
 struct ScanBlend {
   Solid solid;
   SurfaceSources sources;
-  double largest_move_mm = 0.0;  ///< of the scan's part, from the surface before
+  double largest_move_mm = 0.0;  ///< largest distance of the part from the scan to the surface before
   double shift_mm = 0.0;         ///< as in BooleanResult
   std::vector<std::string> findings;
 };
 
-/// The largest distance of the new triangles from the surface that they approximate, where one source alone counts:
-/// in gaps between teeth and at sharp edges, both of which cells cut off. Along the border the slope of the weight adds
-/// to it.
+/// The largest distance of the new triangles from the surface that they approximate, where one source alone
+/// counts. It occurs in gaps between teeth and at sharp edges, which cells cut off. Along the border the
+/// slope of the weight increases it.
 double scan_blend_allowance_mm(const ScanBlendOptions& options);
 
-/// The solid with the surface of an open scan that lies on it. Between both, distances are mixed with a weight that
-/// changes smoothly along `blend_mm`, so that the border is smooth. Near the crowns the surface is made anew from
-/// distances; elsewhere the triangles stay. Where the solid passes the box about the crowns, there
-/// is a step of up to a quarter of a cell. The number of cells is bounded; an arch takes 0.4 GB in cells of 0.25 mm and 0.9 GB in cells of 0.1 mm. Throws std::invalid_argument if an
+/// The solid with a part of its surface replaced by an open scan that lies on it. The distances to both are
+/// mixed with a weight that changes smoothly along `blend_mm`, so that the border is smooth. Near the crowns
+/// the surface is made anew from distances; elsewhere the triangles stay. Where the surface passes through
+/// the box about the crowns, there is a step of up to a quarter of a cell. The number of cells is bounded; an
+/// arch takes 0.4 GB in cells of 0.25 mm and 0.9 GB in cells of 0.1 mm. Throws std::invalid_argument if an
 /// option is out of its range; Error (Geometry) if the scan shows none of the crowns; std::length_error if
 /// the cells are too many; as boolean(); Stopped. The same bits on any number of threads. Cost: two distances
 /// for each cell near the surface in the box of the crowns, and two Booleans.

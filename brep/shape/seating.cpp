@@ -2,11 +2,12 @@
 //
 // 1 Sweep the part away from its place to before the object's near end.
 // 2 Depth changes by at most the distance between points: a triangle's depth is at most that of its middle
-//   and the distance from there to its farthest corner. It is also at most the distance to any one triangle
-//   of the space's surface, which over a triangle is largest at a corner: that bound is tight where both
-//   surfaces are flat. Level by level, keep the triangles that can still be deeper than the deepest place
-//   found, and cut each into four.
-// 3 Follow the direction from the deepest place: where it passes through the part is when the part is there.
+//   and the distance from there to its farthest corner. The depth is also at most the distance to any one
+//   triangle of the space's surface. Over a piece that distance is largest at a corner; this bound is tight
+//   where both surfaces are flat. Level by level, keep the triangles that can still be deeper than the
+//   deepest place found, and cut each into four.
+// 3 Follow the direction from the deepest place: the stretch inside the part shows when the part contains
+// that place.
 #include "brep/shape/seating.h"
 
 #include <algorithm>
@@ -93,8 +94,8 @@ std::optional<Binding> deepest(const Solid& object, const Solid& space, const Se
   return found;
 }
 
-/// The distances before its place at which the part begins and ceases to contain a point: at the first and
-/// the last of its surfaces along the direction.
+/// Finds how far before its place the part begins and ceases to contain a point: a ray from the point along
+/// the direction meets the part's surface first and last at these distances.
 void find_times(const Solid& part, const glm::dvec3& direction, Binding& binding) {
   // Rays go towards +x.
   const glm::dvec3 beside = std::abs(direction.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);

@@ -3,8 +3,8 @@
 // 1 Turn the surface so that the direction is the depth, and keep the triangles that face it and may be seen.
 // 2 Draw the edges of those triangles into a constrained triangulation of the view: none crosses its faces.
 // 3 Each face of the view has the triangle that the line of sight through its middle meets first.
-// 4 At each point of the view its faces lie at one depth or at several. Equal depths are one point of the
-//   shadow: the object's own where it has one there.
+// 4 At each point of the view, the faces around it lie at one depth or at several. Each depth is one point of
+//   the shadow: the object's own point if it has one there.
 // 5 Each covered face makes one triangle at its depth and one in the end plane; each edge between faces of
 //   different depths makes a wall.
 //
@@ -94,7 +94,7 @@ class PointsByPlace {
 /// A depth at a point of the view. Depths in from..to count as this depth.
 struct Level {
   double from = 0.0, to = 0.0;
-  std::uint32_t point = 0;  ///< of the shadow
+  std::uint32_t point = 0;  ///< number of the shadow's point
 };
 
 class ShadowSurface {
@@ -160,12 +160,12 @@ class ShadowSurface {
   const Solid& solid_;
   const Progress& progress_;
   ViewAxes axes_;
-  std::vector<glm::dvec3> points_;  ///< of the object, in the view
+  std::vector<glm::dvec3> points_;  ///< points of the object, in the view
   PointsByPlace by_place_;
   FrontFaces faces_;
   double same_depth_mm_ = 0.0, end_ = 0.0;
   ViewPlane view_;
-  std::vector<std::vector<Level>> levels_;  ///< of a point of the view, ascending
+  std::vector<std::vector<Level>> levels_;  ///< for each point of the view, its levels, ascending
   Triangles surface_;
 };
 
@@ -260,8 +260,8 @@ void ShadowSurface::find_levels() {
     const glm::dvec2 place = place_in_view(vertex);
     for (Level& level : own) {
       level.point = static_cast<std::uint32_t>(surface_.points_mm.size());
-      // Prefers the depth nearest to the end plane, whose own depth is the only one not computed from a
-      // triangle's plane.
+      // Uses the level's depth nearest to the end plane: the end plane's own depth is the only one that is
+      // not computed from a triangle's plane.
       glm::dvec3 p_mm = axes_.lps({place, level.to});
       by_place_.at(place, [&](std::uint32_t i) {
         if (points_[i].z >= level.from - same_depth_mm_ && points_[i].z <= level.to + same_depth_mm_)

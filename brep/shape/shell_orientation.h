@@ -16,10 +16,11 @@ namespace octotomy::brep {
 /// For each side of each triangle, the other triangle that shares it.
 struct Neighbours {
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> face;  ///< of side k of triangle f, at 3 f + k; none unless there is exactly one
-  std::vector<std::uint8_t> same_way;  ///< the neighbour runs along the side in the same direction
+  std::vector<std::uint32_t> face;  ///< at 3 f + k, the neighbour at side k of triangle f; none unless there
+                                    ///< is exactly one
+  std::vector<std::uint8_t> same_way;  ///< 1 if the neighbour runs along the side in the same direction
 
-  /// Whether a side is not shared by exactly one other triangle.
+  /// Whether any side is not shared by exactly one other triangle.
   bool is_open() const;
 };
 /// Cost: n log n.
@@ -28,7 +29,7 @@ Neighbours neighbours_of(const Triangles& surface);
 /// Sets of triangles that are connected across sides shared by exactly two triangles.
 struct Shells {
   std::vector<std::uint32_t> of;     ///< of each triangle, the first triangle of its shell
-  std::vector<std::uint8_t> turned;  ///< triangles to reverse, so that each shell winds one way
+  std::vector<std::uint8_t> turned;  ///< 1 for each triangle to reverse, so that each shell winds one way
   std::size_t twisted_sides = 0;     ///< sides whose triangles still wind against each other, counted twice:
                                      ///< a Moebius strip has some
 };
@@ -36,7 +37,7 @@ Shells wind_alike(const Neighbours& neighbours);
 
 struct Shell {
   std::vector<std::uint32_t> faces;
-  std::size_t turns = 0;  ///< of its triangles, reversed ones
+  std::size_t turns = 0;  ///< number of its triangles that were reversed
   double volume_mm3 = 0.0, area_mm2 = 0.0;
   bool is_closed = true;
   /// The shell's farthest points in both directions along each axis. Points that other shells share are left

@@ -6,7 +6,7 @@
 namespace octotomy::brep {
 
 struct SmoothOptions {
-  int rounds = 10;         ///< each consists of a step in and a step out, at least 1
+  int rounds = 10;         ///< rounds of one inward and one outward step, at least 1
   double pass_band = 0.1;  ///< waves below it are preserved, 0..1: 0.1 preserves those longer than about 10
                            ///< edges
   double max_volume_share = 0.01;  ///< largest share of the volume that may be gained or lost, above 0
@@ -14,12 +14,12 @@ struct SmoothOptions {
 
 /// Removes noise of the vertices by alternating inward and outward steps, which nearly preserve long waves
 /// and thus the volume. Connection and orientation stay. A thin wall may intersect itself afterwards: check
-/// with health(). Borders of an open mesh do not move. For an open mesh the largest change of volume is a
-/// share of the volume of a ball of its area; the change is the volume between its triangles before and
-/// after. Precondition: manifold. Throws std::invalid_argument where an option is out of its range, Error
-/// (Geometry) with both volumes if the volume changes by more than its share. Deterministic. Cost: rounds
-/// times edges. Source: Taubin, "A signal processing approach to fair surface design", SIGGRAPH 1995, with
-/// equal weights.
+/// with health(). Borders of an open mesh do not move. For an open mesh, the share refers to the volume of a
+/// ball with the mesh's area, and the change is the volume between its triangles before and after.
+/// Precondition: manifold. Throws std::invalid_argument where an option is out of its range, Error (Geometry)
+/// with both volumes if the volume changes by more than the allowed share. Deterministic. Cost: rounds times
+/// edges. Source: Taubin, "A signal processing approach to fair surface design", SIGGRAPH 1995, with equal
+/// weights.
 Mesh smooth(const Mesh& mesh, const SmoothOptions& options = {});
 
 }  // namespace octotomy::brep

@@ -13,7 +13,7 @@ namespace {
 
 /// The sides of triangles in ascending order, each once, the lower end first.
 std::vector<std::array<std::uint32_t, 2>> sides_of(const Triangles& surface) {
-  // Ends are counted by the lower end of their side. So only the few sides of a point are sorted.
+  // The sides are grouped by their lower end, so only the few sides of a point are sorted.
   std::vector<std::size_t> starts(surface.points_mm.size() + 1, 0);
   const auto for_sides = [&surface](const auto& visit) {
     for (const auto& [a, b, c] : surface.faces)

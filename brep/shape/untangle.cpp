@@ -51,8 +51,8 @@ Untangled untangle(const Mesh& mesh) {
   Untangled untangled;
   untangled.surface = before;
   std::size_t intersections = health(before).self_intersections;
-  // If a part passes through another, only a different genus has no intersection. The decision uses
-  // health()'s count of remaining intersections, which differs from CGAL's.
+  // If a part passes through another, only a surface of another genus is free of intersections. The decision
+  // uses health()'s count of remaining intersections, which differs from CGAL's.
   for (const bool keeps_genus : {true, false, false, false}) {
     if (intersections == 0) break;
     Surface surface = surface_mesh_of<Kernel::Point_3>(untangled.surface);

@@ -16,10 +16,10 @@ struct Untangled {
   bool is_done = false;                ///< no triangles intersect
 };
 
-/// A mesh without intersecting triangles: these and some around them are smoothed, or removed and the hole
-/// closed; the genus is preserved if possible. If intersections remain, `is_done` is false and the surface is
-/// the best found. Precondition: nothing is marked as deleted. Cost: n log n for the test, and mainly the
-/// triangles that intersect. Source: CGAL's experimental remove_self_intersections().
+/// A mesh without intersecting triangles. Intersecting ones and some around them are smoothed, or removed and
+/// the hole closed. The genus is preserved if possible. If intersections remain, `is_done` is false and the
+/// surface is the best found. Precondition: nothing is marked as deleted. Cost: n log n for the test; most
+/// time goes into triangles that intersect. Source: CGAL's experimental remove_self_intersections().
 Untangled untangle(const Mesh& mesh);
 
 }  // namespace octotomy::brep

@@ -35,7 +35,7 @@ struct Camera {
     const glm::dvec2 aside = (p - centre_mm) / (spread(depth_mm(p_mm)) * pixel_mm);
     return glm::dvec2(size_px) * 0.5 + glm::dvec2(aside.x, -aside.y);
   }
-  /// The point of a pixel position at a depth. Inverse of position_px().
+  /// The point that a pixel position shows at a depth. Inverse of position_px().
   glm::dvec3 lps_mm(const glm::dvec2& p_px, double at_mm) const {
     const glm::dvec2 from_centre = (p_px - glm::dvec2(size_px) * 0.5) * (pixel_mm * spread(at_mm));
     const glm::dvec2 p = centre_mm + glm::dvec2(from_centre.x, -from_centre.y);

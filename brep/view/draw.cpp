@@ -52,7 +52,7 @@ struct Piece {
   std::uint32_t item = 0;
 };
 
-/// Twice the area that a, b and p enclose; exactly the negative if a and b are exchanged.
+/// Twice the signed area of the triangle a, b, p; exactly negated if a and b are exchanged.
 double side_of(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p) {
   const bool is_first = a.x < b.x || (a.x == b.x && a.y < b.y);
   const glm::dvec2& low = is_first ? a : b;
@@ -61,7 +61,8 @@ double side_of(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p) {
   return is_first ? area : -area;
 }
 
-/// Which of the two triangles along an edge owns its points: exactly one of the edge's directions does.
+/// Whether a triangle that runs along an edge from a to b owns the edge's points; true for exactly one
+/// direction.
 bool owns_edge(const glm::dvec2& a, const glm::dvec2& b) {
   return a.y != b.y ? a.y < b.y : a.x < b.x;
 }
@@ -119,7 +120,7 @@ class Painter {
 
  private:
   struct Grid {
-    int first_row = 0, rows = 0;  ///< of points
+    int first_row = 0, rows = 0;  ///< rows of points
     int points_per_px = 1;        ///< along each axis
     int columns = 0;
 
@@ -279,7 +280,7 @@ class Painter {
     }
   }
 
-  /// The number of lit pixels.
+  /// Draws a band of rows. Returns the number of lit pixels.
   std::uint64_t paint_band(int band, DrawnPicture& picture) const {
     const int first = band * band_rows, rows = std::min(band_rows, camera_.size_px.y - first);
     const auto width = static_cast<std::size_t>(camera_.size_px.x);
@@ -353,7 +354,7 @@ class Painter {
     return {corners_[facet.corners[0]].px, corners_[facet.corners[1]].px, corners_[facet.corners[2]].px};
   }
 
-  /// Weights in space, of weights in the picture: each corner's is scaled by its magnification.
+  /// Converts weights in the picture to weights in space: each is scaled by its corner's magnification.
   glm::dvec3 in_space(const Facet& facet, glm::dvec3 weights) const {
     for (int k = 0; k < 3; ++k) weights[k] *= corners_[facet.corners[static_cast<std::size_t>(k)]].scale;
     return weights / (weights.x + weights.y + weights.z);
@@ -397,8 +398,8 @@ class Painter {
     }
   }
 
-  /// The length by which a line counts as nearer: its width, so that a surface of up to 63 degrees from the
-  /// picture's plane, which rises by twice the radius beside it, does not hide the outline that lies on it.
+  /// The length by which a line counts as nearer: its width. A surface at up to 63 degrees to the picture's
+  /// plane rises by at most twice the radius beside the line, so it does not hide an outline that lies on it.
   double lead_mm(std::uint32_t id) const {
     if (id < facets_.size() || id >= facets_.size() + pieces_.size()) return 0.0;
     return 2.0 * pieces_[id - facets_.size()].radius_px * camera_.pixel_mm;

@@ -36,7 +36,7 @@ struct DrawnLines {
 struct DrawnSheet {
   glm::dvec3 first_mm{0.0};        ///< centre of the first pixel
   glm::dvec3 per_column{1, 0, 0};  ///< from a pixel to the next of its row, mm
-  glm::dvec3 per_row{0, 1, 0};     ///< perpendicular to it
+  glm::dvec3 per_row{0, 1, 0};     ///< from a row to the next, perpendicular to per_column, mm
   glm::ivec2 size_px{0};
   std::vector<std::uint8_t> rgb;       ///< sRGB, 3 bytes per pixel, row by row
   std::vector<std::uint8_t> is_shown;  ///< by pixel; 0: transparent

@@ -125,7 +125,7 @@ void check_sets(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
 
 using Writer = void (*)(const Tetrahedra&, const DeckOptions&, std::ostream&);
 
-/// The files that make a deck.
+/// One of a deck's files, and the function that writes it.
 struct Part {
   std::filesystem::path path;
   Writer write;

@@ -84,8 +84,8 @@ struct DeckOptions {
 /// .node TetGen's .node, .ele and .face, the last with the whole surface; linear elements only.
 /// Throws as need_own_deck_files(). Throws std::invalid_argument for another extension, no tetrahedra, an
 /// element that names no node, sets and lists that do not fit, or options that a solver would refuse;
-/// voxel::Error (Input or Resource) with path and reason if a file cannot be written; voxel::Stopped. No file
-/// is left by a failure.
+/// voxel::Error (Input or Resource) with path and reason if a file cannot be written; voxel::Stopped. After a
+/// failure no file is left.
 void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
                 const DeckOptions& options = {});
 

@@ -41,8 +41,8 @@ std::vector<std::uint32_t> nodes_of(const Tetrahedra& tetrahedra, std::size_t te
 std::vector<std::uint32_t> nodes_of(const Tetrahedra& tetrahedra, const ElementFace& face);
 std::uint32_t material_of(const DeckOptions& options, std::size_t tet);
 /// Contact pressure per overclosure, MPa a millimetre: ten times the largest Young's modulus; CalculiX's
-/// manual advises 5 to 50 times. A strain of a tenth of a millimetre over ten millimetres then overlaps by
-/// under a hundredth of it.
+/// manual advises 5 to 50 times. The pressure that strains an element by 1 % then makes surfaces overlap by
+/// at most 0.001 mm.
 double contact_stiffness(const DeckOptions& options);
 /// Text escaped for XML: it cannot end a comment or break a line.
 std::string xml_escaped(const std::string& text);

@@ -9,7 +9,7 @@
 
 namespace octotomy::convert {
 
-/// Whether Abaqus and CalculiX accept it as a name: a letter, then letters, digits, '_' and '-', at most 80.
+/// Whether Abaqus and CalculiX accept a name: a letter, then letters, digits, '_' and '-', at most 80.
 bool is_solver_name(const std::string& name);
 
 /// Whether a node set of the caller's may not have this name, because a deck's own sets have it: "SURFACE",

@@ -121,8 +121,8 @@ double DisplacementField::fading(const glm::dvec3& p_mm) const {
 glm::dvec3 DisplacementField::faded(const glm::dvec3& p_mm, const glm::dvec3& displacement_mm) const {
   if (!is_inverse_) return fading(p_mm) * displacement_mm;
   // The origin of a displaced point: the share s with s = fading(p + s d). The map from s to the right side
-  // shrinks differences, because `fade_mm` is above least_fade_mm(); the error after all rounds is under
-  // the tolerance where the displacement is at most 95 % of what the fade allows.
+  // is a contraction, because `fade_mm` is above least_fade_mm(). The error after all rounds is under the
+  // tolerance if the displacement is at most 95 % of the largest that `fade_mm` allows.
   constexpr int most_rounds = 400;
   constexpr double tolerance = 1e-12;
   double share = fading(p_mm);

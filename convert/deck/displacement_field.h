@@ -14,8 +14,9 @@ namespace octotomy::convert {
 
 /// An element that displacements turn inside out.
 struct TurnedOver {
-  glm::dvec3 centre_mm{0.0};  ///< where it lay, LPS
-  double volume_ratio = 0.0;  ///< its signed volume after over that before, at most 0
+  glm::dvec3 centre_mm{0.0};  ///< its middle before the displacements, LPS
+  double volume_ratio = 0.0;  ///< its signed volume after the displacements, divided by that before; at most
+                              ///< 0
 };
 
 /// The shortest distance over which a displacement of this length may fade without folding space: the
@@ -39,8 +40,8 @@ class DisplacementField {
   /// log n outside.
   std::vector<glm::dvec3> at(const std::vector<glm::dvec3>& points_mm) const;
 
-  /// The field that moves displaced points back. Exactly the inverse within the elements if none is turned
-  /// over; beyond their box, where the displacement is uniform along their surface.
+  /// The field that moves displaced points back. The inverse is exact within the elements if none is turned
+  /// over, and beyond their box if the displacement is uniform along their surface.
   DisplacementField inverse() const;
   /// The elements that the displacements turn over, in the elements' order.
   std::vector<TurnedOver> turned_over() const;

@@ -17,7 +17,7 @@ struct DensityCalibration {
   double intercept_g_cm3 = 0.0;
 };
 
-/// The density of a law: apparent (wet mass per whole volume) or ash (mineral mass per whole volume).
+/// The kind of density in a law: apparent (wet mass per whole volume) or ash (mineral mass per whole volume).
 enum class DensityKind { Apparent, Ash };
 
 /// Piecewise E = a + b rho^c in MPa, rho in g/cm3.
@@ -53,8 +53,8 @@ struct MaterialOptions {
   double least_mpa = 1.0;
   /// Voxels at the surface hold bone and its surroundings. A point nearer to the surface than this depth is
   /// moved to this depth, away from its nearest surface point, and gets the scan's value there if it is
-  /// larger. 0: every point keeps its own value. With a voxel's diagonal all voxels at the surface are
-  /// avoided. Bone thinner than twice the depth has no point at this depth.
+  /// larger. 0: every point keeps its own value. A depth of a voxel's diagonal avoids all voxels at the
+  /// surface. Bone thinner than twice the depth has no point at this depth.
   double surface_depth_mm = 0.0;
   voxel::Progress progress{};  ///< of the elements
 };
@@ -64,7 +64,7 @@ struct ElementMaterials {
   std::vector<double> hu;             ///< mean over the element
   std::vector<double> density_g_cm3;  ///< never negative
   std::vector<double> youngs_modulus_mpa;
-  std::vector<DeckMaterial> materials;  ///< one for each bin with elements: their mean
+  std::vector<DeckMaterial> materials;  ///< one for each bin that has elements, with their mean stiffness
   std::vector<std::uint32_t> material_of_tet;
   double worst_ratio = 1.0;  ///< largest ratio, over all elements, between an element's own stiffness and its
                              ///< material's, either way
@@ -73,12 +73,12 @@ struct ElementMaterials {
 };
 
 /// Samples the scan over each element: the mean of the trilinear interpolant at points spread evenly over it,
-/// half a voxel apart or less, at most 165 (elements up to five voxels large). Points outside the scan do not
-/// count. An element without a point in the scan gets the sample nearest to its middle, and a finding counts
-/// such elements. Throws std::invalid_argument if an option is out of range, the law is unknown, or there are
-/// no elements; voxel::Stopped. Parallel; same bits on any thread count. Cost: the points. Source: Taddei et
-/// al., "The material mapping strategy influences the accuracy of CT-based finite element models of bones",
-/// Med. Eng. Phys. 29, 2007: integration over elements instead of nodes or centroids.
+/// half a voxel apart or less; elements larger than about five voxels get 165 points. Points outside the scan
+/// do not count. An element without a point in the scan gets the sample nearest to its middle, and a finding
+/// counts such elements. Throws std::invalid_argument if an option is out of range, the law is unknown, or
+/// there are no elements; voxel::Stopped. Parallel; same bits on any thread count. Cost: the points. Source:
+/// Taddei et al., "The material mapping strategy influences the accuracy of CT-based finite element models of
+/// bones", Med. Eng. Phys. 29, 2007: integration over elements instead of nodes or centroids.
 ElementMaterials element_materials(const Tetrahedra& tetrahedra, const voxel::Scene& scan,
                                    const MaterialOptions& options = {});
 

@@ -9,13 +9,13 @@
 namespace octotomy::convert {
 
 /// The trilinear interpolant of a scan, constant between the outermost samples and the voxels' ends.
-/// Precondition: the scan outlives it.
+/// Precondition: the scan outlives this object.
 class ScanSampler {
  public:
   explicit ScanSampler(const voxel::Scene& scan)
       : scan_(scan), voxel_from_lps_(glm::inverse(scan.lattice.lps_from_voxel)) {}
 
-  /// An LPS point in the scan's voxel indices.
+  /// Converts an LPS point to the scan's voxel indices.
   glm::dvec3 voxel(const glm::dvec3& p_mm) const { return voxel_from_lps_ * glm::dvec4(p_mm, 1.0); }
   glm::dvec3 lps_mm(const glm::dvec3& v) const { return scan_.lattice.lps_mm(v); }
   /// Whether a position is in one of the scan's voxels and its value depends on measured samples only.

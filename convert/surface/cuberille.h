@@ -33,12 +33,12 @@ enum class Touching {
 /// sheets meet at an edge or corner, each sheet has its own points at the same position; `touching` decides
 /// the sheets. A reader that welds points by position (STL) joins such sheets again. If two sheets run along
 /// the same edge between the same two points, one bends through a point half way: its faces are four
-/// triangles or more. Six volumes are 48 times the number of voxels as an integer; the area is the number of
-/// faces. Throws voxel::Error (Resource) if 32 bits do not number points or triangles; voxel::Stopped.
-/// Parallel; same bits on any thread count. Cost: slices of side^2 / 8 bytes, the faces; memory five bytes a
-/// corner of two layers a thread. Source: Herman, Liu, "Three-dimensional display of human organs from
-/// computed tomograms", CGIP 9, 1979. By duality, the sheets about a corner are the loops of the
-/// marching-cubes case there.
+/// triangles or more. In these coordinates, six times the volume is exactly 48 times the number of voxels;
+/// the area is the number of faces. Throws voxel::Error (Resource) if there are more points or triangles than
+/// 32-bit numbers can name; voxel::Stopped. Parallel; same bits on any thread count. Cost: slices of side^2 /
+/// 8 bytes, the faces; memory five bytes a corner of two layers a thread. Source: Herman, Liu,
+/// "Three-dimensional display of human organs from computed tomograms", CGIP 9, 1979. By duality, the sheets
+/// about a corner are the loops of the marching-cubes case there.
 LatticeSurface cuberille(const voxel::Octree& octree, Touching touching = Touching::Apart,
                          const voxel::Progress& progress = {});
 

@@ -20,11 +20,11 @@
 namespace octotomy::convert {
 namespace {
 
-/// The closest that a crossing may come to a sample, as a part of the edge. Without it, a sample equal to a
-/// bound would collapse up to six vertices into one point and triangles to nothing. Half the step that one
-/// unit makes on an edge whose ends differ by 512: the rounding of the samples makes a crossing from soft
-/// tissue to bone equally uncertain. The bias is of second order: only this share of the crossings moves, and
-/// by this share of an edge at most.
+/// The least distance of a crossing from a sample, as a part of the edge. Without it, a sample equal to a
+/// bound would collapse up to six vertices into one point and triangles to nothing. The value is half the way
+/// that a crossing moves if a sample changes by 1, on an edge whose ends differ by 512: the rounding of the
+/// samples makes a crossing from soft tissue to bone equally uncertain. The bias is of second order: only
+/// this share of the crossings moves, each by at most this share of an edge.
 constexpr double closest_to_sample() {
   return 0.5 / 512.0;
 }
@@ -276,7 +276,7 @@ std::optional<WindowBits> two_sided(Samples& samples, double low, double high) {
   return WindowBits{std::move(measured), std::move(from_low), std::move(above)};
 }
 
-/// `part(first, second, first_inside)` of each edge.
+/// Writes `part(first, second, first_inside)` for each edge.
 template <typename Samples, typename Part>
 Crossings crossings_of(const Samples& samples, const Part& part) {
   return [&samples, part](std::span<const CrossedEdge> edges, double* parts) {

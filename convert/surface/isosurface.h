@@ -18,20 +18,22 @@ namespace octotomy::convert {
 /// not numbers, and the scene's padding, are outside; the surface closes half way to them. Empty if nothing is
 /// inside.
 ///
-/// With samples on either side of it, the window's surface is that of the lower bound and that of the upper one
-/// inside out. Between a sample below and one above, the object is the layer that passes through the window, at
-/// least a thousandth of the edge thick; at the scan's border and at padding the layer ends with the outermost
-/// samples. Between neighbours the volumes of adjoining windows add up. With samples on one side alone, and of a
-/// single value, the object is that of the samples in the window, with the bits of the other bound alone.
+/// If there are samples on both sides of the window, its surface is that of the lower bound and that of the upper
+/// bound, inside out. Between a sample below and one above, the object is the layer that passes through the window,
+/// at least a thousandth of the edge thick; at the scan's border and at padding the layer ends with the outermost
+/// samples. Between neighbours the volumes of adjoining windows add up. If there are samples on one side
+/// only, the surface has the same bits as with the bound on that side alone. The surface of a window of a
+/// single value encloses the samples of that value.
 ///
 /// For partial-volume samples of a sphere with a radius of r voxels, the relative volume is too small by 0.82
 /// / r^2: 0.6 / r^2 because triangles are chords, the rest because a voxel's mean is not its centre's value.
 /// The area is too large by 0.4 % - 0.3 / r^2, because of ripple.
 ///
 /// Throws std::invalid_argument if the scene fails check() or a bound is not a number; voxel::Error
-/// (Resource) if 32 bits do not number the triangles; voxel::Stopped. Parallel; same bits on any thread
-/// count. Cost: two passes over a bit a sample, one over the samples; memory one bit a sample beside the
-/// surface. With samples on either side of the window four times that, and memory of both surfaces twice. Source: Lorensen, Cline 1987; tables derived by following the loops of each of the 256 cases.
+/// (Resource) if there are more triangles than 32-bit numbers can name; voxel::Stopped. Parallel; same bits on any
+/// thread count. Cost: two passes over a bit a sample, one over the samples; memory one bit a sample beside the
+/// surface. If there are samples on both sides of the window, four times that, and memory of both surfaces twice.
+/// Source: Lorensen, Cline 1987; tables derived by following the loops of each of the 256 cases.
 brep::Triangles isosurface(const voxel::Scene& scene, double low, double high,
                            const voxel::Progress& progress = {});
 

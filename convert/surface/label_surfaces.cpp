@@ -46,7 +46,7 @@ constexpr std::uint32_t code_count = 128, first_tetrahedron_code = 64;
 constexpr double least_part = 0.1;
 
 struct PointName {
-  std::uint8_t corner = 0;  ///< of the cell: the point's lowest sample
+  std::uint8_t corner = 0;  ///< corner of the cell: the point's lowest sample
   std::uint8_t code = 0;
 };
 
@@ -124,7 +124,7 @@ class Derivation {
     add(a[0], b[1], apex, between({a[0], b[1]}), across);
     add(a[1], b[0], apex, across, between({a[1], b[0]}));
   }
-  /// A cone from the point of the face of one of the two corners with the same label.
+  /// A cone from the point on the face of same[1], b and c. Two corners, in `same`, have the same label.
   void three_labels(const std::vector<int>& same, int b, int c) {
     const Between apex = between({same[1], b, c}), across = between({same[0], b, c});
     add(b, c, between({b, c}), across, apex);
@@ -228,7 +228,7 @@ class Extraction {
     });
   }
 
-  /// The binomial weights along an axis, whose product weighs a neighbour.
+  /// The binomial weights along an axis. A neighbour is weighted by their product over the axes.
   void fill_weights() {
     weights_ = {1.0};
     for (int round = 0; round < 2 * options_.smooth_voxels; ++round) {
@@ -433,7 +433,8 @@ class Extraction {
   std::vector<double> weights_;
   std::vector<std::vector<Face>> faces_;                 ///< by the plane of samples below
   std::vector<std::vector<Key>> keys_;                   ///< by the plane of the lowest sample
-  std::vector<std::uint64_t> first_point_, first_face_;  ///< of each plane; of faces, their number at the end
+  std::vector<std::uint64_t> first_point_, first_face_;  ///< first number of each plane; of faces, the total
+                                                         ///< at the end
   brep::PartedSurface made_;
 };
 

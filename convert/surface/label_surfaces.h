@@ -11,8 +11,8 @@ namespace octotomy::convert {
 
 struct LabelSurfaceOptions {
   std::set<int> labels = {};  ///< the parts; empty: all but 0. Samples with other labels belong to no part.
-  /// 0..4: radius s, in voxels, of the neighbourhood that decides where a surface passes between two samples;
-  /// 0: half-way. Larger is smoother, and shrinks a ball of radius r by s / 2r voxels.
+  /// Radius s, in voxels, 0..4, of the neighbourhood that decides where a surface passes between two samples.
+  /// 0: half-way. A larger radius is smoother, and shrinks a ball of radius r by s / 2r voxels.
   int smooth_voxels = 1;
   voxel::Progress progress = {};
 };
@@ -23,16 +23,16 @@ struct LabelSurfaceOptions {
 /// The surfaces partition space: two labels that touch share the triangles between them, three meet in lines
 /// and four in points. So there is no gap and no overlap, and the parts' volumes add up to the volume that
 /// their outer surface encloses. The surface of each label is closed, manifold, oriented and free of
-/// self-intersection for any labels. It passes between neighbouring samples of different labels, a tenth of
-/// their distance from each or more; samples that only touch across a cell's diagonal are joined along one of
-/// its diagonals, apart along the others. A part that reaches the scan's border is closed half a voxel beyond
-/// its outermost samples.
+/// self-intersection for any labels. It passes between neighbouring samples of different labels, at least a
+/// tenth of their distance from each; samples that only touch across a cell's diagonal are joined along one
+/// of its diagonals, apart along the others. A part that reaches the scan's border is closed half a voxel
+/// beyond its outermost samples.
 ///
 /// Throws std::invalid_argument if the scene fails check(), a sample is no label, or an option is out of
 /// range; std::length_error as voxel::label_layers(); voxel::Error (Input) if a requested label has no
-/// sample, (Resource) if 32 bits do not number the triangles; voxel::Stopped. Parallel; same bits on any
-/// thread count. Memory: two bytes a sample, four where labels are no int16 or overlap, and 80 a triangle.
-/// Cost: linear in samples, and in triangles but for their numbering, n log n.
+/// sample, (Resource) if there are more triangles than 32-bit numbers can name; voxel::Stopped. Parallel;
+/// same bits on any thread count. Memory: two bytes a sample, four if labels overlap or are not int16, and 80
+/// a triangle. Cost: linear in samples, and in triangles but for their numbering, n log n.
 brep::PartedSurface label_surfaces(const voxel::Scene& scene, const LabelSurfaceOptions& options = {});
 
 }  // namespace octotomy::convert

@@ -48,8 +48,8 @@ glm::dvec3 midpoint(int edge) {
   return sum * 0.5;
 }
 
-/// The triangulation of a loop with the shortest diagonals (sum of squares between edge midpoints) of those
-/// without a diagonal in a face; the first such where several are equal. Dynamic programme over the loop's
+/// The triangulation of a loop with the shortest diagonals (sum of squares between edge midpoints) among
+/// those without a diagonal in a face; the first of several equal ones. Dynamic programme over the loop's
 /// intervals.
 class LoopTriangulation {
  public:

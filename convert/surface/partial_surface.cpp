@@ -14,8 +14,8 @@
 
 // 1 Marching cubes over the shares gives the topology, and places to a few hundredths of a voxel.
 // 2 Each voxel's lack is its given share less the surface's own. A point moves outward by the lack of the 27
-//   voxels about it over the surface's area in them.
-// 3 Pass 2 again, as the first move changes normals and areas.
+// voxels about it, divided by the surface's area in these voxels. 3 Pass 2 again, as the first move changes
+// normals and areas.
 
 namespace octotomy::convert {
 namespace {
@@ -91,7 +91,7 @@ brep::Triangles interpolated(const voxel::PartialOctree& partial, const voxel::P
                          progress);
 }
 
-/// Pass 2: the volume that each voxel of the solid has more than within the surface.
+/// Pass 2: for each voxel, the volume of the solid in it less the volume within the surface.
 VoxelSums lacks_of(const voxel::PartialOctree& partial, const brep::Linked& surface,
                    const voxel::Progress& progress) {
   const voxel::PartialOctree now = voxelise_partial(partial.inside.universe(), surface, progress);
@@ -101,7 +101,7 @@ VoxelSums lacks_of(const voxel::PartialOctree& partial, const brep::Linked& surf
     for_each_boundary_voxel(of, [&](const glm::ivec3& v, std::uint16_t fraction) {
       lacks.add(v, sign * voxel_mm3 * fraction / voxel::PartialOctree::whole);
     });
-    // Voxels that are whole here and on the boundary there.
+    // Voxels that are whole in `of` and on the boundary of `other`.
     for_each_boundary_voxel(other, [&](const glm::ivec3& v, std::uint16_t) {
       if (of.inside.contains(v)) lacks.add(v, sign * voxel_mm3);
     });

@@ -239,7 +239,7 @@ class Extraction {
     const auto leaves = [&](const CrossedEdge& edge) {
       return edge.voxel[edge.axis] < 0 || edge.voxel[edge.axis] + 1 >= lattice_.dims[edge.axis];
     };
-    // An edge that leaves the lattice has no second sample: the voxel ends half way.
+    // An edge that leaves the lattice has no second sample. It is crossed half way, where the voxel ends.
     for (std::size_t i = 0; i < edges.size();) {
       const std::size_t first = i;
       while (i < edges.size() && !leaves(edges[i])) ++i;
@@ -316,7 +316,7 @@ class Extraction {
   struct Plane {
     std::size_t first_y = 0, end_y = 0;         ///< rows with a sample inside
     std::uint64_t vertices = 0, triangles = 0;  ///< counts, then first numbers
-    std::vector<std::uint8_t> cases;            ///< of the cells, `cells` of them
+    std::vector<std::uint8_t> cases;            ///< cases of the `cells` cells
     std::size_t cells = 0;
   };
 

@@ -19,8 +19,8 @@ namespace octotomy::convert {
 // Marching cubes for the sources of this room. Each source has its own rule for the inside and for
 // crossings.
 
-/// One bit a sample of the padded lattice, in rows along x of whole words. A row starts with `before` outside
-/// bits and ends with at least one.
+/// One bit for each sample of the padded lattice, set inside. A row along x takes whole words: it starts with
+/// `before` bits of padding, which are outside, and ends with at least one.
 struct InsideBits {
   InsideBits(const glm::ivec3& dims, int before)
       : padding(before, 1, 1),
@@ -36,7 +36,7 @@ struct InsideBits {
   const std::uint64_t* row(std::size_t y, std::size_t z) const { return &bits[row_number(y, z) * words]; }
   std::uint64_t* row(std::size_t y, std::size_t z) { return &bits[row_number(y, z) * words]; }
 
-  glm::ivec3 padding;  ///< of the first sample
+  glm::ivec3 padding;  ///< number of places before the first sample, along each axis
   std::size_t rows_y, planes_z, words;
   std::vector<std::uint64_t, voxel::LargeAllocator<std::uint64_t>> bits;
 };
@@ -56,8 +56,8 @@ struct CrossedEdge {
 using Crossings = std::function<void(std::span<const CrossedEdge> edges, double* parts)>;
 
 /// The closed surface about the inside samples of a lattice, in LPS millimetres, oriented outward. An edge
-/// that leaves the lattice is crossed half way. Throws voxel::Error (Resource) if 32 bits do not number the
-/// triangles; voxel::Stopped. Parallel; same bits on any thread count.
+/// that leaves the lattice is crossed half way. Throws voxel::Error (Resource) if there are more triangles
+/// than 32-bit numbers can name; voxel::Stopped. Parallel; same bits on any thread count.
 brep::Triangles extract_surface(const voxel::Lattice& lattice, const InsideBits& inside,
                                 const Crossings& crossings, const voxel::Progress& progress = {});
 

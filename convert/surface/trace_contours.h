@@ -18,8 +18,8 @@ std::vector<brep::Section> trace_contours(const voxel::Scene& scene, double low,
                                           const voxel::Progress& progress = {});
 
 /// The surface tiled from those contours, in LPS millimetres, outward for either handedness of the lattice.
-/// Of separate lineage from isosurface(): it knows no cells between slices, and closes an end half way to the
-/// next slice. Throws as trace_contours() and brep::tile_sections().
+/// Independent of isosurface(): uses no cells between slices, and closes an end half way to the next slice.
+/// Throws as trace_contours() and brep::tile_sections().
 brep::TiledSections contour_surface(const voxel::Scene& scene, double low, double high,
                                     const brep::TileSectionsOptions& options = {},
                                     const voxel::Progress& progress = {});

@@ -94,7 +94,7 @@ std::vector<std::uint64_t> cells_of(const brep::Triangles& surface, const CellNu
   return cells;
 }
 
-/// A cell that both surfaces cross: the ranges of its triangles, and what replaces them.
+/// A cell that both surfaces cross: the ranges of its triangles, and the triangles that replace them.
 struct SharedCell {
   std::uint64_t number = 0;
   std::size_t low_begin = 0, low_end = 0, high_begin = 0, high_end = 0;
@@ -136,8 +136,8 @@ bool separates(const std::array<glm::dvec3, 3>& plane, const std::array<glm::dve
   return low > least || high < -least;
 }
 
-/// The facets of the convex hull of a loop's outside that span the loop, by gift wrapping: from each edge to
-/// the corner that has all others of the loop on the outside.
+/// Appends the facets of a convex hull that span a loop, by gift wrapping: joins each edge to the corner for
+/// which all others of the loop lie on the outside.
 void append_hull(const std::vector<int>& loop, const std::array<glm::dvec3, 12>& at, std::size_t first,
                  std::size_t last, std::vector<std::array<int, 3>>& triangles) {
   if (last - first < 2) return;

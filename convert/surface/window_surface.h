@@ -13,18 +13,17 @@ namespace octotomy::convert {
 struct WindowBits {
   InsideBits measured;    ///< samples that are numbers and no padding
   InsideBits from_low;    ///< not below the window
-  InsideBits above_high;  ///< above the window; a part of `from_low`
+  InsideBits above_high;  ///< above the window; a subset of `from_low`
 };
 
 /// The closed surface of the region between two levels of a lattice's samples, in LPS millimetres, oriented
 /// outward: the surface of the lower level, and that of the upper one inside out. The two neither cross nor
-/// touch. A cell with a sample that was not measured has the surface that separates samples in the window
-/// from all others; there, regions that pass through the window between two samples end at the outermost
-/// samples.
+/// touch. In a cell with a sample that was not measured, the surface separates samples in the window from all
+/// others; there, a layer that passes through the window between two samples ends at the outermost samples.
 ///
-/// `low` and `high` write where edges cross the lower and the upper level. Precondition: where both cross
-/// an edge, the crossings are apart, in order, and keep a part of the edge above 2^-11 from its ends and
-/// from each other. Throws and guarantees as extract_surface().
+/// `low` and `high` write where edges cross the lower and the upper level. Precondition: where both cross an
+/// edge, the crossings are in order, and more than 2^-11 of the edge apart and away from its ends. Throws and
+/// guarantees as extract_surface().
 brep::Triangles window_surface(const voxel::Lattice& lattice, const WindowBits& bits, const Crossings& low,
                                const Crossings& high, const voxel::Progress& progress = {});
 

@@ -17,9 +17,9 @@ struct Sided {
   ElementFace face;
 };
 
-/// Calls `visit(begin, end)` for the faces of each three corners, in the elements' order; corners ascend from
-/// call to call. Faces are gathered for one range of smallest corners at a time, because all faces at once
-/// need five times the elements' memory.
+/// Calls `visit(begin, end)` for each set of faces with the same three corners, in the elements' order;
+/// corners ascend from call to call. Faces are gathered for one range of smallest corners at a time, because
+/// all faces at once need five times the elements' memory.
 template <typename Visit>
 void for_each_corners(const Tetrahedra& tetrahedra, const Visit& visit) {
   constexpr std::size_t faces_at_once = std::size_t{1} << 22;

@@ -16,8 +16,8 @@ struct ElementFace {
   std::uint8_t opposite = 0;  ///< 0..3
 };
 
-/// The faces of one element only, in the elements' order. Cost: n log n, and one pass over all elements for
-/// each million of them; memory 80 MB and 4 bytes a node beside the result.
+/// The faces that belong to only one element, in the elements' order. Cost: n log n, and one pass over all
+/// elements for each million of them; memory 80 MB and 4 bytes a node beside the result.
 std::vector<ElementFace> surface_faces(const Tetrahedra& tetrahedra);
 /// The surface faces as triangles, outward. Points are all nodes, inner ones included.
 brep::Triangles surface_of(const Tetrahedra& tetrahedra);
@@ -26,7 +26,8 @@ brep::Triangles surface_of(const Tetrahedra& tetrahedra);
 struct Interface {
   std::uint32_t from = 0, to = 0;  ///< regions, from < to
   std::vector<ElementFace> faces;
-  std::vector<ElementFace> opposite;  ///< the same as faces of the second's elements, in the same order
+  std::vector<ElementFace> opposite;  ///< the same faces, as those of the second region's elements, in the
+                                      ///< same order
 };
 /// All interfaces, in the order of their regions; faces in the elements' order. Cost: that of
 /// surface_faces(); none if there is one region.

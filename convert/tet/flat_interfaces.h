@@ -22,8 +22,9 @@ const LabelPlane* plane_between(const std::vector<LabelPlane>& planes, std::uint
 struct FlatInterfaceOptions {
   std::vector<LabelPlane> planes{};  ///< in LPS millimetres, the labels are one above the regions
   double voxel_mm = 1.0;
-  double size_mm = 3.0;  ///< of elements
-  /// No node moves to where an element at it has a smaller dihedral angle. Splits keep it as SideSplitter does.
+  double size_mm = 3.0;  ///< size of elements
+  /// No node moves to a position at which one of its elements has a smaller dihedral angle. Splits keep this
+  /// bound as SideSplitter does.
   double least_deg = 5.0;
 };
 

@@ -2,14 +2,14 @@
 // Source: Labelle and Shewchuk 2007 (isosurface_stuffing.h), with its numbers for a uniform lattice.
 // Departures: the sign and the cut points come from triangles instead of a function, and quadrilaterals are
 // cut from their node that comes first in one order of all nodes (pass 5) in place of the paper's table; the
-// tests put random cuts on every side to hold the bound.
+// tests check the bound with random cuts on every side.
 // 1 Mark the lattice points inside: each row along x crosses the surface, and the parity changes there.
-// 2 On each side between lattice points of either mark, add a cut point where a triangle crosses it.
+// 2 On each side between an inside and an outside lattice point, add a cut point where a triangle crosses it.
 // 3 Warp a lattice point to the nearest cut point that lies too near to it for good angles; its sides lose
 //   their cuts.
-// 4 Of each of the lattice's tetrahedra keep what is inside: corners inside, warped ones, and cut points.
-// 5 Where that is a pyramid or a prism, divide it from its first node. All tetrahedra use the same order of
-//   nodes, so neighbours divide their common face in the same way.
+// 4 Of each of the lattice's tetrahedra keep the part inside: corners inside, warped corners, and cut points.
+// 5 Where this part is a pyramid or a prism, divide it from its first node. All tetrahedra use the same order
+//   of nodes, so neighbours divide their common face in the same way.
 #include "convert/tet/isosurface_stuffing.h"
 
 #include <algorithm>
@@ -238,7 +238,7 @@ class Stuffing {
         }
   }
 
-  /// Pass 2: cut points as shares of the way from the side's key end.
+  /// Pass 2. Stores cut points as shares of the side, from the end that the side's key names.
   void cut(const CubeLists& triangles) {
     struct Side {
       LatticePoint from{0}, to{0};

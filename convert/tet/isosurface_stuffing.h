@@ -7,7 +7,7 @@
 
 namespace octotomy::convert {
 
-/// The angle under which no dihedral angle of a stuffed surface lies; the paper proves 10.7 degrees.
+/// Every dihedral angle of a stuffed surface is above this; the paper proves 10.7 degrees.
 constexpr double stuffed_dihedral_deg() {
   return 10.7;
 }

@@ -17,7 +17,7 @@ namespace octotomy::convert {
 inline constexpr double safe_facet_angle_deg = 25.0;
 inline constexpr double safe_radius_edge = 2.5;
 
-/// CGAL's criteria of facets or cells, down to a length that `Least` has at a point.
+/// CGAL's criteria of facets or cells. They apply down to the length that `Least` returns for a point.
 template <typename Base, typename Least>
 class DownTo : public Base {
  public:

@@ -136,8 +136,8 @@ struct Try {
 /// The parts of a surface connected by points.
 struct Shells {
   std::vector<std::uint32_t> of_triangle;  ///< a point of the shell, the same for all of its triangles
-  std::vector<std::size_t> triangles;      ///< by that point
-  std::vector<double> mm3;                 ///< likewise; negative inside out
+  std::vector<std::size_t> triangles;      ///< number of triangles of the shell, by that point
+  std::vector<double> mm3;                 ///< volume of the shell, by that point; negative if inside out
 };
 
 Shells shells_of(const MesherInput& surface) {

@@ -238,7 +238,7 @@ void write_request(const MemoryFile& file, Sent& sent, const std::string& switch
   std::copy(switches.begin(), switches.end(), request.switches.begin());
   request.memory_limit_bytes = limits.memory_bytes;
   request.parent = ::getpid();
-  // wait_within() enforces the limit; this one ends the child if the parent has ended.
+  // wait_within() enforces the limit. This limit of the system ends the child if the parent has ended.
   request.cpu_limit_seconds =
       static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::seconds>(limits.time).count() + 2);
   file.write_all(&request, sizeof request);

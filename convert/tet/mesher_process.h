@@ -29,11 +29,11 @@ struct MesherRequest {
   std::uint64_t holes = 0;             ///< three doubles each
   std::uint64_t sizes = 0;             ///< a double each; for an image of labels, the number of its shares
   std::uint64_t labels = 0;            ///< a byte each, x fastest
-  std::array<std::int32_t, 3> dims{};  ///< of the labels
+  std::array<std::int32_t, 3> dims{};  ///< voxels of the image along each axis
   std::array<double, 3> spacing_mm{};
   std::uint64_t memory_limit_bytes = 0;
   std::uint64_t cpu_limit_seconds = 0;
-  std::int64_t parent = 0;  ///< process id of the parent, with which the child ends
+  std::int64_t parent = 0;  ///< process id of the parent; the child ends when the parent does
 };
 struct MesherAnswer {
   std::uint64_t version = MesherRequest::this_version;
@@ -61,7 +61,7 @@ struct MesherLimits {
   /// most_clock_times() as long and ends a process that hangs.
   std::chrono::milliseconds time{60000};
   std::uint64_t memory_bytes = 4ull << 30;
-  voxel::Progress progress{};  ///< reports the share of the time limit that is gone
+  voxel::Progress progress{};  ///< reports the share of the time limit that is used up
 };
 constexpr int most_clock_times() {
   return 10;

@@ -25,7 +25,8 @@ class OctreeCells {
  public:
   explicit OctreeCells(const voxel::Universe& universe);
 
-  /// Adds the octree's Full nodes as cells. Precondition for both: of the universe, and no voxel twice.
+  /// Adds the octree's Full nodes as cells. Precondition, also of add_voxels(): the octree is of the same
+  /// universe, and no cell holds one of its voxels yet.
   void add_nodes(const voxel::Octree& octree);
   /// Adds each voxel as a cell.
   void add_voxels(const voxel::Octree& octree);

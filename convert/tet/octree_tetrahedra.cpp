@@ -16,13 +16,13 @@
 #include "voxel/space/rounded.h"
 #include "voxel/space/shared_progress.h"
 
-// 1 A region's Full nodes become cells; where cells at the boundary are voxels, its inner voxels' nodes do,
-//   and each other voxel.
+// 1 A region's Full nodes become cells; with BoundaryCells::Voxels, the nodes of its inner voxels do, and
+//   each other voxel.
 // 2 A cell is divided if a neighbour across a face, edge or corner has less than half its side.
-// 3 A cell's faces become triangles. If smaller cells lie on a face or touch its edges, a fan about its
-//   middle with their corners on the edges; else two, along the diagonal that ends in the middle of the face
-//   of twice the side. So both sides of a face see the same triangles: two of the fan's are those of a
-//   smaller cell's face. Each triangle and the cell's middle form an element.
+// 3 A cell's faces become triangles. If smaller cells lie on a face or touch its edges, the triangles are a
+//   fan about the face's middle with the smaller cells' corners on the edges; else two, along the diagonal
+//   that ends in the middle of the face of twice the side. So both sides of a face see the same triangles:
+//   two of the fan's are those of a smaller cell's face. Each triangle and the cell's middle form an element.
 // 4 All cells are cut twice: first to mark the lattice's corners that are nodes and to count elements; then,
 //   once there is memory for them, to number nodes in the order of their first mention.
 //
@@ -101,7 +101,7 @@ class CornerNumbers {
       for (const CornerBlock& word : page) count += static_cast<std::uint64_t>(std::popcount(word.marked));
     return count;
   }
-  /// Gives every corner marked the number `none`. Precondition: 32 bits hold their count.
+  /// Gives every corner marked the number `none`. Precondition: 32-bit numbers can name all of these corners.
   void start_numbering() {
     std::uint32_t before = 0;
     for (auto& page : corners_.pages())
@@ -119,8 +119,8 @@ class CornerNumbers {
 
  private:
   struct CornerBlock {
-    std::uint64_t marked = 0;  ///< of 4 x 4 x 4 corners
-    std::uint32_t before = 0;  ///< marked in the words before
+    std::uint64_t marked = 0;  ///< bits of the marked ones of 4 x 4 x 4 corners
+    std::uint32_t before = 0;  ///< number of corners marked in the words before
   };
   static int bit_of(const glm::ivec3& corner) {
     return voxel::child_index(corner.x & 3, corner.y & 3, corner.z & 3);
@@ -222,8 +222,8 @@ class Filling {
         });
   }
 
-  /// The bit of the half cube across a fan's triangle, by its two places on the round. An undivided edge
-  /// consists of two quarters, neither of which has a cell beyond it.
+  /// The bit of the half cube beyond a fan's triangle, by the triangle's two places on the face's edges. For
+  /// an undivided edge, no half cube beyond either half of the edge is a cell.
   static std::uint64_t half_beyond(int face, int b, int c) {
     glm::ivec3 half(0);
     for (int axis = 0; axis < 3; ++axis) half[axis] = along(b, axis) + along(c, axis) > 2 ? 2 : 1;
@@ -236,7 +236,7 @@ class Filling {
            ((glm::ivec3(along(place, 0), along(place, 1), along(place, 2)) << cell.side_log2) >> 1);
   }
 
-  /// The node's number, which is new with its first mention.
+  /// The node's number, which is assigned at the node's first mention.
   std::uint32_t node(const OctreeCell& cell, int place, const std::array<std::uint32_t, place_count>& known) {
     if (const std::uint32_t number = known[static_cast<std::size_t>(place)]; number != CornerNumbers::none)
       return number;

@@ -68,7 +68,7 @@ void for_each_run(const voxel::Octree& region, const F& f) {
 /// Pass 1.
 struct Labelled {
   LabelImage image;
-  glm::ivec3 first_voxel{0};  ///< of the universe, at the image's (0, 0, 0)
+  glm::ivec3 first_voxel{0};  ///< voxel of the universe at the image's (0, 0, 0)
 
   std::size_t number(const glm::ivec3& v) const {
     return (static_cast<std::size_t>(v.z) * static_cast<std::size_t>(image.dims.y) +
@@ -102,7 +102,7 @@ glm::dvec3 lps_mm(const Labelled& labelled, const voxel::Lattice& lattice, const
   return lattice.lps_mm(image_mm / labelled.image.spacing_mm + glm::dvec3(labelled.first_voxel));
 }
 
-/// The factors of the sizes at the refinements.
+/// Adds the factors of the sizes at the refinements.
 void add_shares(Labelled& labelled, const voxel::Lattice& lattice, const RegionMeshOptions& options) {
   if (options.finer.empty()) return;
   LabelImage& image = labelled.image;
@@ -234,7 +234,8 @@ std::optional<glm::dvec2> triple_point(const std::array<std::uint8_t, 4>& labels
   const int pairs = is_low_x + is_high_x + is_low_y + is_high_y;
   if (pairs == 0) return glm::dvec2(0.5);
   if (pairs > 1) return std::nullopt;
-  // A label with the whole of a side has 1 - t there, each of the others t / 2: equal at 2 / 3.
+  // A label at both corners of a side has the share 1 - t at the distance t from this side, each of the
+  // others t / 2. The shares are equal at t = 2 / 3.
   constexpr double far = 2.0 / 3.0;
   if (is_low_x) return glm::dvec2(far, 0.5);
   if (is_high_x) return glm::dvec2(1.0 - far, 0.5);
@@ -317,7 +318,7 @@ void mend(Tetrahedra& made, const RegionMeshOptions& options) {
   improving.rounds = 30;
   improving.progress.stop = options.progress.stop;
   improve(made, improving);
-  // An element whose nodes all lie on a flat face can be mended off it alone.
+  // An element whose nodes all lie on a flat face can be mended only if a node leaves the face.
   improving.min_dihedral_deg = std::min(options.min_dihedral_deg, fit_dihedral_deg());
   improving.keeps_flat = false;
   if (quality(made).min_dihedral_deg < improving.min_dihedral_deg) improve(made, improving);
@@ -382,8 +383,8 @@ Tetrahedra smooth_tetrahedra_of(const std::vector<voxel::Octree>& regions, const
       refuse_regions("region " + std::to_string(label) + " lies wholly within the regions before it");
 
   const glm::dvec3& edge_mm = image.image.spacing_mm;
-  // The voxels' steps, which are to be smoothed, are half a voxel off. A cell twice as large as a facet still
-  // has its size.
+  // Facets may lie half a voxel off, because that is the height of the voxels' steps, which are to be
+  // smoothed. Cells may have one and a half times the radius of facets.
   const LabelSizes sizes{options.size_mm,
                          std::max(0.5 * std::min({edge_mm.x, edge_mm.y, edge_mm.z}), 0.1 * options.size_mm),
                          1.5 * options.size_mm};

@@ -15,18 +15,18 @@ struct RegionMeshOptions {
   double size_mm = 2.0;                          ///< target size of elements; under two voxels, steps show
   std::vector<Refinement> finer{};               ///< places of smaller elements
   double min_dihedral_deg = 8.0;                 ///< goal, 0..30
-  std::chrono::milliseconds time_limit{300000};  ///< of a processor
+  std::chrono::milliseconds time_limit{300000};  ///< processor time
   std::uint64_t memory_limit_bytes = 4ull << 30;
-  voxel::Progress progress{};  ///< reports the share of the time limit that is gone
+  voxel::Progress progress{};  ///< reports the share of the time limit that is used up
 };
 
 /// Quality tetrahedra, in LPS millimetres, of several regions of one universe with smooth surfaces. Touching
 /// regions share the nodes of their interface. CGAL's Mesh_3 fills the image of the regions' labels in a
 /// process of its own. Two regions meet where their trilinear shares are equal: half-way between voxels, and
-/// smooth across their steps; if their interface is flat to within the voxels' resolution, in its plane, with
-/// a finding on nodes that stay off it. A voxel in several regions belongs to the first. `region_of_tet`
-/// numbers regions in the order given. `boundary_nodes` are those of the outside alone. Nodes move to improve
-/// flat elements, on surfaces by a tenth of the size at most.
+/// smooth across their steps. If their interface is flat to within the voxels' resolution, they meet in its
+/// plane; a finding reports nodes that stay off it. A voxel in several regions belongs to the first.
+/// `region_of_tet` numbers regions in the order given. `boundary_nodes` are only those on the outside of all
+/// regions. Nodes move to improve flat elements, on surfaces by a tenth of the size at most.
 ///
 /// Guaranteed: all volumes positive; each region's volume is that of its voxels to within a quarter of a
 /// voxel times its surface; `findings` has both. Deterministic. Memory: a byte a voxel of the regions' box,

@@ -15,12 +15,12 @@ using RegionPair = std::pair<std::uint32_t, std::uint32_t>;
 /// shared ones, so that contact may open and slide between regions. A node stays with its lowest region.
 /// Copies follow all nodes, by node and region. Elements keep their numbers, so faces found before stay
 /// valid. Boundary nodes include both sides of the former interfaces. Throws std::invalid_argument if
-/// elements are of second order: separate regions first; voxel::Error (Resource) if 32 bits do not number the
-/// nodes. Cost: linear.
+/// elements are of second order: separate regions first; voxel::Error (Resource) if there are more nodes than
+/// 32-bit numbers can name. Cost: linear.
 Tetrahedra separate_regions(const Tetrahedra& tetrahedra);
 
-/// Separates the given pairs alone. If a third region shares a node with both of a pair, the slit ends and
-/// all three share the node: lips slide on each other, and both continue into the cheek.
+/// Separates only the given pairs. If a third region shares a node with both of a pair, the slit ends there
+/// and all three share the node: lips slide on each other, and both continue into the cheek.
 Tetrahedra separate_regions(const Tetrahedra& tetrahedra, const std::vector<RegionPair>& apart);
 
 }  // namespace octotomy::convert

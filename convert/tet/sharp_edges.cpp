@@ -22,7 +22,7 @@
 namespace octotomy::convert {
 namespace {
 
-/// The cosine between normals from which on an edge is sharp: 40 degrees.
+/// An edge is sharp if the cosine between its two triangles' normals is below this: 40 degrees.
 constexpr double sharp_cosine() {
   return 0.766;
 }

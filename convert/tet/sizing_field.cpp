@@ -31,9 +31,9 @@ constexpr double longest_share() {
                                                      " triangles: request larger elements");
 }
 
-/// The least number of triangles into which a surface is divided. No triangle is larger than an equilateral
-/// one of the longest side, and none of the parts of a triangle has a larger size than the size at its
-/// middle plus the growth over the distance to it.
+/// The least number of triangles into which a surface is divided. A part has at most the area of an
+/// equilateral triangle of the longest side. The size at a part is at most that at the whole triangle's
+/// middle plus the growth over the distance from there.
 double least_count(const brep::Triangles& surface, const SizingField& sizes) {
   const auto& p = surface.points_mm;
   std::vector<glm::dvec3> middles_mm;

@@ -18,7 +18,7 @@ namespace octotomy::convert {
 /// surface inward, so only smooth_tetrahedra_of() refines at places deep inside.
 struct Refinement {
   std::vector<glm::dvec3> points_mm;
-  brep::Triangles surface{};  ///< may be open; without triangles there is none
+  brep::Triangles surface{};  ///< may be open; no triangles: refines about the points only
   double size_mm = 1.0;       ///< approximate largest side of a surface's triangles there
 };
 
@@ -58,10 +58,10 @@ class SizingField {
 /// Cost: n log n of the answer.
 brep::Triangles refined_surface(const brep::Triangles& surface, const SizingField& sizes);
 
-/// Places where elements are over three times as large as a refinement allows at their middle, as happens
-/// deep inside a refined surface: the worst place, both sizes and the number of places. Checks the element
-/// nearest to each point, and to a hundred points of a surface. None if there is no such place. Cost: places
-/// times elements, parallel.
+/// Describes places where elements are over three times as large as a refinement allows at their middle,
+/// which happens deep inside a refined surface: the worst place, its size and the requested size, and the
+/// number of places. Checks the element nearest to each point, and to a hundred points of a surface. None if
+/// there is no such place. Cost: places times elements, parallel.
 std::optional<std::string> coarse_place(const Tetrahedra& tetrahedra, const std::vector<Refinement>& finer);
 
 }  // namespace octotomy::convert

@@ -8,7 +8,7 @@
 
 namespace octotomy::convert {
 
-/// True if the volume is positive and no dihedral angle is smaller.
+/// Whether the volume is positive and no dihedral angle is below `least_deg`.
 bool is_fit(const TetCorners& corners_mm, double least_deg);
 
 /// By node, the elements that have it, ascending.

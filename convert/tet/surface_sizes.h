@@ -33,7 +33,8 @@ class SurfaceSizes {
   void halve(const std::vector<std::uint32_t>& points);
   /// Multiplies all sizes.
   void scale(double by);
-  /// A subset: each point has one of the subset within half its size along the sides.
+  /// A subset such that each of the points has one of the subset within half its size, measured along the
+  /// sides.
   std::vector<std::uint32_t> thinned(const std::vector<std::uint32_t>& points) const;
 
  private:
@@ -42,7 +43,7 @@ class SurfaceSizes {
   const MesherInput& surface_;
   double grading_;
   std::vector<double> sizes_mm_;
-  std::vector<std::size_t> first_;  ///< of each point in `beside_`, and the end
+  std::vector<std::size_t> first_;  ///< index in `beside_` of each point's first entry, then the end
   std::vector<std::uint32_t> beside_;
 };
 

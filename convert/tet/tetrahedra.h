@@ -52,7 +52,7 @@ inline constexpr std::array<double, 5> dihedral_steps_deg{5.0, 10.0, 20.0, 30.0,
 /// Sums volumes in the tetrahedra's order. Throws std::invalid_argument if there are none.
 TetQuality quality(const Tetrahedra& tetrahedra);
 
-/// Nodes of the faces of one tetrahedron only, ascending. Cost: n log n.
+/// Nodes of faces that belong to only one tetrahedron, ascending. Cost: n log n.
 std::vector<std::uint32_t> boundary_nodes(const std::vector<std::array<std::uint32_t, 4>>& tets);
 
 }  // namespace octotomy::convert

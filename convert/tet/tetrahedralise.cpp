@@ -180,8 +180,8 @@ double nearest_hit(const MesherInput& surface, const Part& part, std::uint32_t s
 }
 
 /// A point inside the cavity that a part encloses: half way from its largest triangle along the normal, which
-/// points out of the solid and into the cavity, to the next surface. That is the part itself, or an island in
-/// the cavity, whose bounds then meet the segment.
+/// points out of the solid and into the cavity, to the next surface. That surface is the part itself, or an
+/// island in the cavity, whose bounds then meet the segment.
 glm::dvec3 hole_point(const MesherInput& surface, const std::vector<Part>& parts, const Part& cavity) {
   const auto normal_of = [&](std::uint32_t t) {
     const auto& [a, b, c] = surface.triangles[t];
@@ -231,7 +231,7 @@ std::vector<std::string> ladder(const TetOptions& options) {
 }
 
 /// Divides the triangles of a surface that TetGen keeps, in their planes, where a regular element on one
-/// would be larger than allowed. Returns the number of triangles before where that changed it.
+/// would be larger than allowed. Returns the number of triangles before, if this changed it.
 std::optional<std::size_t> divide_for_volume(MesherInput& surface, double max_volume_mm3) {
   constexpr double regular =
       0.75;  // halving leaves right triangles, whose elements are as large as those of equilateral triangles
@@ -301,8 +301,9 @@ double checked_volume_mm3(const MesherInput& surface, const std::vector<Part>& p
 /// The failures of meshers.
 struct Attempts {
   std::vector<std::string> findings;
-  voxel::ErrorCode code = voxel::ErrorCode::Geometry;  ///< of the last
-  int rounds_left = 0;                                 ///< of improving what TetGen made
+  voxel::ErrorCode code = voxel::ErrorCode::Geometry;  ///< code of the last failure
+  int rounds_left = 0;                                 ///< rounds of improvement that TetGen's elements did
+                                                       ///< not get
 };
 
 ImproveOptions improve_options(const TetOptions& options) {
@@ -436,7 +437,7 @@ std::optional<Tetrahedra> by_stuffing(const MesherInput& surface, double surface
   return made;
 }
 
-/// Replaces the best elements by others if the smallest angle of these is larger.
+/// Replaces the best elements by others if the others' smallest angle is larger.
 void take_better(std::optional<Tetrahedra>& best, std::optional<Tetrahedra> other, const std::string& who,
                  Attempts& attempts) {
   if (!other) return;

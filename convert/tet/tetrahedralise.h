@@ -18,22 +18,22 @@ namespace octotomy::convert {
 /// a surface of its own and so has no flat elements. Stuffing (isosurface_stuffing.h) fills a lattice's
 /// cells: it succeeds on any triangles, and loses what is thinner than a cell. Best runs TetGen, and Mesh3 if
 /// TetGen fails or leaves a dihedral angle under `min_dihedral_deg`, and takes the answer whose smallest
-/// angle is larger; Stuffing if neither reaches fit_dihedral_deg(), or at once where the surface has over
-/// five triangles a millisecond of the time limit.
+/// angle is larger; Stuffing if neither reaches fit_dihedral_deg(), or without trying them if the surface has
+/// over five triangles per millisecond of the time limit.
 enum class Mesher { TetGen, Mesh3, Stuffing, Best };
 
 struct TetOptions {
   Mesher mesher = Mesher::TetGen;
   double min_dihedral_deg = 8.0;  ///< goal, 0..30; a kept surface may make it unreachable
   double radius_edge = 1.4;       ///< TetGen's -q, 1 or more; 1.2 is hard, 2 is easy
-  /// Largest element, above 0. TetGen keeps a surface whose larger triangles are divided in their planes. A
-  /// finding counts elements that are larger all the same.
+  /// Largest element, above 0. Larger triangles of a surface that TetGen keeps are divided in their planes. A
+  /// finding counts elements that are still larger.
   std::optional<double> max_volume_mm3{};
   bool keep_boundary = true;                    ///< TetGen's -Y: keeps the surface's triangles
   std::vector<Refinement> finer{};              ///< divides the surface first; elements follow its triangles
-  std::chrono::milliseconds time_limit{60000};  ///< of a processor, of each run
+  std::chrono::milliseconds time_limit{60000};  ///< processor time of each run
   std::uint64_t memory_limit_bytes = 4ull << 30;  ///< of each run
-  voxel::Progress progress{};                     ///< reports the share of a run's time limit that is gone
+  voxel::Progress progress{};                     ///< reports the share of a run's time limit that is used up
 };
 
 /// The smallest dihedral angle that is fit for a solver. The largest eigenvalue of an element's stiffness
@@ -66,8 +66,8 @@ std::optional<std::string> fault_in_shape(const Tetrahedra& tetrahedra);
 /// TOMS 41(2), 2015.
 Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options = {});
 
-/// The fault of tetrahedra that should fill a surface of this volume within a relative tolerance: there are
-/// none, one has no positive volume, or the total differs. None if there is no fault.
+/// Describes the fault of tetrahedra that should fill a surface of this volume within a relative tolerance:
+/// no tetrahedra, one without positive volume, or another total. Returns none if there is no fault.
 std::optional<std::string> fault_in_filling(const Tetrahedra& tetrahedra, double surface_mm3,
                                             double tolerance);
 

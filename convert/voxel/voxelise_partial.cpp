@@ -108,7 +108,7 @@ struct RowContribution {
   double moment = 0.0;  ///< of that area about the voxel's lower x
 };
 
-/// The polygon's area along x, and that times the mean distance from x0.
+/// Computes the polygon's area seen along x, and the product of this area and its mean distance from x0.
 void integrate(const Polygon& polygon, double x0, RowContribution& piece) {
   const glm::dvec3& a = polygon.corners[0];
   for (int i = 1; i + 1 < polygon.count; ++i) {

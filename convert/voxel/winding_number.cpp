@@ -22,8 +22,9 @@
 //   if a cube of voxels contains no triangle of C, and w(centre) differs from every odd multiple of 1/2 by
 //   more than w can change within the cube, one whole number serves as the threshold of n for the whole cube.
 //   Other cubes are divided, from the universe down to single voxels.
-// 4 Between crossings of its 256 rows, a row of blocks of 16^3 voxels has stretches of one n, and blocks that
-//   are made. The octree is put together from above: a cube of one n and one number is Full or Empty.
+// 4 Between crossings of its 256 rows, a row of blocks of 16^3 voxels consists of stretches of one n; other
+//   blocks are made voxel by voxel. The octree is put together from above: a cube of one n and one threshold
+//   is Full or Empty.
 //
 // Departure from the source, which sums over all triangles by a tree: here only rims cost, a closed surface
 // has none, and the decision for a cube is proven for each of its voxels.
@@ -40,12 +41,12 @@ struct Crossing {
   std::int8_t change = 0;
 };
 
-/// The numbers of a block's voxels, x fastest.
+/// The winding numbers of a block's voxels, x fastest.
 using BlockWinds = std::array<std::int32_t, std::size_t{row_count} * slab_layers>;
 
 /// Consecutive blocks in a row of blocks. Begins where the stretch before it ends.
 struct Stretch {
-  int end = 0;  ///< in blocks
+  int end = 0;  ///< first block after the stretch
   std::optional<std::int32_t> winds;
   voxel::Block block;  ///< if `winds` is empty: the voxels of each block of the stretch
 };
@@ -146,7 +147,7 @@ class WoundOctree {
     }
   }
 
-  /// The block's voxels whose number is at least the threshold there.
+  /// The block's voxels whose winding number is at least the threshold there.
   voxel::Block made(const glm::ivec3& block, const BlockWinds& winds) const {
     std::array<std::uint16_t, row_count> rows{};
     const auto decided = [&](const Cube& cube, int least) {
@@ -188,7 +189,8 @@ class WoundOctree {
                                  [block_x](const Stretch& stretch) { return stretch.end <= block_x; });
   }
 
-  /// The number of all of a cube's voxels. Precondition: within the universe, and made of whole blocks.
+  /// The winding number of all voxels of a cube; none if they differ. Precondition: within the universe, and
+  /// made of whole blocks.
   std::optional<std::int32_t> winds_in(const Cube& cube) const {
     const glm::ivec3 first = cube.origin / slab_layers, end = first + cube.side / slab_layers;
     std::optional<std::int32_t> all;

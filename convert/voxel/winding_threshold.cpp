@@ -86,7 +86,7 @@ ThresholdNode node_of(const voxel::Universe& universe, const WindingThreshold& t
                       const std::stop_token& stop, const Cube& cube) {
   ThresholdNode node;
   if (glm::any(glm::greaterThanEqual(cube.origin, glm::ivec3(universe.side())))) {
-    node.number = 1;  // of no voxel
+    node.number = 1;  // the cube has no voxel
     return node;
   }
   voxel::Progress{stop, {}}.at(0.0);

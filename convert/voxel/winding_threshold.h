@@ -33,16 +33,16 @@ struct Cube {
 };
 
 /// A voxel is inside if the surface's own winding number about its centre is more than 1/2. The surface
-/// together with its cap has whole winding numbers; this is the least of them with which the voxel is inside.
-/// Away from holes it is 1. Cost of a cube: the cap's triangles.
+/// together with its cap has a whole winding number there. The threshold is the least such number with which
+/// the voxel is inside: 1 away from holes. Cost of a cube: the cap's triangles.
 class WindingThreshold {
  public:
   WindingThreshold(const voxel::Universe& universe, const Cap& cap);
 
-  /// The number in all of a cube's voxels; none if it is not proven to be the same in all.
+  /// The threshold of all voxels of a cube; none unless it is proven to be the same for all.
   std::optional<int> in_cube(const Cube& cube) const;
 
-  /// Calls `decided(cube, number)` for cubes that together are the given one, whose side is a power of 4.
+  /// Calls `decided(cube, number)` for cubes that together fill the given one, whose side is a power of 4.
   template <typename Decided>
   void divide(const Cube& cube, const Decided& decided) const {
     if (const std::optional<int> number = in_cube(cube)) return decided(cube, *number);
@@ -58,12 +58,14 @@ class WindingThreshold {
   voxel::Lattice lattice_;
   const Cap& cap_;
   std::vector<Corners> in_voxels_;                         ///< the cap's triangles, voxel numbers
-  std::vector<std::pair<glm::dvec3, glm::dvec3>> bounds_;  ///< theirs
+  std::vector<std::pair<glm::dvec3, glm::dvec3>> bounds_;  ///< lower and upper corners of their boxes
 };
 
-/// A universe's thresholds by cubes of 4^h voxels a side: the largest with one number, down to 16.
+/// A universe's thresholds in cubes of 4^h voxels a side. A cube with different thresholds is divided, down
+/// to a side of 16.
 struct ThresholdNode {
-  std::optional<int> number;                                ///< none: voxels differ, see the children
+  std::optional<int> number;                                ///< threshold of all voxels; none: they differ,
+                                                            ///< see the children
   std::unique_ptr<std::array<ThresholdNode, 64>> children;  ///< none: one number, or a cube of 16 voxels a
                                                             ///< side
 };
