@@ -230,7 +230,8 @@ void add_voxels_outside(const Objects& objects, Object& made) {
   const Object& still = still_of(objects, made);
   const double lost_mm3 = outside_mm3(still.voxel.octree, made.image->image_from_object);
   if (!(lost_mm3 > 0.0)) return;
-  std::string text = outside_text(lost_mm3, still.voxel.measures.volume_mm3,
+  const double factor = std::abs(glm::determinant(glm::dmat3(made.image->image_from_object)));
+  std::string text = outside_text(lost_mm3, factor * still.voxel.measures.volume_mm3,
                                   voxel::bounds(made.voxel.octree.universe().lattice()));
   made.findings.push_back(text);
   made.caveats.push_back({voxel::Verdict::Fail, std::move(text), false, true});

@@ -19,6 +19,7 @@
 #include "planner/operation/measure/near_surfaces.h"
 #include "planner/operation/motion/move.h"
 #include "planner/operation/object/combine.h"
+#include "planner/operation/table/deformation.h"
 #include "planner/plan/dependence.h"
 #include "verify/interval/size_interval.h"
 #include "verify/phantom/chance.h"
@@ -100,7 +101,8 @@ class Through {
       errors.landmarks_mm[landmark.name] = some(asked.landmark_mm);
     for (const Object& object : objects_) {
       if (object.kind == "saw") errors.kerf_mm[object.id] = asked.kerf_mm * chance.normal();
-      if (object.moved) {
+      // Nobody seats a piece by scaling it: the motions before and after have the error.
+      if (object.moved && is_rigid(object.moved->motion)) {
         const glm::dvec3 by_mm = some(asked.seating_mm);
         errors.seating[object.id] = {by_mm, some(glm::radians(asked.seating_deg))};
       }
@@ -245,7 +247,7 @@ class Through {
             std::pair("roll", &Turns::roll_deg)})
         numbers_.push_back({word, object.id, "deg",
                             [this, id = object.id, part = part](const Errors&, const Motions& motions) {
-                              return turns_of(glm::dmat3(motions.own.at(id)), head_).*part;
+                              return turns_of(nearest_rotation(motions.own.at(id)), head_).*part;
                             }});
       if (const auto& centre = still.voxel.measures.centroid_mm)
         add_point(object, "", carried(glm::inverse(moved_since_made(objects_, still.id)), *centre), false);

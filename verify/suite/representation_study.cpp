@@ -169,20 +169,43 @@ void tables_3_1_and_3_2(const voxel::GreyOctree& grey, const Octree& skull, Repr
   }
 }
 
-void table_a_1(const voxel::Visits& visits, RepresentationStudy& study) {
-  static constexpr std::array<const char*, depth> printed{
-      "157.25 0.00 -",     "102.48 0.00 16.67", "30.26 0.00 17.308", "1.09 0.00 4.055",
-      "3.524 0.000 1.946", "1.045 0.108 0.904", "0.364 0.083 0.387", "- 0.077 0.209"};
+/// A row that is not in the text from which the printed values were taken.
+constexpr const char* left_out = "not in the text at hand";
+
+constexpr std::array<const char*, depth> visits_to_skull{
+    "157.25 0.00 -",     "102.48 0.00 16.67", "30.26 0.00 17.308", "1.09 0.00 4.055",
+    "3.524 0.000 1.946", "1.045 0.108 0.904", "0.364 0.083 0.387", "- 0.077 0.209"};
+constexpr std::array<const char*, depth> not_printed{left_out, left_out, left_out, left_out,
+                                                     left_out, left_out, left_out, left_out};
+
+void table_a_1(const char* object, const std::array<const char*, depth>& printed, const voxel::Visits& visits,
+               RepresentationStudy& study) {
   for (std::size_t i = 0; i < depth; ++i) {
     const auto share = [&](std::uint64_t all, std::uint64_t nodes) {
       return nodes == 0 ? std::string("-")
                         : with_decimals(static_cast<double>(all) / static_cast<double>(nodes), 3);
     };
     const voxel::LevelCount &made = visits.all.octree[i], &nodes = visits.existing[i];
-    study.beside.push_back({"table A.1, skull",
+    study.beside.push_back({std::string("table A.1, ") + object,
                             "level " + std::to_string(i + 1) + ", visits to Partial Full Empty", printed[i],
                             joined({share(made.partial, nodes.partial), share(made.full, nodes.full),
                                     share(made.empty, nodes.empty)})});
+  }
+}
+
+/// The spheres, digitised by the share of each voxel that they fill, as table 3.1 has them.
+void spheres_of_3_1_and_a_1(RepresentationStudy& study) {
+  const voxel::PartialOctree sphere = digitise_partial(solid_phantom("sphere"));
+  const voxel::PartialOctree chequered = digitise_partial(solid_phantom("chequered_sphere"));
+  const auto of_chequered = level_counts(chequered);
+  for (std::size_t i = 0; i < depth; ++i)
+    study.beside.push_back({"table 3.1, chequered sphere",
+                            "level " + std::to_string(i + 1) + ", Partial Full Empty", left_out,
+                            statuses(of_chequered[i], i + 1 == depth)});
+  for (const auto& [name, shares] : {std::pair("sphere", &sphere), {"chequered sphere", &chequered}}) {
+    voxel::DrawnObject object{name, shares->touching};
+    object.inside = shares->inside;
+    table_a_1(name, not_printed, drawn(object, voxel::Algorithm::NodeTrace), study);
   }
 }
 
@@ -238,7 +261,7 @@ void table_a_2(const Octree& skull, RepresentationStudy& study) {
     study.entries.push_back(
         {"table A.2", item + "algorithms by visits per node", "BTFU > BTFM > FTB > trace",
          order({{visits[0], "BTFU"}, {visits[1], "BTFM"}, {visits[2], "FTB"}, {visits[3], "trace"}})});
-    if (level == depth) table_a_1(traced, study);
+    if (level == depth) table_a_1("skull", visits_to_skull, traced, study);
   }
 }
 
@@ -466,6 +489,7 @@ RepresentationStudy representation_study() {
   const voxel::GreyOctree grey = grey_head();
   const Octree skull = combine(grey.universe(), voxel::Window{grey, bone.low, bone.high});
   tables_3_1_and_3_2(grey, skull, study);
+  spheres_of_3_1_and_a_1(study);
   table_a_2(skull, study);
   tables_4_2_and_a_3(grey, skull, study);
   table_7_5(skull, study);

@@ -3,6 +3,7 @@
 #include "verify/witness/witness.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -45,6 +46,20 @@ Witness intersection(Operand a, Operand b) {
     const Reading first = read(a);
     return decides(first, asked) ? first : conjunction(first, read(b));
   };
+}
+
+/// The factor by which a map may lengthen a distance; 1 for a motion or reflection. For other maps an upper
+/// bound: the Frobenius norm, which is at most the root of 3 times the largest singular value.
+double stretch_of(const glm::dmat4& map) {
+  constexpr double rounding = 1e-5;  // typed matrices have six decimals
+  const glm::dmat3 off = glm::transpose(glm::dmat3(map)) * glm::dmat3(map) - glm::dmat3(1.0);
+  double squares = 0.0, worst = 0.0;
+  for (int column = 0; column < 3; ++column)
+    for (int row = 0; row < 3; ++row) {
+      worst = std::max(worst, std::abs(off[column][row]));
+      squares += map[column][row] * map[column][row];
+    }
+  return worst <= rounding ? 1.0 : std::sqrt(squares);
 }
 
 /// The choices of all operands, without duplicates.
@@ -152,11 +167,12 @@ Witness carried(Witness still, const glm::dmat4& moved_from_still) {
   if (!still) return {};
   LineReading lines = lines_moved(still.lines(), moved_from_still);
   const glm::dmat4 still_from_moved = glm::inverse(moved_from_still);
+  const double longest = stretch_of(still_from_moved);
   std::vector<PartChoice> choices = still.choices();
   for (PartChoice& choice : choices) choice.chosen_from_made = choice.chosen_from_made * still_from_moved;
-  return Witness([still = std::move(still), back = Affine(still_from_moved)](
+  return Witness([still = std::move(still), back = Affine(still_from_moved), longest](
                      const glm::dvec3& p_mm, double slack_mm, ReadingNeeds asked) {
-           return still(back(p_mm), slack_mm, asked);
+           return still(back(p_mm), slack_mm * longest, asked);
          })
       .with_lines(std::move(lines))
       .with_choices(std::move(choices));

@@ -50,7 +50,7 @@ Witness witness_of_surface(brep::Solid solid);
 
 Witness both(Witness a, Witness b);
 Witness without(Witness a, Witness b);
-/// The object under a rigid motion or reflection, LPS to LPS.
+/// The object under an affine map with an inverse, LPS to LPS: moved, reflected, scaled or sheared.
 Witness carried(Witness still, const glm::dmat4& moved_from_still);
 /// The object with surfaces that may be off by `by_mm`, because corefinement moves operands that touch.
 Witness loosened(Witness tight, double by_mm);

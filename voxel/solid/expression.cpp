@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <limits>
 #include <stdexcept>
 #include <unordered_set>
 
@@ -15,11 +16,28 @@
 namespace octotomy::voxel {
 namespace {
 
+// Whether the matrix is finite and its last row 0 0 0 1.
+bool is_affine(const glm::dmat4& matrix) {
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row)
+      if (!std::isfinite(matrix[column][row]) || (row == 3 && matrix[column][3] != (column == 3 ? 1.0 : 0.0)))
+        return false;
+  return true;
+}
+
 // Whether the matrix is affine and keeps lengths. It is rigid if its determinant is also positive.
 bool is_affine_isometry(const glm::dmat4& matrix) {
-  for (int row = 0; row < 3; ++row)
-    if (matrix[row][3] != 0.0 || !std::isfinite(matrix[3][row])) return false;
-  return matrix[3][3] == 1.0 && is_isometry(glm::dmat3(matrix));
+  return is_affine(matrix) && is_isometry(glm::dmat3(matrix));
+}
+
+// Whether the map has an inverse beyond rounding: the volume of the columns' parallelepiped, relative to that
+// of a box with their lengths. In a singular matrix the determinant is a sum of six products that cancel, so
+// that a few roundings of the box's volume remain.
+bool has_inverse(const glm::dmat3& map) {
+  const double box = glm::length(map[0]) * glm::length(map[1]) * glm::length(map[2]);
+  const double volume = std::abs(glm::determinant(map));
+  return std::isfinite(box) && volume > 64.0 * std::numeric_limits<double>::epsilon() * box &&
+         std::isfinite(1.0 / volume);
 }
 
 // Every rule passes what it recognised to a callback, so that one parser serves evaluation and the list of
@@ -193,7 +211,8 @@ Expression reflected(const Expression& a, const glm::dmat4& mirrored_from_still)
 }
 
 Expression carried(const Expression& a, const glm::dmat4& carried_from_still) {
-  if (!is_affine_isometry(carried_from_still)) throw InvalidInput("a motion or reflection must keep lengths");
+  if (!is_affine(carried_from_still) || !has_inverse(glm::dmat3(carried_from_still)))
+    throw InvalidInput("a map of an object must be affine, finite and have an inverse");
   auto term = std::make_shared<Expression::Term>();
   term->kind = Expression::Kind::Moved;
   term->left = a.term_;

@@ -34,7 +34,7 @@ inline Window window_of(const GreyOctree& grey, double low,
   return window;
 }
 
-/// A Boolean expression of objects under rigid motions: pure data, cheap to copy. combine(), digitise() and
+/// A Boolean expression of objects under affine maps: pure data, cheap to copy. combine(), digitise() and
 /// renderers evaluate it.
 class Expression {
  public:
@@ -45,7 +45,7 @@ class Expression {
     Kind kind = Kind::Leaf;
     std::optional<Leaf> leaf;                 ///< Kind::Leaf only
     std::shared_ptr<const Term> left, right;  ///< right: binary kinds only
-    glm::dmat4 moved_from_still{1.0};         ///< Kind::Moved only: LPS to LPS, rigid
+    glm::dmat4 moved_from_still{1.0};         ///< Kind::Moved only: LPS to LPS, affine
 
     Term() = default;
     Term(const Term&) = delete;
@@ -78,9 +78,9 @@ class Expression {
   /// The expression's mirror image: the matrix is a reflection, LPS to LPS. Throws std::invalid_argument if
   /// the matrix is not a reflection.
   friend Expression reflected(const Expression& a, const glm::dmat4& mirrored_from_still);
-  Expression carried(const Expression& a, const glm::dmat4& carried_from_still);
-
-  /// moved() or reflected(), whichever the matrix is. Throws std::invalid_argument if it is neither.
+  /// The expression under any affine map with an inverse, LPS to LPS: moved, reflected, scaled or sheared.
+  /// Every question at a point is answered at the point's origin under the map. Throws std::invalid_argument
+  /// if an entry is not finite, the last row is not 0 0 0 1, or the map has no inverse.
   friend Expression carried(const Expression& a, const glm::dmat4& carried_from_still);
 
   /// A part of another expression, shared with it. Precondition: not null.
@@ -96,6 +96,7 @@ class Expression {
 Expression operator~(const Expression& a);
 Expression moved(const Expression& a, const glm::dmat4& moved_from_still);
 Expression reflected(const Expression& a, const glm::dmat4& mirrored_from_still);
+Expression carried(const Expression& a, const glm::dmat4& carried_from_still);
 
 /// Rotation by degrees about an axis through a point, right-handed, then a translation; LPS millimetres.
 struct Motion {

@@ -23,7 +23,7 @@ struct DrawnObject {
   glm::vec3 colour{0.93f, 0.89f, 0.80f};  ///< sRGB, 0..1
   std::optional<GreyOctree> grey{};
   double threshold = 0.0;
-  /// The rigid motion, LPS to LPS, from the object's place in its samples to its place in the picture.
+  /// The motion, affine, LPS to LPS, from the object's place in its samples to its place in the picture.
   std::optional<glm::dmat4> moved_from_still{};
   float opacity = 1.0f;  ///< 0: hidden, 1: opaque
   /// Counts visits in the min-max octree of `grey` (samples from the threshold up) instead of in the binary

@@ -63,6 +63,7 @@ constexpr std::array verb_table{
     GroupedVerb{cutting, "mirror"},
     GroupedVerb{cutting, "register"},
     GroupedVerb{cutting, "transform"},
+    GroupedVerb{cutting, "affine"},
     GroupedVerb{shaping, "mesh"},
     GroupedVerb{shaping, "octree"},
     GroupedVerb{shaping, "voxelise"},

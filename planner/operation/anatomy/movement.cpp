@@ -5,6 +5,7 @@
 
 #include "planner/operation/anatomy/head_directions.h"
 #include "planner/operation/anatomy/measured_movement.h"
+#include "planner/operation/table/deformation.h"
 #include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
 
@@ -72,13 +73,14 @@ ObjectMovement movement_of(const Object& object, const Objects& objects,
   const glm::dmat4& motion = object.moved->motion;
   const Object& still = objects.at(object.moved->object);
   const glm::dmat4 before = moved_since_made(objects, still.id);
-  const Turns turns = turns_of(glm::dmat3(motion), head);
+  const Turns turns = turns_of(nearest_rotation(motion), head);
   ObjectMovement made{
       object.id, still.id, turns.pitch_deg, turns.yaw_deg, turns.roll_deg, in_words(turns), {}, {}, {}};
   if (const std::optional<glm::dvec3>& centre = still.voxel.measures.centroid_mm) {
     made.centroid = measured(carried(motion, *centre) - *centre, head);
     made.words = made.centroid->words + "; " + in_words(turns);
   }
+  if (!is_rigid(motion)) made.words += "; " + in_words(deformation_of(glm::dmat3(motion)));
   for (const NamedPoint& landmark : landmarks) {
     const glm::dvec3 from_mm = carried(before, landmark.p_mm), to_mm = carried(motion, from_mm);
     if (!nearer(still.voxel.octree, staying, from_mm, landmark.p_mm)) continue;

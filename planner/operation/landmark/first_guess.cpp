@@ -187,7 +187,7 @@ std::optional<voxel::DrawnObject> with_higher_threshold(const voxel::DrawnObject
   voxel::DrawnObject other = bone;
   other.threshold = zero + threshold_share * (bone.threshold - zero);
   voxel::Expression window(voxel::window_of(*bone.grey, other.threshold));
-  if (bone.moved_from_still) window = moved(window, *bone.moved_from_still);
+  if (bone.moved_from_still) window = carried(window, *bone.moved_from_still);
   other.octree = voxel::combine(bone.octree.universe(), voxel::Expression(bone.octree) & window);
   return other;
 }

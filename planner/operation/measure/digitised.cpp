@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <set>
+#include <tuple>
 
 #include "planner/operation/measure/recommended.h"
+#include "planner/operation/table/deformation.h"
 #include "planner/operation/table/number_format.h"
 #include "voxel/measure/flat_parts.h"
 
@@ -25,14 +27,15 @@ Digitised digitised_of(const AnswerBench& bench) {
 Digitised digitised_of(const AnswerBench& bench, const Object& object) {
   Digitised digitised = digitised_of(bench);
   digitised.flat_mm2 = voxel::flat_parts_mm2(object.voxel.octree);
-  std::set<std::pair<std::string, double>> known;
+  std::set<std::tuple<std::string, double, double>> known;
   for (const Shown& window : object.bound.windows) {
-    if (!known.emplace(window.scan, window.threshold).second) continue;
+    const double stretch = stretch_of(window.moved_from_still);
+    if (!known.emplace(window.scan, window.threshold, stretch).second) continue;
     // Uses the surface of the whole window, of which a part's surface is a piece.
     const std::optional<double> shift_mm =
         window.samples ? window_shift_mm(*window.samples, window.threshold, window.high)
                        : window_shift_mm(voxel::window_of(window.grey, window.threshold));
-    if (shift_mm) digitised.shift_mm = std::max(digitised.shift_mm.value_or(0.0), *shift_mm);
+    if (shift_mm) digitised.shift_mm = std::max(digitised.shift_mm.value_or(0.0), stretch * *shift_mm);
   }
   return digitised;
 }

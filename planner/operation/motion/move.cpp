@@ -13,6 +13,7 @@
 #include "planner/operation/anatomy/head_directions.h"
 #include "planner/operation/anatomy/motion_of_points.h"
 #include "planner/operation/object/provenance.h"
+#include "planner/operation/table/deformation.h"
 #include "planner/operation/table/fault.h"
 #include "planner/operation/table/json.h"
 #include "planner/operation/table/number_format.h"
@@ -116,7 +117,14 @@ glm::dmat4 turn_of(const Move& move, const MarkPlaces& places) {
 /// Throws std::invalid_argument where points or an axis do not determine the motion.
 glm::dmat4 motion_of(const Move& move, const MarkPlaces& places) {
   if (move.matrix) return *move.matrix;
-  if (move.with) return places.motion_of(move.with->name);
+  if (move.with) {
+    const glm::dmat4 motion = places.motion_of(move.with->name);
+    if (!is_rigid(motion))
+      throw voxel::InvalidInput(
+          "'" + move.with->name +
+          "' was scaled or sheared, and a move is rigid: name the result of a rigid motion");
+    return motion;
+  }
   if (!move.points.empty())
     return motion_of_points(wanted_points(move, places), fit_of(move)).moved_from_still;
   glm::dvec3 by_mm = move.translate_mm.value_or(glm::dvec3(0.0));
@@ -165,7 +173,8 @@ void check(const Move& move, const FieldLocation& place) {
   }
   if (move.matrix && !is_rigid(*move.matrix))
     place.at("matrix").refuse(
-        "is no rigid motion: its first three columns must be a rotation, its last row [0, 0, 0, 1]");
+        "is no rigid motion: its first three columns must be a rotation, its last row [0, 0, 0, 1]; 'affine' "
+        "scales and shears");
   for (std::size_t i = 0; i < move.points.size(); ++i) {
     const Move::Point& point = move.points[i];
     const bool is_typed = point.forward_mm != 0.0 || point.left_mm != 0.0 || point.up_mm != 0.0;
@@ -258,17 +267,6 @@ void bound(const Move& move, const BoundBench& bench, Object& made) {
 }
 
 }  // namespace
-
-bool is_rigid(const glm::dmat4& matrix) {
-  constexpr double rigid_to = 1e-5;  // the numbers are copied with six decimals
-  const glm::dmat3 turn(matrix);
-  const glm::dmat3 off = glm::transpose(turn) * turn - glm::dmat3(1.0);
-  double worst = 0.0;
-  for (int column = 0; column < 3; ++column)
-    for (int row = 0; row < 3; ++row) worst = std::max(worst, std::abs(off[column][row]));
-  const glm::dvec4 last = glm::transpose(matrix)[3];
-  return worst <= rigid_to && glm::determinant(turn) > 0.0 && last == glm::dvec4(0, 0, 0, 1);
-}
 
 MarkPlaces places_of(const Objects& objects) {
   return {[&objects](const Mark& mark) { return mark_mm(mark, objects); }, objects.lps_from_head,

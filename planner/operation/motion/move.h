@@ -26,9 +26,6 @@ MarkPlaces places_of(const Objects& objects);
 /// std::invalid_argument where the positions do not determine it.
 std::optional<glm::dmat4> motion_of(const Action& action, const MarkPlaces& places);
 
-/// Whether a matrix is a rotation and a translation, to the six decimals with which matrices are copied.
-bool is_rigid(const glm::dmat4& matrix);
-
 void move_voxels(const std::string& object, const glm::dmat4& moved_from_still, const VoxelBench& bench,
                  VoxelSide& made);
 void move_triangles(const std::string& object, const glm::dmat4& moved_from_still, const MeshBench& bench,

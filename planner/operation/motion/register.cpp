@@ -14,6 +14,7 @@
 #include "planner/operation/motion/move.h"
 #include "planner/operation/motion/scan_fit.h"
 #include "planner/operation/object/provenance.h"
+#include "planner/operation/table/deformation.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "voxel/scan/write_scene.h"
@@ -248,6 +249,12 @@ FittedScans by_scans_of(const Register& asked, const SettleBench& bench, Laid& l
   if (moving.scan == fixed.scan)
     throw std::runtime_error("'" + asked.object.name + "' and '" + asked.onto.name +
                              "' come from one scan, '" + moving.scan + "': compare them by surfaces");
+  for (const auto& [name, shown] : {std::pair(asked.object.name, &moving), {asked.onto.name, &fixed}})
+    if (!is_rigid(shown->moved_from_still))
+      throw std::runtime_error(
+          "'" + name +
+          "' is scaled or sheared, so that it does not move as its scan does: register it by "
+          "surfaces or landmarks");
   FittedScans fitted =
       fit_scans(*moving.samples, *fixed.samples, scan_fit_asked(asked), bench.progress, bench.timings);
   laid.onto_from_object =
@@ -260,7 +267,8 @@ void check(const Register& asked, const FieldLocation& place) {
   if (asked.landmarks_only && asked.landmarks.empty())
     place.at("landmarks_only").refuse("takes the motion of landmarks: add 'landmarks', two files");
   if (place.scope != nullptr && asked.motion == "similarity")
-    place.at("motion").refuse("scales, which an object's voxels cannot do: use rigid or three_points");
+    place.at("motion").refuse(
+        "scales, and a registered object moves rigidly: use rigid or three_points, and 'affine' to scale");
 }
 
 Register settle(const Register& asked, const SettleBench& bench) {

@@ -3,6 +3,7 @@
 #include "planner/operation/file/itk_transform.h"
 #include "planner/operation/motion/move.h"
 #include "planner/operation/object/provenance.h"
+#include "planner/operation/table/deformation.h"
 #include "planner/operation/table/fault.h"
 #include "planner/operation/table/operation.h"
 
@@ -19,7 +20,8 @@ TransformFile motion_in(const std::filesystem::path& path) {
   TransformFile read = read_itk_transform(path);
   if (!is_rigid(read.moved_from_still))
     throw std::runtime_error(
-        path.string() + ": scales, shears or mirrors: an object moves rigidly, so save a rigid transform");
+        path.string() +
+        ": scales, shears or mirrors: save a rigid transform, or take 'affine', which scales and shears");
   return read;
 }
 

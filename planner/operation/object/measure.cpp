@@ -17,6 +17,7 @@
 #include "planner/operation/measure/wall_thickness.h"
 #include "planner/operation/object/measure_file.h"
 #include "planner/operation/object/provenance.h"
+#include "planner/operation/table/deformation.h"
 #include "planner/operation/table/operation.h"
 #include "voxel/filter/label_map.h"
 
@@ -141,7 +142,7 @@ void take_thickness(const AnswerBench& bench, const Object& object, Recommended&
   }
 }
 
-/// The counting error of an object without a mesh, from its scan's samples; a motion does not change it. None
+/// The counting error of an object without a mesh, from its scan's samples; it changes with the volume. None
 /// where the object comes from no scan.
 std::optional<double> counting_doubt_of(const AnswerBench& bench, const Object& object) {
   const Object& still = still_of(bench.objects, object);
@@ -149,7 +150,9 @@ std::optional<double> counting_doubt_of(const AnswerBench& bench, const Object& 
     if (scan.lattice.spacing_mm() == still.bound.spacing_mm) {
       const voxel::LabelMap samples =
           voxel::label_map(scan.lattice, {&still.voxel.octree, 1}, {bench.stop, {}});
-      return counting_doubt_mm3(samples.scene, 1.0, 1.0);
+      const double doubt_mm3 = counting_doubt_mm3(samples.scene, 1.0, 1.0);
+      if (!object.image || keeps_lengths(object.image->image_from_object)) return doubt_mm3;
+      return std::abs(glm::determinant(glm::dmat3(object.image->image_from_object))) * doubt_mm3;
     }
   return std::nullopt;
 }
@@ -233,13 +236,49 @@ const Recommended& kept_intervals_of(const AnswerBench& bench, const Object& sti
   return *static_cast<const Recommended*>(kept.get());
 }
 
+void scale(verify::Interval& interval, double value_factor, double width_factor) {
+  interval.value *= value_factor;
+  interval.half_width *= width_factor;
+  for (verify::DoubtSource& source : interval.sources) source.half_width *= width_factor;
+}
+
+/// The sizes of a scaled or sheared image. Every volume changes by the determinant, and so does its doubt. The
+/// area follows the triangles of both; without them it is the middle of what the map may make of it. A doubt about
+/// the area grows at most as areas do.
+Recommended deformed_intervals(Recommended found, const Deformation& deformation, const Object& still,
+                               const Object& object) {
+  const double volume_factor = std::abs(deformation.volume_factor);
+  double area_factor = 0.5 * (deformation.least_area + deformation.greatest_area);
+  double unknown_mm2 =
+      0.5 * (deformation.greatest_area - deformation.least_area) * found.intervals.area_mm2.value;
+  if (still.mesh.whole && object.mesh.whole && !still.mesh.whole->empty()) {
+    area_factor = object.mesh.whole->size().area_mm2 / still.mesh.whole->size().area_mm2;
+    unknown_mm2 = 0.0;
+  }
+  scale(found.intervals.volume_mm3, volume_factor, volume_factor);
+  scale(found.intervals.area_mm2, area_factor, deformation.greatest_area);
+  found.intervals.triangles.area_mm2 *= area_factor;
+  if (unknown_mm2 > 0.0) {
+    found.intervals.area_mm2.half_width += unknown_mm2;
+    found.intervals.area_mm2.sources.push_back(
+        {"directions", "half the range of the map's area factors", unknown_mm2, true});
+  }
+  return found;
+}
+
 /// The recommended volume and area. They are the mesh's where there is one, because its cuts are exact. Parts share
-/// the doubt of the windows of their whole. A motion or mirror changes no size: where the universe contains both
-/// objects, an image of a whole object has that object's values, because the image's own voxels and points were
-/// rounded once more. An object made from another's surface has the doubt of that surface.
+/// the doubt of the windows of their whole. A motion or mirror changes no size, and scaling changes the volume by its
+/// determinant: where the universe contains both objects, an image of a whole object has that object's values,
+/// because the image's own voxels and points were rounded once more. An object made from another's surface has the
+/// doubt of that surface.
 Recommended intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
-  if (object.image && object.image->is_whole)
-    return kept_intervals_of(bench, still_of(bench.objects, object));
+  if (object.image && object.image->is_whole) {
+    const Object& still = still_of(bench.objects, object);
+    const glm::dmat4& map = object.image->image_from_object;
+    const Recommended& found = kept_intervals_of(bench, still);
+    return keeps_lengths(map) ? found
+                              : deformed_intervals(found, deformation_of(glm::dmat3(map)), still, object);
+  }
   Recommended found = own_intervals_of(bench, object, digitised);
   const std::set<std::string> reshaped(object.bound.reshaped.begin(), object.bound.reshaped.end());
   for (const std::string& name : reshaped) {

@@ -7,6 +7,7 @@
 
 #include "convert/voxel/voxelise.h"
 #include "planner/operation/measure/counted_window.h"
+#include "planner/operation/table/deformation.h"
 #include "verify/witness/witness.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/grey_owner.h"
@@ -14,16 +15,26 @@
 namespace octotomy::planner {
 namespace {
 
-/// The distance that rounding may put between a plane and a vertex on it, after rigid motions of coordinates
-/// as large as `reach_mm`: a few roundings of a dot product of three terms.
+/// The distance that rounding may put between a plane and a vertex on it, after motions of coordinates as large
+/// as `reach_mm`: a few roundings of a dot product of three terms.
 double on_plane_mm(double reach_mm) {
   return 64.0 * std::numeric_limits<double>::epsilon() * reach_mm;
 }
 
+/// Planes under a motion. A map that scales or shears carries normals by its inverse transpose, and puts parallel
+/// planes farther apart by a factor, by which the error of a cut between them grows.
 std::vector<CutPlane> moved_planes(std::vector<CutPlane> planes, const glm::dmat4& moved_from_still) {
+  const bool is_deforming = !keeps_lengths(moved_from_still);
+  const glm::dmat3 of_normals = is_deforming ? glm::inverse(glm::transpose(glm::dmat3(moved_from_still)))
+                                             : glm::dmat3(moved_from_still);
   for (CutPlane& plane : planes) {
     const glm::dvec3 point = glm::dvec3(moved_from_still * glm::dvec4(plane.normal * plane.offset_mm, 1.0));
-    plane.normal = glm::dmat3(moved_from_still) * plane.normal;
+    plane.normal = of_normals * plane.normal;
+    if (is_deforming) {
+      const double closer = glm::length(plane.normal);
+      plane.normal /= closer;
+      plane.voxels *= std::max(1.0, 1.0 / closer);
+    }
     plane.offset_mm = glm::dot(plane.normal, point);
   }
   return planes;
@@ -159,7 +170,8 @@ verify::Witness witness_of_moved(const Object& still, const glm::dmat4& moved_fr
                             has_whole_voxels(*still.voxel.symbol);
   if (!is_digitised) return moved;
   const glm::dvec3 voxel_mm = still.voxel.octree.universe().lattice().spacing_mm();
-  return verify::with_voxels_within(std::move(moved), 0.5 * glm::length(voxel_mm));
+  return verify::with_voxels_within(std::move(moved),
+                                    stretch_of(moved_from_still) * 0.5 * glm::length(voxel_mm));
 }
 
 }  // namespace
@@ -174,14 +186,16 @@ void carry(const std::string& object, const glm::dmat4& moved_from_still, const 
   for (CutWall& wall : made.walls) wall.moved_from_still = moved_from_still * wall.moved_from_still;
   made.shown = still.shown;
   if (made.shown) made.shown->moved_from_still = moved_from_still * made.shown->moved_from_still;
-  made.bound.spacing_mm = still.bound.spacing_mm;
+  // The axes of the scan may be turned already: a stretch in any direction widens all spacings.
+  const double stretch = stretch_of(moved_from_still);
+  made.bound.spacing_mm = stretch * still.bound.spacing_mm;
   made.bound.planes = still.bound.planes;
   made.bound.windows = still.bound.windows;
   for (Shown& window : made.bound.windows)
     window.moved_from_still = moved_from_still * window.moved_from_still;
-  made.bound.shift_mm = still.bound.shift_mm;
+  made.bound.shift_mm = stretch * still.bound.shift_mm;
   made.bound.reshaped = still.bound.reshaped;
-  made.bound.measured_apart_mm = still.bound.measured_apart_mm;
+  made.bound.measured_apart_mm = stretch * still.bound.measured_apart_mm;
   if (still.bound.scan_box_mm) {
     const auto ends =
         ends_of(*still.bound.scan_box_mm, still.bound.spacing_mm, bench.universe.lattice().spacing_mm());
@@ -194,8 +208,8 @@ double outside_mm3(const voxel::Octree& still, const glm::dmat4& image_from_stil
   const voxel::Universe universe = still.universe();
   const voxel::Box box = voxel::bounds(universe.lattice());
   const glm::dmat3 turn = glm::transpose(glm::dmat3(image_from_still));
-  // The universe's sides in the frame of the still object. A typed matrix has unit vectors to a few decimals
-  // only; a half-space needs them to full precision.
+  // The universe's sides in the frame of the still object. A half-space needs unit vectors to full precision;
+  // a typed matrix has them to a few decimals, and one that scales or shears has none.
   voxel::Expression outside = voxel::Octree::empty(universe);
   for (int axis = 0; axis < 3; ++axis) {
     const double length = glm::length(turn[axis]), shift_mm = image_from_still[3][axis];
@@ -204,7 +218,7 @@ double outside_mm3(const voxel::Octree& still, const glm::dmat4& image_from_stil
               voxel::Expression(voxel::HalfSpace{-normal, -(box.high_mm[axis] - shift_mm) / length}) |
               voxel::Expression(voxel::HalfSpace{normal, (box.low_mm[axis] - shift_mm) / length});
   }
-  return universe.lattice().voxel_mm3() *
+  return std::abs(glm::determinant(glm::dmat3(image_from_still))) * universe.lattice().voxel_mm3() *
          static_cast<double>(voxel::combine(universe, voxel::Expression(still) & outside).voxel_count());
 }
 

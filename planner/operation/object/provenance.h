@@ -41,12 +41,12 @@ std::vector<CutPlane> planes_of(const voxel::RegionMask& mask);
 /// Adds an operand's walls and bound terms to those of an object made of it.
 void inherit(const Object& operand, Object& made);
 
-/// Like inherit(), for an object that is another one moved or mirrored; walls, planes, windows and samples move with
-/// it. Precondition: the mesh kernel's object is complete, if there is one.
+/// Like inherit(), for an object that is another one moved, mirrored, scaled or sheared; walls, planes, windows and
+/// samples move with it. Precondition: the mesh kernel's object is complete, if there is one.
 void carry(const std::string& object, const glm::dmat4& moved_from_still, const BoundBench& bench,
            Object& made);
 
-/// Volume of an object's voxels whose centres lie outside of the universe after a motion or mirror.
+/// Volume that the image of an object's voxels has outside of the universe after a motion or mirror.
 double outside_mm3(const voxel::Octree& still, const glm::dmat4& image_from_still);
 
 /// The samples that define the surface of an object made of several: those of its operands, where these

@@ -22,6 +22,7 @@
 #include "planner/operation/object/mask.h"
 #include "planner/operation/object/provenance.h"
 #include "planner/operation/object/saw.h"
+#include "planner/operation/table/deformation.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "voxel/solid/combine.h"
@@ -332,6 +333,9 @@ ScrewAxis screw_axis(const std::string& name, const SettleBench& bench) {
   const Screw* screw = maker == nullptr ? nullptr : maker->get_if<Screw>();
   if (screw == nullptr)
     throw std::runtime_error("'" + name + "' is no screw: name a screw step, or a screw that was moved");
+  if (object.image && !keeps_lengths(object.image->image_from_object))
+    throw std::runtime_error("'" + name +
+                             "' is scaled or sheared, and a screw keeps its shape: move it rigidly");
   const glm::dmat4 image = object.image ? object.image->image_from_object : glm::dmat4(1.0);
   const Placed at = placed(*screw, bench);
   return {name,

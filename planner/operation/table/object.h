@@ -132,17 +132,17 @@ struct Object {
   std::optional<Shown> shown;
   /// Details of a moved object.
   struct Moved {
-    std::string object;  ///< name of the object that was moved
-    glm::dmat4 motion{1.0};
+    std::string object;      ///< name of the object that was moved
+    glm::dmat4 motion{1.0};  ///< LPS to LPS; affine: a step may scale or shear (is_rigid())
     /// Reported facts about the motion: how it was found, residuals of points.
     nlohmann::ordered_json details = nlohmann::ordered_json::object();
   };
   std::optional<Moved> moved;
-  /// Set if the object is another one moved or mirrored, by one step or by several.
+  /// Set if the object is another one moved, mirrored, scaled or sheared, by one step or by several.
   struct Image {
-    std::string object;  ///< the one that was neither moved nor mirrored
-    glm::dmat4 image_from_object{1.0};
-    /// Whether both objects lie wholly within the universe. Then their volumes are equal.
+    std::string object;                 ///< the one that is no image
+    glm::dmat4 image_from_object{1.0};  ///< affine
+    /// Whether both objects lie wholly within the universe. Then their volumes differ by the determinant.
     bool is_whole = false;
   };
   std::optional<Image> image;
@@ -175,7 +175,7 @@ class Objects {
   std::map<std::string, std::size_t> index_;
 };
 
-/// The original object of a moved or mirrored one; the object itself if it is neither.
+/// The original object of an image; the object itself if it is no image.
 const Object& still_of(const Objects& objects, const Object& object);
 /// The motion of all the steps that moved an object since it was made, LPS to LPS.
 glm::dmat4 moved_since_made(const Objects& objects, const std::string& object);

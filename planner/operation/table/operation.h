@@ -73,7 +73,7 @@ struct Operation {
   bool reads_scans = false;
   /// The object only helps to make others, such as a mask, and has no certificate.
   bool is_tool = false;
-  /// The object is that of the field `object` under a rigid motion (Object::moved).
+  /// The object is that of the field `object` under a motion (Object::moved).
   bool is_motion = false;
   /// The answer depends on the head's orientation, by views or by words such as "forward".
   bool is_of_head = false;

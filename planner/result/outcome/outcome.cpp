@@ -21,6 +21,7 @@
 #include "convert/surface/isosurface.h"
 #include "planner/operation/anatomy/movement.h"
 #include "planner/operation/measure/result_json.h"
+#include "planner/operation/table/deformation.h"
 #include "planner/operation/table/number_format.h"
 #include "verify/interval/size_interval.h"
 #include "voxel/solid/combine.h"
@@ -39,13 +40,19 @@ struct MovedObject {
   glm::dmat4 motion;
 };
 
+/// A scaled or sheared object is fitted in its new shape, so that its later motions are rigid.
+bool moves_rigidly(const Object& object) {
+  return object.moved && is_rigid(object.moved->motion);
+}
+
 std::vector<MovedObject> pieces_of(const Objects& objects) {
   std::vector<MovedObject> pieces;
   for (const Object& object : objects) {
-    if (!object.moved) continue;
-    const Object* still = &objects.at(object.moved->object);
-    while (still->moved) still = &objects.at(still->moved->object);
-    const MovedObject piece{&object, still, moved_since_made(objects, object.id)};
+    if (!moves_rigidly(object)) continue;
+    const Object* still = &object;
+    glm::dmat4 motion(1.0);
+    for (; moves_rigidly(*still); still = &objects.at(still->moved->object)) motion *= still->moved->motion;
+    const MovedObject piece{&object, still, motion};
     const auto same = std::find_if(pieces.begin(), pieces.end(),
                                    [&](const MovedObject& other) { return other.still == still; });
     if (same == pieces.end())
@@ -54,7 +61,7 @@ std::vector<MovedObject> pieces_of(const Objects& objects) {
       *same = piece;
   }
   if (pieces.empty())
-    throw std::runtime_error("the plan moves nothing, so that there is no outcome to judge");
+    throw std::runtime_error("the plan moves nothing rigidly, so that there is no outcome to judge");
   return pieces;
 }
 
@@ -211,10 +218,14 @@ Outcome outcome_of(const Plan& plan, const Evaluation& evaluation, const voxel::
     made.findings = part.fit.findings;
     if (const std::optional<glm::dvec3>& centre = piece.still->voxel.measures.centroid_mm)
       made.points.push_back(point_outcome(made.object, *centre, made, head, whole, part));
+    // Landmarks move with the piece since the scan, also by a step that scaled it.
+    const glm::dmat4 still_from_scan = moved_since_made(objects, piece.still->id);
+    const glm::dmat4 since_scan = moved_since_made(objects, piece.moved->id);
     for (const MovedLandmark& landmark : landmarks)
-      if (landmark.moved_from_still == piece.motion && piece.motion != glm::dmat4(1.0))
-        made.points.push_back(
-            point_outcome(landmark.landmark.name, landmark.landmark.p_mm, made, head, whole, part));
+      if (landmark.moved_from_still == since_scan && since_scan != glm::dmat4(1.0))
+        made.points.push_back(point_outcome(landmark.landmark.name,
+                                            carried(still_from_scan, landmark.landmark.p_mm), made, head,
+                                            whole, part));
     outcome.pieces.push_back(std::move(made));
     if (options.progress.report)
       options.progress.report(static_cast<double>(outcome.pieces.size()) /

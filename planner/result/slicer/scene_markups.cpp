@@ -8,6 +8,7 @@
 #include "planner/operation/object/mask.h"
 #include "planner/operation/object/saw.h"
 #include "planner/operation/part/screw.h"
+#include "planner/operation/table/deformation.h"
 #include "voxel/space/lattice.h"
 #include "voxel/space/view.h"
 
@@ -172,6 +173,8 @@ void add_screws(const Plan& plan, const Evaluation& evaluation, std::vector<Scen
   for (const Object& object : evaluation.objects) {
     const Action* maker = maker_of(still_of(evaluation.objects, object).id);
     if (maker == nullptr || maker->get_if<Screw>() == nullptr) continue;
+    // A scaled screw has no axis and no length of its own; its model shows it.
+    if (object.image && !keeps_lengths(object.image->image_from_object)) continue;
     const ScrewAxis axis = screw_axis(object.id, bench);
     made.push_back(markup_of_points("Line", object.id + " axis",
                                     {axis.head_mm, axis.head_mm + axis.length_mm * axis.along}));

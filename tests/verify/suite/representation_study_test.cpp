@@ -25,13 +25,19 @@ TEST(RepresentationStudy, HoldsForAnyObjectWhatTheThesisFoundOfItsOwn) {
     places.insert(row.where);
     EXPECT_FALSE(row.ours.empty()) << row.where << ", " << row.item;
     if (row.where.rfind("table", 0) != 0 || row.where == "table 4.2") continue;
+    if (row.printed == "not in the text at hand") {
+      EXPECT_TRUE(row.where.ends_with("sphere")) << row.where;
+      EXPECT_EQ(std::count(row.ours.begin(), row.ours.end(), ' '), 2) << row.where << ", " << row.item;
+      continue;
+    }
     EXPECT_EQ(std::count(row.ours.begin(), row.ours.end(), ' '),
               std::count(row.printed.begin(), row.printed.end(), ' '))
         << row.where << ", " << row.item << ": " << row.ours;
   }
   for (const char* where :
-       {"table 3.1, skull", "table 3.2, 64 levels", "table 4.2", "table 7.5", "table A.1, skull", "table A.2",
-        "table A.3", "figure 5.8", "figure 5.9", "figure 5.10"})
+       {"table 3.1, skull", "table 3.1, chequered sphere", "table 3.2, 64 levels", "table 4.2", "table 7.5",
+        "table A.1, skull", "table A.1, sphere", "table A.1, chequered sphere", "table A.2", "table A.3",
+        "figure 5.8", "figure 5.9", "figure 5.10"})
     EXPECT_TRUE(places.contains(where)) << where;
 }
 

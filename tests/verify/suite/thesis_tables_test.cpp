@@ -13,7 +13,8 @@ TEST(ThesisTables, AreWhatTheKernelsComputeEntryByEntry) {
     EXPECT_EQ(entry.ours, entry.printed) << entry.where << ", " << entry.item;
     places.insert(entry.where);
   }
-  for (const char* where : {"table 3.1, sphere", "figure 4.6", "table 5.1", "table 7.1", "section 3.2.3"})
+  for (const char* where : {"table 3.1, sphere", "figure 4.6", "table 4.3", "table 5.1", "table 7.1",
+                            "section 3.2.3", "section 8.3"})
     EXPECT_TRUE(places.contains(where)) << where;
 }
 
@@ -22,9 +23,10 @@ TEST(ThesisTables, AnEntryThatDiffersByACharacterDoesNotAgree) {
   EXPECT_FALSE((ThesisEntry{"", "", "1160", "1161"}).agrees());
 }
 
-TEST(ThesisTables, SayWhatIsNotRecomputedAndWhy) {
-  for (const ThesisGap& gap : thesis_gaps()) EXPECT_FALSE(gap.why.empty()) << gap.where;
-  EXPECT_FALSE(thesis_gaps().empty());
+TEST(ThesisTables, LeaveOutNothingButTheSecondsOfTheMachinesOf1989) {
+  ASSERT_EQ(thesis_gaps().size(), 1u);
+  EXPECT_NE(thesis_gaps().front().where.find("seconds"), std::string::npos);
+  EXPECT_NE(thesis_gaps().front().why.find("1989"), std::string::npos);
 }
 
 }  // namespace

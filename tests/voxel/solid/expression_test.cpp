@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/solid/expression.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <map>
 #include <random>
 #include <stdexcept>
@@ -217,7 +219,15 @@ TEST(Moved, RefusesWhatIsNotRigid) {
   glm::dmat4 mirrored(1.0);
   mirrored[0][0] = -1.0;
   EXPECT_THROW(moved(a, mirrored), std::invalid_argument);
-  EXPECT_THROW(carried(a, scaled), std::invalid_argument);
+  EXPECT_EQ(carried(a, scaled).term().moved_from_still, scaled);
+  for (const double factor : {0.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
+    glm::dmat4 wrong(1.0);
+    wrong[1][1] = factor;
+    EXPECT_THROW(carried(a, wrong), std::invalid_argument) << factor;
+  }
+  glm::dmat4 flat(1.0);
+  flat[1] = flat[0];
+  EXPECT_THROW(carried(a, flat), std::invalid_argument);
   EXPECT_EQ(carried(a, mirrored).term().moved_from_still, reflected(a, mirrored).term().moved_from_still);
 }
 

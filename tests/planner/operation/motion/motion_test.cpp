@@ -24,6 +24,7 @@ constexpr const char* motion_steps = R"(
     {"id": "cuts", "do": "flap_space", "uncut_at": 1, "number": 2, "curve": [[-30, 10, 0], [0, -6, 0], [30, 10, 0]],
      "donor": [[30, 12, 105], [33, 16, -105]], "start_mm": 40, "reach_mm": 10, "face": [45, 12, 105]},
     {"id": "placed", "do": "flap_move", "object": "lower", "segment": "cuts"},
+    {"id": "taller", "do": "affine", "object": "lower", "scale": [1, 1, 1.1], "about_mm": [0, 0, -10]},
     {"id": "image", "do": "mirror", "object": "lower", "point_mm": [0, 0, 0], "normal": [1, 0, 0]},
     {"id": "larger", "do": "offset", "object": "lower", "by_mm": 1},
     {"id": "both", "do": "combine", "expression": "upper | met"})";
@@ -66,6 +67,10 @@ TEST(Motion, ADeckAndAnotherPieceFollowEveryKindOfMotion) {
   const std::string still = std::string(motion_steps) + R"(, {"id": "deck", "do": "export", "object": "ball",
       "path": "ball.inp", "moved": ["larger"], "fixed": ["upper"]})";
   EXPECT_NE(ball_refusal(folder, ball_caps(still)).find("'larger' was made by 'offset'"), std::string::npos);
+  // A deck follows a motion that is not rigid, too; another piece does not.
+  const std::string taller = std::string(motion_steps) + R"(, {"id": "deck", "do": "export", "object": "ball",
+      "path": "ball.inp", "moved": ["taller"], "fixed": ["upper"]})";
+  EXPECT_EQ(ball_refusal(folder, ball_caps(taller)), "");
 }
 
 TEST(Motion, TheSchemaSaysWhatAnOperationMakesAndMoves) {
