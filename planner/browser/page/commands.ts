@@ -186,7 +186,7 @@ export function all_commands(): Command[] {
       name: "Cut plane",
       says: "Hides everything on one side of a plane, to show the inside.",
       key: "k",
-      run: () => set({cut_plane: state.cut_plane ? null : {axis: 0, side: 1, offset_mm: state.cross_mm[0]}})
+      run: switch_cut_plane
     },
     {
       name: "Radiograph and landmarks (cephalometry)",
@@ -287,6 +287,9 @@ export function all_commands(): Command[] {
              })),
   ];
 }
+
+export const switch_cut_plane = (): void => set(
+    {cut_plane: state.cut_plane ? null : {axis: 0, side: 1, offset_mm: state.cross_mm[0]}, right_tab: "inspector"});
 
 function show_cephalometry(): void {
   change_pane(1, {mode: "view", view: "left", shading: "radiograph"});

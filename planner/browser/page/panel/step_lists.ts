@@ -5,7 +5,7 @@ import {motion_words} from "../base/anatomical";
 import {badge} from "./certificate_badge";
 import {copy_command, name_version, new_branch, remove_step} from "../commands";
 import {look_of, object_ids} from "../drawn_objects";
-import {makes_body, makes_shape} from "../operations";
+import {makes_body, makes_scan, makes_shape} from "../operations";
 import {button, Child, el, fill, fill_tabs} from "../base/html";
 import {icon} from "../base/icons";
 import {show_scan} from "../pane/pane_grid";
@@ -143,6 +143,12 @@ export function step_words(step: Step): string {
   }
 }
 
+/// Why a step has no result. That of a scan is told beside the measurements.
+function error_of(step: Step): string|null|undefined {
+  if (!makes_scan(step)) return object_of(step.id)?.error;
+  return state.plan?.measurements?.find((one) => one.id === step.id && one.value === null)?.sentence;
+}
+
 function step_rows(): Child {
   return [
     steps().map((step, index) => {
@@ -161,7 +167,7 @@ function step_rows(): Child {
              makes_body(step) ? badge(step.id, object?.certificate, object?.volume) : null,
              makes_shape(step) ? eye(step.id) : null, step_menu(step)),
           el("p", {class: "words"}, el("b", {}, step.do.replace(/_/g, " ")), " ", step_words(step)),
-          object?.error ? el("p", {class: "error"}, object.error) : null);
+          error_of(step) ? el("p", {class: "error"}, error_of(step)) : null);
     }),
     steps().length ? null : el("p", {class: "says"}, "No step yet."),
   ];
