@@ -292,8 +292,11 @@ Snapshot Session::evaluate(const std::vector<std::string>& steps, bool certify, 
       if (!is_step || !made.errors.emplace(id, message_of(error)).second) throw;
     }
   }
-  if (certify) keep_certified(*made.plan, *made.evaluation);
   made.measurements = measurements_of(*made.plan, *made.evaluation, made.errors);
+  if (certify)
+    keep_certified(*made.plan, *made.evaluation, made.measurements);
+  else
+    put_certified(*made.plan, made.measurements);
   made.bone_lows = bone_lows_of(*made.evaluation);
   const std::lock_guard lock(mutex_);
   // Certificates of an earlier state of the plan do not belong to the present one.
@@ -317,7 +320,18 @@ std::map<std::string, double> Session::bone_lows_of(const Evaluation& evaluation
   return lows;
 }
 
-void Session::keep_certified(const Plan& plan, const Evaluation& evaluation) {
+void Session::put_certified(const Plan& plan, Json& measurements) const {
+  const std::lock_guard lock(mutex_);
+  if (certified_.empty() || measurements.empty()) return;
+  const std::map<std::string, std::string> keys = keys_of(plan);
+  for (Json& measurement : measurements) {
+    const auto id = measurement.at("id").get<std::string>();
+    const auto known = certified_.find(id);
+    if (known != certified_.end() && known->second.key == keys.at(id)) measurement = known->second.said;
+  }
+}
+
+void Session::keep_certified(const Plan& plan, const Evaluation& evaluation, const Json& measurements) {
   Json measures = Json::array();
   for (const Object& object : evaluation.objects)
     if (!object.is_tool && !object.voxel.octree.is_empty())
@@ -334,6 +348,10 @@ void Session::keep_certified(const Plan& plan, const Evaluation& evaluation) {
   }
   for (const Json& measured : measurements_json(measuring, evaluation))
     for (const char* size : {"volume", "area"}) found[measured.at("object")].said[size] = measured.at(size);
+  for (const Json& measurement : measurements) {
+    const auto id = measurement.at("id").get<std::string>();
+    if (!found.contains(id) && keys.contains(id)) found[id] = {keys.at(id), measurement};
+  }
   const std::lock_guard lock(mutex_);
   for (auto& [id, said] : found) certified_[id] = std::move(said);
 }
