@@ -372,6 +372,20 @@ Json steps_named_as_in_file(const Procedure& procedure, bool chained, const Json
   return steps;
 }
 
+/// The value for a procedure's bone that the plan has chosen already, by a window without an upper end: of another scanner
+/// or another unit, the procedure's default would be another tissue. Null if the plan has no such window.
+Json chosen_bone(const Procedure& procedure, const Json& plan) {
+  const auto bone = std::find_if(procedure.steps.begin(), procedure.steps.end(),
+                                 [&](const Json& step) { return step.at("id") == procedure.acts_on; });
+  if (bone == procedure.steps.end() || !bone->contains("low") || !bone->at("low").is_string()) return nullptr;
+  const auto name = bone->at("low").get<std::string>().substr(1);  // "=bone_low"
+  for (const Json& step : plan.at("steps"))
+    if (step.at("do") == "window" && step.value("scan", "") == plan.at("scans").begin().key() &&
+        step.contains("low") && !step.contains("high"))
+      return {{name, {{"value", step["low"]}, {"is_agreed", true}}}};
+  return nullptr;
+}
+
 /// The object on which a procedure would act, and what the plan's steps of the procedure state: its options and its
 /// values. For the page to show beforehand.
 Json acts_on(Session& session, const Json& said, const Watched& watched) {
@@ -390,7 +404,8 @@ Json acts_on(Session& session, const Json& said, const Watched& watched) {
     return coordinates_of(landmarks, before.lps_from_head.value_or(glm::dmat3(1.0)));
   };
   const Json steps = steps_named_as_in_file(procedure, outcome.has_value(), whole);
-  Json values = Json::object();
+  Json values = outcome ? Json() : chosen_bone(procedure, whole);
+  if (values.is_null()) values = Json::object();
   for (const auto& [name, value] : planned_values(with_options(procedure, with), steps, coordinates))
     values[name] = {{"value", value.value}, {"is_agreed", value.is_agreed}};
   return {{"outcome", outcome ? Json(*outcome) : Json(nullptr)},

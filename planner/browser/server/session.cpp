@@ -137,24 +137,31 @@ Json answered(const Plan& plan, const Evaluation& evaluation, std::map<std::stri
   return list;
 }
 
-/// The measurements of existing objects in the form that a page shows; `errors` as in answered().
-Json measurements_of(Plan plan, const Evaluation& evaluation, std::map<std::string, std::string>& errors) {
+/// The measurements of existing objects in the form that a page shows, and why measurements and scans failed; `errors`
+/// as in answered().
+Json measurements_of(const Plan& plan, const Evaluation& evaluation,
+                     std::map<std::string, std::string>& errors) {
   const auto is_there = [&](const std::string& id) {
     return std::any_of(evaluation.objects.begin(), evaluation.objects.end(),
                        [&](const Object& object) { return object.id == id; });
   };
-  std::erase_if(plan.steps, [&](const Step& step) {
+  Plan measuring = plan;
+  std::erase_if(measuring.steps, [&](const Step& step) {
     const std::vector<std::string> used = objects_used(step.action);
     return step.action.operation().makes != Makes::Measurement ||
            !std::all_of(used.begin(), used.end(), is_there);
   });
   Json list = Json::array();
-  for (const Json& answer : answered(plan, evaluation, errors)) {
+  for (const Json& answer : answered(measuring, evaluation, errors)) {
     Json told = measurement_message(answer);
     if (!told.is_null()) list.push_back(std::move(told));
   }
+  const auto is_listed = [](const Step& step) {
+    const Makes makes = step.action.operation().makes;
+    return makes == Makes::Measurement || makes == Makes::Scan;
+  };
   for (const Step& step : plan.steps)
-    if (const auto failed = errors.find(step.id); failed != errors.end())
+    if (const auto failed = errors.find(step.id); failed != errors.end() && is_listed(step))
       list.push_back({{"id", step.id},
                       {"says", "no answer"},
                       {"value", nullptr},
