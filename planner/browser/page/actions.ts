@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What a person does to the plan: each is a request to the server, whose answer is the plan's new state.
 import {objects_of_plan} from "./drawn_objects";
-import {makes_measurement} from "./operations";
+import {makes_measurement, makes_scan} from "./operations";
 import {Hello, Measured, Measurement, PlanState, Step} from "./protocol";
 import {first_scan, kept_view, leave_plan, leave_scan, notify, PaneSetting, set, State, state, steps, usual_panes} from "./state";
 import {add, scaled, Vec3} from "./base/vector";
@@ -173,12 +173,12 @@ export async function change_history(
   if (await change_plan(word, fields)) void evaluate();
 }
 
-/// Evaluates the objects and measurements that are shown. Their results arrive as the event `objects`.
+/// Evaluates the objects that are shown, measurements and scans that steps make. Their results arrive as the event `objects`.
 export async function evaluate(certify = false): Promise<void> {
   if (!steps().length) return;
   const objects = objects_of_plan().flatMap((object) => (object.id ? [object.id] : []));
-  const measures = steps().filter(makes_measurement).map((step) => step.id);
-  await try_to("evaluate", certify ? {certify: true} : {objects: [...objects, ...measures]});
+  const others = steps().filter((step) => makes_measurement(step) || makes_scan(step)).map((step) => step.id);
+  await try_to("evaluate", certify ? {certify: true} : {objects: [...objects, ...others]});
 }
 
 export interface MeasureAnswer extends Measured {

@@ -11,7 +11,7 @@ import {guess_landmarks} from "./tool/point_tools";
 import {cut_selected} from "./tool/region_tool";
 import {new_step} from "./panel/schema_form";
 import {operations} from "./operations";
-import {hide_patient, notify, selected_step, set, state, step_of, usual_panes} from "./state";
+import {hide_patient, notify, selected_step, set, state, steps, step_of, usual_panes} from "./state";
 import {change_theme} from "./base/theme";
 import {all_tools, take_tool} from "./tool/tool";
 import {plane_names, view_names} from "./base/view_frame";
@@ -44,6 +44,15 @@ export async function certify_all(): Promise<void> {
 
 export function remove_step(step: Step): void {
   void edit({remove: step.id}, `${step.id} removed`, null);
+}
+
+/// Puts a step where another one stands. The server refuses an order in which a step precedes what it uses.
+export function put_step_at(id: string, place: number): void {
+  const now = steps().findIndex((step) => step.id === id);
+  const moved = steps()[now];
+  if (!moved || place === now || place < 0 || place >= steps().length) return;
+  const others = steps().filter((step) => step.id !== id);
+  void edit({steps: [...others.slice(0, place), moved, ...others.slice(place)]}, `${id} put at ${place + 1}`, id);
 }
 
 export async function save(): Promise<void> {
@@ -186,7 +195,7 @@ export function all_commands(): Command[] {
       name: "Cut plane",
       says: "Hides everything on one side of a plane, to show the inside.",
       key: "k",
-      run: () => set({cut_plane: state.cut_plane ? null : {axis: 0, side: 1, offset_mm: state.cross_mm[0]}})
+      run: switch_cut_plane
     },
     {
       name: "Radiograph and landmarks (cephalometry)",
@@ -262,6 +271,14 @@ export function all_commands(): Command[] {
         if (step) remove_step(step);
       }
     },
+    ...([["earlier", -1], ["later", 1]] as const).map(([word, by]) => ({
+      name: `Put the selected step one place ${word}`,
+      says: "Changes the order of the plan's steps.",
+      run: () => {
+        const step = selected_step();
+        if (step) put_step_at(step.id, steps().indexOf(step) + by);
+      }
+    })),
     {
       name: "Copy the selected step as a command",
       run: () => {
@@ -287,6 +304,9 @@ export function all_commands(): Command[] {
              })),
   ];
 }
+
+export const switch_cut_plane = (): void => set(
+    {cut_plane: state.cut_plane ? null : {axis: 0, side: 1, offset_mm: state.cross_mm[0]}, right_tab: "inspector"});
 
 function show_cephalometry(): void {
   change_pane(1, {mode: "view", view: "left", shading: "radiograph"});

@@ -19,11 +19,15 @@ const is_displaced = (step: Step): boolean => moves_object(step) || step.do === 
 const is_union = (step: Step): boolean =>
     step.do === "combine" && typeof step.expression === "string" && !/[&^~-]/.test(step.expression);
 
-/// Whether a step is the common part of a moved piece and another object: interference, drawn in red.
+/// Whether a step is what pieces have in common: interference, drawn in red. The pieces are moved ones, or some that a
+/// union of the plan joins, as a graft and the bone.
 export function is_overlap(step: Step, all: Step[]): boolean {
-  if (step.do !== "combine" || typeof step.expression !== "string" || !/^[\w\s&()]+$/.test(step.expression))
+  if (step.do !== "combine" || typeof step.expression !== "string" || !/^[\w\s&|()]*&[\w\s&|()]*$/.test(step.expression))
     return false;
-  return operands(step).some((name) => all.some((other) => other.id === name && is_displaced(other)));
+  const pieces = operands(step);
+  if (all.some((other) => is_union(other) && pieces.every((name) => operands(other).includes(name)))) return true;
+  return !step.expression.includes("|") &&
+      pieces.some((name) => all.some((other) => other.id === name && is_displaced(other)));
 }
 
 /// Whether a step is the part of an object inside a mask. Such a piece has its own colour even before it

@@ -2,7 +2,7 @@
 // The page's frame: the bar on top, the rail of tools, the status line, jobs, notices and the message about a
 // lost connection.
 import {change_history, try_to} from "./actions";
-import {certify_all, compare_selected, dialogs, map_contacts, mirror_selected, new_branch} from "./commands";
+import {certify_all, compare_selected, dialogs, map_contacts, mirror_selected, new_branch, switch_cut_plane} from "./commands";
 import {button, Child, el, fill} from "./base/html";
 import {icon, IconName, is_icon} from "./base/icons";
 import {cut_selected} from "./tool/region_tool";
@@ -73,7 +73,7 @@ export function make_rail(host: HTMLElement): void {
                     `${tool.title}${tool.key ? ` (${tool.key.toUpperCase()})` : ""}. ${tool.says}`,
                     state.tool === tool.name,
                     () => {
-                      set({right_tab: "inspector"});
+                      set({right_tab: "inspector"});  // also where the tool is in hand already
                       take_tool(tool.name);
                     })),
         el("hr", {}),
@@ -92,10 +92,7 @@ export function make_rail(host: HTMLElement): void {
         rail_button(
             "plane", "Cut plane (K). Hides everything on one side, to show the inside",
             state.cut_plane !== null,
-            () => set({
-              cut_plane: state.cut_plane ? null : {axis: 0, side: 1, offset_mm: state.cross_mm[0]},
-              right_tab: "inspector"
-            })),
+            switch_cut_plane),
         el("span", {class: "spring"}),
         rail_button("camera", "Screenshot. The panes as a picture", false, () => dialogs.screenshot()));
   };

@@ -31,6 +31,9 @@ export const makes_body = (step: Step|undefined): boolean =>
 /// Whether a step measures.
 export const makes_measurement = (step: Step): boolean => schema_of(step)?.["x-makes"] === "measurement";
 
+/// Whether a step makes a scan of another one.
+export const makes_scan = (step: Step): boolean => schema_of(step)?.["x-makes"] === "scan";
+
 /// Whether a step moves another object rigidly.
 export const moves_object = (step: Step): boolean => schema_of(step)?.["x-moves"] !== undefined;
 

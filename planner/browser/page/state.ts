@@ -208,7 +208,8 @@ export function on_leaving_plan(call: () => void): void {
 /// Clears everything in this window that belongs to the shown plan, including the current tool.
 export function leave_plan(): void {
   for (const call of plan_leavers) call();
-  set(without_plan());
+  // An error that was not read yet is one of the plan that is left.
+  set({...without_plan(), notices: state.notices.filter((notice) => notice.level !== "error")});
 }
 /// Clears what belongs to a scan whose file was replaced in the same plan: tools and their drafts. How
 /// objects are shown stays.

@@ -16,6 +16,7 @@
 #include "planner/plan/plan.h"
 #include "planner/plan/rebase.h"
 #include "planner/procedure/template/chain.h"
+#include "planner/procedure/template/planned_values.h"
 #include "planner/procedure/template/procedure.h"
 #include "voxel/filter/tissue.h"
 #include "voxel/scan/read_scene.h"
@@ -275,11 +276,33 @@ Json without_steps_of(const Procedure& procedure, const Json& plan) {
   return kept;
 }
 
-/// Whether a plan has steps with the names of all of these.
-bool has_all(const Json& steps, const Json& plan) {
-  return std::all_of(steps.begin(), steps.end(), [&](const Json& own) {
-    return std::any_of(plan.at("steps").begin(), plan.at("steps").end(),
-                       [&](const Json& step) { return step["id"] == own["id"]; });
+/// Whether a step of the plan names other views or landmarks than the same step of the procedure, as the right cheek's
+/// steps do, which are called as the left one's.
+bool names_others(const Procedure& procedure, const Json& own, const Json& planned,
+                  const std::string& key = {}) {
+  if (own.is_string() && planned.is_string())
+    return own != planned &&
+           (key == "view" || std::any_of(procedure.landmarks.begin(), procedure.landmarks.end(),
+                                         [&](const ProcedureLandmark& mark) { return own == mark.name; }));
+  if (own.is_array() && planned.is_array())
+    return std::any_of(own.begin(), own.end(), [&, i = std::size_t{0}](const Json& part) mutable {
+      const std::size_t at = i++;
+      return at < planned.size() && names_others(procedure, part, planned[at], key);
+    });
+  if (!own.is_object() || !planned.is_object()) return false;
+  return std::any_of(planned.items().begin(), planned.items().end(), [&](const auto& entry) {
+    return own.contains(entry.key()) &&
+           names_others(procedure, own.at(entry.key()), entry.value(), entry.key());
+  });
+}
+
+/// Whether a plan has all steps of a procedure, unchained.
+bool has_own_steps(const Procedure& procedure, const Json& plan) {
+  const Json& steps = plan.at("steps");
+  return std::all_of(procedure.steps.begin(), procedure.steps.end(), [&](const Json& own) {
+    return std::any_of(steps.begin(), steps.end(), [&](const Json& step) {
+      return step["id"] == own["id"] && !names_others(procedure, own, step);
+    });
   });
 }
 
@@ -287,7 +310,7 @@ bool has_all(const Json& steps, const Json& plan) {
 /// would be the plan's first procedure, or if the plan contains its own steps unchained; these are then
 /// replaced.
 std::optional<std::string> acted_on(const Procedure& procedure, const Json& whole, const Plan& before) {
-  return has_all(procedure.steps, whole) ? std::nullopt : outcome_of(before);
+  return has_own_steps(procedure, whole) ? std::nullopt : outcome_of(before);
 }
 
 /// Whether a step of a plan is one of an option's, by its name and operation. `chained`: of the steps that act on
@@ -335,18 +358,60 @@ Procedure known_procedure(const Json& said) {
   return read_procedure(name);
 }
 
-/// The object on which a procedure would act and its options that the plan has, for the page to show beforehand.
-Json acts_on(Session& session, const Json& said, const Watched&) {
+/// The plan's steps of a procedure, named as in the procedure's file. `chained` as in is_step_of().
+Json steps_named_as_in_file(const Procedure& procedure, bool chained, const Json& plan) {
+  Json steps = Json::array();
+  for (Json step : plan.at("steps")) {
+    if (chained) {
+      const auto name = name_before_chaining(procedure, step.at("id"));
+      if (!name) continue;
+      step["id"] = *name;
+    }
+    steps.push_back(std::move(step));
+  }
+  return steps;
+}
+
+/// The value for a procedure's bone that the plan has chosen already, by a window without an upper end: of another scanner
+/// or another unit, the procedure's default would be another tissue. Null if the plan has no such window.
+Json chosen_bone(const Procedure& procedure, const Json& plan) {
+  const auto bone = std::find_if(procedure.steps.begin(), procedure.steps.end(),
+                                 [&](const Json& step) { return step.at("id") == procedure.acts_on; });
+  if (bone == procedure.steps.end() || !bone->contains("low") || !bone->at("low").is_string()) return nullptr;
+  const auto name = bone->at("low").get<std::string>().substr(1);  // "=bone_low"
+  for (const Json& step : plan.at("steps"))
+    if (step.at("do") == "window" && step.value("scan", "") == plan.at("scans").begin().key() &&
+        step.contains("low") && !step.contains("high"))
+      return {{name, {{"value", step["low"]}, {"is_agreed", true}}}};
+  return nullptr;
+}
+
+/// The object on which a procedure would act, and what the plan's steps of the procedure state: its options and its
+/// values. For the page to show beforehand.
+Json acts_on(Session& session, const Json& said, const Watched& watched) {
   const Procedure procedure = known_procedure(said);
   const auto [whole, folder] = session.with_document([](Document& document) {
     return std::pair{Json(document.json()), document.path().parent_path()};
   });
-  const std::optional<std::string> outcome =
-      acted_on(procedure, whole, parse_plan(without_steps_of(procedure, whole).dump(), folder));
-  Json with = Json::array();
+  const Plan before = parse_plan(without_steps_of(procedure, whole).dump(), folder);
+  const std::optional<std::string> outcome = acted_on(procedure, whole, before);
+  std::vector<std::string> with;
   for (const ProcedureOption& option : procedure.options)
     if (has_option(procedure, option, outcome.has_value(), whole)) with.push_back(option.name);
-  return {{"outcome", outcome ? Json(*outcome) : Json(nullptr)}, {"with", with}};
+  const auto coordinates = [&] {
+    const std::vector<brep::Landmark> landmarks = carried_landmarks(
+        before, outcome ? session.evaluate(before, {*outcome}, false, watched) : Evaluation());
+    return coordinates_of(landmarks, before.lps_from_head.value_or(glm::dmat3(1.0)));
+  };
+  const Json steps = steps_named_as_in_file(procedure, outcome.has_value(), whole);
+  Json values = outcome ? Json() : chosen_bone(procedure, whole);
+  if (values.is_null()) values = Json::object();
+  for (const auto& [name, value] : planned_values(with_options(procedure, with), steps, coordinates))
+    values[name] = {{"value", value.value}, {"is_agreed", value.is_agreed}};
+  return {{"outcome", outcome ? Json(*outcome) : Json(nullptr)},
+          {"is_planned", outcome ? !steps.empty() : has_own_steps(procedure, whole)},
+          {"with", with},
+          {"values", values}};
 }
 
 /// Adds a procedure's steps: in place of its earlier ones, after another procedure's result, or as the plan's

@@ -152,24 +152,31 @@ Json answered(const Plan& plan, const Evaluation& evaluation, std::map<std::stri
   return list;
 }
 
-/// The measurements of existing objects in the form that a page shows; `errors` as in answered().
-Json measurements_of(Plan plan, const Evaluation& evaluation, std::map<std::string, std::string>& errors) {
+/// The measurements of existing objects in the form that a page shows, and why measurements and scans failed; `errors`
+/// as in answered().
+Json measurements_of(const Plan& plan, const Evaluation& evaluation,
+                     std::map<std::string, std::string>& errors) {
   const auto is_there = [&](const std::string& id) {
     return std::any_of(evaluation.objects.begin(), evaluation.objects.end(),
                        [&](const Object& object) { return object.id == id; });
   };
-  std::erase_if(plan.steps, [&](const Step& step) {
+  Plan measuring = plan;
+  std::erase_if(measuring.steps, [&](const Step& step) {
     const std::vector<std::string> used = objects_used(step.action);
     return step.action.operation().makes != Makes::Measurement ||
            !std::all_of(used.begin(), used.end(), is_there);
   });
   Json list = Json::array();
-  for (const Json& answer : answered(plan, evaluation, errors)) {
+  for (const Json& answer : answered(measuring, evaluation, errors)) {
     Json told = measurement_message(answer);
     if (!told.is_null()) list.push_back(std::move(told));
   }
+  const auto is_listed = [](const Step& step) {
+    const Makes makes = step.action.operation().makes;
+    return makes == Makes::Measurement || makes == Makes::Scan;
+  };
   for (const Step& step : plan.steps)
-    if (const auto failed = errors.find(step.id); failed != errors.end())
+    if (const auto failed = errors.find(step.id); failed != errors.end() && is_listed(step))
       list.push_back({{"id", step.id},
                       {"says", "no answer"},
                       {"value", nullptr},
@@ -307,8 +314,11 @@ Snapshot Session::evaluate(const std::vector<std::string>& steps, bool certify, 
       if (!is_step || !made.errors.emplace(id, message_of(error)).second) throw;
     }
   }
-  if (certify) keep_certified(*made.plan, *made.evaluation);
   made.measurements = measurements_of(*made.plan, *made.evaluation, made.errors);
+  if (certify)
+    keep_certified(*made.plan, *made.evaluation, made.measurements);
+  else
+    put_certified(*made.plan, made.measurements);
   made.bone_lows = bone_lows_of(*made.evaluation);
   const std::lock_guard lock(mutex_);
   // Certificates of an earlier state of the plan do not belong to the present one.
@@ -332,7 +342,18 @@ std::map<std::string, double> Session::bone_lows_of(const Evaluation& evaluation
   return lows;
 }
 
-void Session::keep_certified(const Plan& plan, const Evaluation& evaluation) {
+void Session::put_certified(const Plan& plan, Json& measurements) const {
+  const std::lock_guard lock(mutex_);
+  if (certified_.empty() || measurements.empty()) return;
+  const std::map<std::string, std::string> keys = keys_of(plan);
+  for (Json& measurement : measurements) {
+    const auto id = measurement.at("id").get<std::string>();
+    const auto known = certified_.find(id);
+    if (known != certified_.end() && known->second.key == keys.at(id)) measurement = known->second.said;
+  }
+}
+
+void Session::keep_certified(const Plan& plan, const Evaluation& evaluation, const Json& measurements) {
   Json measures = Json::array();
   for (const Object& object : evaluation.objects)
     if (!object.is_tool && !object.voxel.octree.is_empty())
@@ -350,6 +371,10 @@ void Session::keep_certified(const Plan& plan, const Evaluation& evaluation) {
   }
   for (const Json& measured : measurements_json(measuring, evaluation))
     for (const char* size : {"volume", "area"}) found[measured.at("object")].said[size] = measured.at(size);
+  for (const Json& measurement : measurements) {
+    const auto id = measurement.at("id").get<std::string>();
+    if (!found.contains(id) && keys.contains(id)) found[id] = {keys.at(id), measurement};
+  }
   const std::lock_guard lock(mutex_);
   for (auto& [id, said] : found) certified_[id] = std::move(said);
 }

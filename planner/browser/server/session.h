@@ -112,8 +112,10 @@ class Session {
   /// bone_low() of each scan that was read, computed again where the scan was read anew. Calls wait for each
   /// other; the session's own lock is free meanwhile.
   std::map<std::string, double> bone_lows_of(const Evaluation& evaluation);
-  /// The certificates and sizes of what was evaluated in both kernels, by the keys of the steps.
-  void keep_certified(const Plan& plan, const Evaluation& evaluation);
+  /// Keeps the certificates, sizes and measurements of what was evaluated in both kernels, by the keys of the steps.
+  void keep_certified(const Plan& plan, const Evaluation& evaluation, const Json& measurements);
+  /// Replaces measurements by those of the same steps that were evaluated in both kernels.
+  void put_certified(const Plan& plan, Json& measurements) const;
 
   std::filesystem::path working_folder_;
   mutable std::timed_mutex mutex_;  ///< protects all members below
@@ -123,7 +125,7 @@ class Session {
   /// The key of a step's answer, and its certified results.
   struct Certified {
     std::string key;
-    Json said;  ///< "certificate", "volume", "area", "necks"
+    Json said;  ///< of an object "certificate", "necks", "volume", "area"; of another step its measurement
   };
   std::map<std::string, Certified> certified_;
 

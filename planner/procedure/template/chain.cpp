@@ -101,6 +101,16 @@ glm::dvec3 carried_mm(glm::dvec3 p_mm, const Plan& plan, const Evaluation& evalu
   return p_mm;
 }
 
+std::vector<brep::Landmark> carried(const std::vector<NamedPoint>& landmarks, const Plan& plan,
+                                    const Evaluation& evaluated) {
+  std::set<std::string> in_outcome;
+  if (const std::optional<std::string> outcome = outcome_of(plan)) in_outcome = needed_for(plan, {*outcome});
+  std::vector<brep::Landmark> now;
+  for (const NamedPoint& landmark : landmarks)
+    now.push_back({landmark.name, carried_mm(landmark.p_mm, plan, evaluated, in_outcome)});
+  return now;
+}
+
 /// Adds landmarks to the plan's step that names landmarks, or adds such a step.
 void add_landmarks(const std::vector<brep::Landmark>& landmarks, const Plan& plan, Json& whole) {
   Json added = Json::array();
@@ -276,6 +286,10 @@ bool is_chained_step_of(const Procedure& procedure, const std::string& id) {
   return name_before_chaining(procedure, id).has_value();
 }
 
+std::vector<brep::Landmark> carried_landmarks(const Plan& plan, const Evaluation& evaluated) {
+  return carried(plan.landmarks, plan, evaluated);
+}
+
 Chained chained(const Plan& plan, const Evaluation& evaluated, const Procedure& procedure,
                 const ProcedureInput& input) {
   const std::optional<std::string> outcome = outcome_of(plan);
@@ -290,17 +304,14 @@ Chained chained(const Plan& plan, const Evaluation& evaluated, const Procedure& 
   add_scans(procedure, input, result.plan);
   const Plan placed = parse_plan(result.plan.dump(), plan.folder);
 
-  std::vector<brep::Landmark> now;
+  const std::vector<brep::Landmark> now = carried(placed.landmarks, plan, evaluated);
   std::map<std::string, glm::dvec3> places;
-  const std::set<std::string> in_outcome = needed_for(plan, {*outcome});
-  for (const NamedPoint& landmark : placed.landmarks) {
-    const glm::dvec3 p_mm = carried_mm(landmark.p_mm, plan, evaluated, in_outcome);
-    now.push_back({landmark.name, p_mm});
-    places[landmark.name] = p_mm;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    places[now[i].name] = now[i].p_mm;
     const bool is_asked =
         std::any_of(procedure.landmarks.begin(), procedure.landmarks.end(),
-                    [&](const ProcedureLandmark& each) { return each.name == landmark.name; });
-    if (is_asked && p_mm != landmark.p_mm) result.carried.push_back(landmark.name);
+                    [&](const ProcedureLandmark& each) { return each.name == now[i].name; });
+    if (is_asked && now[i].p_mm != placed.landmarks[i].p_mm) result.carried.push_back(now[i].name);
   }
 
   std::set<std::string> taken;

@@ -24,6 +24,9 @@ std::optional<std::string> name_before_chaining(const Procedure& procedure, cons
 /// Whether chained() named this step for the procedure, with or without its options.
 bool is_chained_step_of(const Procedure& procedure, const std::string& id);
 
+/// A plan's landmarks after the motions from which its outcome is made, as chained() places them.
+std::vector<brep::Landmark> carried_landmarks(const Plan& plan, const Evaluation& evaluated);
+
 struct Chained {
   nlohmann::ordered_json plan;       ///< JSON, to be parsed in the folder of the plan before
   std::vector<std::string> made;     ///< ids of the added steps

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Recursive descent: sum = product {+- product}, product = factor {*/ factor}, factor = [-] (number | name |
-// call | sum in parentheses).
+// call | sum in parentheses). Values are sums of terms; with all names known they are constants.
 #include "planner/procedure/template/formula.h"
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include <cmath>
 #include <glm/trigonometric.hpp>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "planner/operation/table/nearest_name.h"
@@ -19,14 +20,69 @@ namespace {
 /// Largest depth of nested parentheses; formulas are single lines written by people.
 constexpr int deepest = 64;
 
+using Function = double (*)(const std::vector<double>& of);
+/// None if there is no such function.
+Function function_of(const std::string& name, std::size_t argument_count) {
+  using Of = const std::vector<double>&;
+  if (argument_count > 1 && name == "min")
+    return [](Of of) { return *std::min_element(of.begin(), of.end()); };
+  if (argument_count > 1 && name == "max")
+    return [](Of of) { return *std::max_element(of.begin(), of.end()); };
+  if (argument_count == 2 && name == "hypot") return [](Of of) { return std::hypot(of[0], of[1]); };
+  if (argument_count == 1 && name == "abs") return [](Of of) { return std::abs(of[0]); };
+  if (argument_count == 1 && name == "asin_deg") return [](Of of) { return glm::degrees(std::asin(of[0])); };
+  return nullptr;
+}
+
+Sum added(Sum a, const Sum& b, double factor) {
+  a.constant += factor * b.constant;
+  for (const auto& [name, by] : b.terms) {
+    double& together = a.terms[name];
+    together += factor * by;
+    if (together == 0.0) a.terms.erase(name);
+  }
+  return a;
+}
+
+std::string text_of(double number) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
+}
+std::string text_of(const Sum& sum) {
+  std::string text = text_of(sum.constant);
+  for (const auto& [name, by] : sum.terms) text += " + " + text_of(by) + " * " + name;
+  return text;
+}
+Sum term(const std::string& name) {
+  return {{{name, 1.0}}, 0.0};
+}
+
+Sum multiplied(const Sum& a, const Sum& b) {
+  if (!a.terms.empty() && !b.terms.empty()) return term("(" + text_of(a) + ") * (" + text_of(b) + ")");
+  const Sum& whole = a.terms.empty() ? b : a;
+  const double by = a.terms.empty() ? a.constant : b.constant;
+  Sum made{{}, whole.constant * by};
+  for (const auto& [name, factor] : whole.terms)
+    if (factor * by != 0.0) made.terms[name] = factor * by;
+  return made;
+}
+/// `by` is not zero.
+Sum divided(const Sum& a, const Sum& by) {
+  if (!by.terms.empty()) return term("(" + text_of(a) + ") / (" + text_of(by) + ")");
+  Sum made{{}, a.constant / by.constant};
+  for (const auto& [name, factor] : a.terms) made.terms[name] = factor / by.constant;
+  return made;
+}
+
 class Parser {
  public:
-  Parser(std::string_view text, const std::map<std::string, double>& names) : text_(text), names_(names) {}
+  /// Without names every name is a term.
+  Parser(std::string_view text, const std::map<std::string, double>* names) : text_(text), names_(names) {}
 
-  double whole() {
-    const double value = sum();
+  Sum whole() {
+    Sum value = sum();
     if (at_ != text_.size()) refuse("expected an operator or the end");
-    if (!std::isfinite(value)) refuse("is no finite number");
+    if (!std::isfinite(value.constant)) refuse("is no finite number");
     return value;
   }
 
@@ -49,42 +105,42 @@ class Parser {
     if (!take(symbol)) refuse(std::string("expected '") + symbol + "'");
   }
 
-  double sum() {
+  Sum sum() {
     if (++depth_ > deepest) refuse("too many parentheses");
-    double value = product();
+    Sum value = product();
     for (;;)
       if (take('+'))
-        value += product();
+        value = added(std::move(value), product(), 1.0);
       else if (take('-'))
-        value -= product();
+        value = added(std::move(value), product(), -1.0);
       else
         break;
     --depth_;
     return value;
   }
-  double product() {
-    double value = factor();
+  Sum product() {
+    Sum value = factor();
     for (;;) {
       if (take('*')) {
-        value *= factor();
+        value = multiplied(value, factor());
       } else if (take('/')) {
-        const double by = factor();
-        if (by == 0.0) refuse("divides by zero");
-        value /= by;
+        const Sum by = factor();
+        if (by.terms.empty() && by.constant == 0.0) refuse("divides by zero");
+        value = divided(value, by);
       } else {
         return value;
       }
     }
   }
-  double factor() {
+  Sum factor() {
     bool is_negative = false;
     while (take('-')) is_negative = !is_negative;
-    const double value = operand();
-    return is_negative ? -value : value;
+    Sum value = operand();
+    return is_negative ? multiplied(value, {{}, -1.0}) : value;
   }
-  double operand() {
+  Sum operand() {
     if (take('(')) {
-      const double value = sum();
+      Sum value = sum();
       need(')');
       return value;
     }
@@ -94,47 +150,53 @@ class Parser {
     if (std::isalpha(symbol) || symbol == '_') return named();
     refuse("expected a number, a name or '('");
   }
-  double number() {
+  Sum number() {
     double value = 0.0;
     const char* begin = text_.data() + at_;
     const auto read = std::from_chars(begin, text_.data() + text_.size(), value);
     if (read.ec != std::errc()) refuse("is no number");
     at_ += static_cast<std::size_t>(read.ptr - begin);
     skip_blanks();
-    return value;
+    return {{}, value};
   }
-  double named() {
+  Sum named() {
     const std::size_t begin = at_;
     const auto is_part = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '.'; };
     while (at_ < text_.size() && is_part(static_cast<unsigned char>(text_[at_]))) ++at_;
     const std::string name(text_.substr(begin, at_ - begin));
     if (take('(')) return call(name, begin);
-    const auto found = names_.find(name);
-    if (found != names_.end()) return found->second;
+    if (names_ == nullptr) return term(name);
+    const auto found = names_->find(name);
+    if (found != names_->end()) return {{}, found->second};
     at_ = begin;
     std::vector<std::string> known;
-    for (const auto& [each, unused] : names_) known.push_back(each);
+    for (const auto& [each, unused] : *names_) known.push_back(each);
     refuse("nothing is called '" + name + "'" + suggestion(name, known));
   }
-  double call(const std::string& name, std::size_t begin) {
-    std::vector<double> of{sum()};
-    while (take(',')) of.push_back(sum());
+  Sum call(const std::string& name, std::size_t begin) {
+    std::vector<Sum> arguments{sum()};
+    while (take(',')) arguments.push_back(sum());
     need(')');
-    if (of.size() > 1 && name == "min") return *std::min_element(of.begin(), of.end());
-    if (of.size() > 1 && name == "max") return *std::max_element(of.begin(), of.end());
-    if (of.size() == 2 && name == "hypot") return std::hypot(of[0], of[1]);
-    if (of.size() == 1 && name == "abs") return std::abs(of[0]);
-    if (of.size() == 1 && name == "asin_deg") {
-      if (std::abs(of[0]) > 1.0) refuse("asin_deg needs a number from -1 to 1");
-      return glm::degrees(std::asin(of[0]));
+    const Function function = function_of(name, arguments.size());
+    if (function == nullptr) {
+      at_ = begin;
+      refuse("there is no function '" + name + "' of " + std::to_string(arguments.size()) +
+             ": use min, max, hypot (of two), abs or asin_deg (of one)");
     }
-    at_ = begin;
-    refuse("there is no function '" + name + "' of " + std::to_string(of.size()) +
-           ": use min, max, hypot (of two), abs or asin_deg (of one)");
+    std::vector<double> constants;
+    std::string text = name + "(";
+    for (const Sum& argument : arguments) {
+      text += text_of(argument) + ", ";
+      if (argument.terms.empty()) constants.push_back(argument.constant);
+    }
+    if (constants.size() < arguments.size()) return term(text + ")");
+    const double value = function(constants);
+    if (name == "asin_deg" && std::isnan(value)) refuse("asin_deg needs a number from -1 to 1");
+    return {{}, value};
   }
 
   std::string_view text_;
-  const std::map<std::string, double>& names_;
+  const std::map<std::string, double>* names_;
   std::size_t at_ = 0;
   int depth_ = 0;
 };
@@ -142,7 +204,11 @@ class Parser {
 }  // namespace
 
 double value_of(std::string_view formula, const std::map<std::string, double>& names) {
-  return Parser(formula, names).whole();
+  return Parser(formula, &names).whole().constant;
+}
+
+Sum sum_of(std::string_view formula) {
+  return Parser(formula, nullptr).whole();
 }
 
 }  // namespace octotomy::planner

@@ -24,9 +24,8 @@ namespace {
 
 using Values = std::map<std::string, double>;
 
-/// Rounds coordinates to a tenth of a micrometre, so that a plan is easy to read.
 double rounded(double value) {
-  return std::round(value * 1e4) / 1e4 + 0.0;
+  return std::round(value * roundings_per_unit) / roundings_per_unit + 0.0;
 }
 
 /// The value with all formulas evaluated: "=" yields a number, "=?" whether it differs from 0, {"head_mm": [x, y, z]}
@@ -292,17 +291,21 @@ std::vector<std::string> procedures() {
   return names;
 }
 
+std::map<std::string, double> coordinates_of(const std::vector<brep::Landmark>& landmarks,
+                                             const glm::dmat3& lps_from_head) {
+  std::map<std::string, double> coordinates;
+  for (const brep::Landmark& landmark : landmarks) {
+    const glm::dvec3 p = glm::transpose(lps_from_head) * landmark.p_mm;
+    for (int axis = 0; axis < 3; ++axis) coordinates[landmark.name + "." + "xyz"[axis]] = p[axis];
+  }
+  return coordinates;
+}
+
 Json steps_of(const Procedure& procedure, const std::vector<brep::Landmark>& landmarks,
               const std::map<std::string, double>& values, const glm::dmat3& lps_from_head) {
   need_landmarks(procedure, landmarks);
   Values names = values_of(procedure, values);
-  const glm::dmat3 head_from_lps = glm::transpose(lps_from_head);
-  for (const brep::Landmark& landmark : landmarks) {
-    const glm::dvec3 p = head_from_lps * landmark.p_mm;
-    names[landmark.name + ".x"] = p.x;
-    names[landmark.name + ".y"] = p.y;
-    names[landmark.name + ".z"] = p.z;
-  }
+  names.merge(coordinates_of(landmarks, lps_from_head));
   Json steps = Json::array();
   for (const Json& step : procedure.steps) try {
       steps.push_back(answered(step, names, lps_from_head));

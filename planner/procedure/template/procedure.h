@@ -55,6 +55,9 @@ struct Procedure {
 /// The largest number of values of a procedure, and of each of its options.
 inline constexpr std::size_t most_values = 12;
 
+/// Numbers that formulas yield are rounded to this share of a unit, so that a plan is easy to read: a tenth of a micrometre.
+inline constexpr double roundings_per_unit = 1e4;
+
 /// Reads a procedure's JSON. Throws std::runtime_error with the position in it.
 Procedure parse_procedure(const std::string& json);
 /// A procedure of the program by its name, or one in a file that ends in .json. Throws std::runtime_error,
@@ -89,6 +92,10 @@ struct ProcedureInput {
 /// out of its range, or a formula or the resulting plan is refused, for example because landmarks of left and
 /// right are interchanged.
 nlohmann::ordered_json plan_of(const Procedure& procedure, const ProcedureInput& input);
+
+/// The names that formulas have for landmarks' places in LPS, "ans.x", with their coordinates along the head's directions.
+std::map<std::string, double> coordinates_of(const std::vector<brep::Landmark>& landmarks,
+                                             const glm::dmat3& lps_from_head);
 
 /// The procedure's own steps with evaluated formulas. `landmarks` are in LPS; `lps_from_head` is the head's
 /// orientation. Throws as plan_of() for landmarks, values and formulas.

@@ -12,6 +12,9 @@ interface Entry {
   size?: number;
 }
 
+/// Files that are no image of a series: whole scans, objects and meshes.
+const whole_files = /\.(nii|nii\.gz|nrrd|nhdr|mha|mhd|raw|octree|stl|ply|obj|off|vtp|vtk|glb)$/i;
+
 /// The folder picker. The server lists only folders that were opened with it. The choice is opened, or passed
 /// to `take` if that is given.
 export function open_picker(
@@ -36,9 +39,14 @@ export function open_picker(
            folders.map(
                (one) =>
                    button(one, `Folder ${one}`, () => void show(one), {class: one === folder ? "on" : ""}))),
-        folders.includes(folder) ? null : el("p", {class: "path"}, folder),
+        el("div", {class: "row"}, folders.includes(folder) ? null : el("p", {class: "path"}, folder),
+           entries.some((entry) => entry.kind === "file" && !whole_files.test(entry.name)) ?
+               button(
+                   "Open this folder as scan", "Reads all images of the folder as a DICOM series",
+                   () => choose(folder), {class: "small"}) :
+               null),
         el("div", {class: "files", role: "list"},
-           folders.some((one) => folder !== one && folder.startsWith(one)) ?
+           folders.some((one) => folder.startsWith(`${one.replace(/\/$/, "")}/`)) ?
                row("folder", "..", "", () => void show(parent)) :
                null,
            entries.map(
@@ -126,7 +134,10 @@ interface Given {
 
 /// Takes files and folders that are dropped anywhere on the page.
 export function take_drops(): void {
+  // Steps of the plan are dragged, too.
+  const has_files = (event: DragEvent): boolean => event.dataTransfer?.types.includes("Files") ?? false;
   addEventListener("dragover", (event) => {
+    if (!has_files(event)) return;
     event.preventDefault();
     document.body.classList.add("dropping");
   });
@@ -134,6 +145,7 @@ export function take_drops(): void {
     if (!event.relatedTarget) document.body.classList.remove("dropping");
   });
   addEventListener("drop", (event) => {
+    if (!has_files(event)) return;
     event.preventDefault();
     document.body.classList.remove("dropping");
     // Both lists are empty once the event has ended.

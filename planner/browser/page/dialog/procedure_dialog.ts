@@ -12,22 +12,41 @@ import {PlanState, ProcedureSays, ProcedureValue} from "../protocol";
 import {on_leaving_plan, set, state} from "../state";
 import {Vec3} from "../base/vector";
 
-const values: {[name: string]: number} = {};
-const ticks = new Map<string, boolean>();  // "fibula_flap.guides"; without one the plan's own steps decide
+// What a person chose in the forms since the procedure was planned: values and ticks, by "fibula_flap.start_mm". Else the
+// plan's own steps decide.
+const typed = new Map<string, number>();
+const ticks = new Map<string, boolean>();
+// What was planned last. It stands in the form again where the planning was undone.
+const planned = {typed: new Map<string, number>(), ticks: new Map<string, boolean>()};
 let pending_procedure: string|null = null;
 on_leaving_plan(() => {
   pending_procedure = null;
   // Values such as a threshold or an advancement belong to one patient.
-  for (const name of Object.keys(values)) delete values[name];
-  ticks.clear();
+  for (const kept of [typed, ticks, planned.typed, planned.ticks]) kept.clear();
 });
+
+/// What the plan states of a procedure: the object on which it acts, after an earlier procedure, its options and its values.
+interface Planned {
+  outcome: string|null;
+  is_planned: boolean;  // the plan has the procedure's steps
+  with: string[];
+  values: {[name: string]: {value: number; is_agreed: boolean}};
+}
+
+/// Moves what was chosen in a procedure's form.
+function take_over<T>(from: Map<string, T>, to: Map<string, T>, procedure: string): void {
+  for (const [name, chosen] of [...from]) {
+    if (!name.startsWith(`${procedure}.`)) continue;
+    to.set(name, chosen);
+    from.delete(name);
+  }
+}
 
 /// Shows a procedure's landmarks and values, and adds its steps to the plan.
 export function open_procedure(name?: string): void {
   const dialog = open_dialog("Procedure from landmarks", "procedure");
   const show = async(chosen: ProcedureSays|undefined): Promise<void> => {
-    // The server computes which object the plan's procedures end with, and which options the plan has.
-    const said = chosen ? await try_to<{outcome: string | null, with: string[]}>("acts_on", {name: chosen.name}) : null;
+    const said = chosen ? await try_to<Planned>("acts_on", {name: chosen.name}) : null;
     dialog.refill(
       el("div", {class: "presets"},
          (state.hello?.procedures ??
@@ -35,19 +54,20 @@ export function open_procedure(name?: string): void {
                     class: one === chosen ? "on" : ""
                   }))),
       chosen ?
-          procedure_form(dialog, chosen, said?.outcome ?? null, said?.with ?? []) :
+          procedure_form(dialog, chosen, said ?? {outcome: null, is_planned: false, with: [], values: {}}) :
           el("p", {class: "says"},
              "Each procedure is placed by named landmarks and a few values. What it writes are ordinary steps that you can change."));
   };
   void show(state.hello?.procedures.find((one) => one.name === name));
 }
 
-/// `before` is the object with which an earlier procedure of the plan ends; this one acts on it. The plan has the steps
-/// of `present` options.
-function procedure_form(dialog: Dialog, chosen: ProcedureSays, before: string|null, present: string[]): Child {
+function procedure_form(dialog: Dialog, chosen: ProcedureSays, said: Planned): Child {
   const placed = new Map((state.plan?.landmarks ?? []).map((mark) => [mark.name, mark.point]));
-  const is_chosen = (option: string): boolean => ticks.get(`${chosen.name}.${option}`) ?? present.includes(option);
-  const value_of = (one: ProcedureValue): number => values[`${chosen.name}.${one.name}`] ?? one.default;
+  const is_chosen = (option: string): boolean => ticks.get(`${chosen.name}.${option}`) ??
+      (said.is_planned ? said.with.includes(option) : planned.ticks.get(`${chosen.name}.${option}`) ?? false);
+  const value_of = (one: ProcedureValue): number => typed.get(`${chosen.name}.${one.name}`) ??
+      said.values[one.name]?.value ?? planned.typed.get(`${chosen.name}.${one.name}`) ?? one.default;
+  const in_doubt = Object.entries(said.values).flatMap(([name, {is_agreed}]) => (is_agreed ? [] : [label_of(name)]));
   const value_fields = (list: ProcedureValue[]): HTMLElement =>
       el("div", {class: "grid-2"},
          list.map(
@@ -61,7 +81,7 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays, before: string|nu
                    name: one.name,
                    value: value_of(one),
                    onchange: (event: Event) => {
-                     values[`${chosen.name}.${one.name}`] = Number((event.target as HTMLInputElement).value);
+                     typed.set(`${chosen.name}.${one.name}`, Number((event.target as HTMLInputElement).value));
                    }
                  }),
                  el("i", {}, one.unit))));
@@ -98,13 +118,15 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays, before: string|nu
         Object.fromEntries([chosen, ...options].flatMap((part) => part.values).map((one) => [one.name, value_of(one)]));
     const shown = objects_of_plan().flatMap((object) => (object.id ? [object.id] : []));
     dialog.close();
-    const planned: (PlanState&{made?: string[]})|null =
+    const made_plan: (PlanState&{made?: string[]})|null =
         await change_plan(
             "procedure",
             {name: chosen.name, landmarks, values: set_values, with: options.map((one) => one.name)});
-    if (!planned) return;
+    if (!made_plan) return;
+    take_over(typed, planned.typed, chosen.name);
+    take_over(ticks, planned.ticks, chosen.name);
     // The new pieces replace the objects shown before, until the procedure is undone.
-    const made = planned.made ?? [];
+    const made = made_plan.made ?? [];
     const behind = made[made.length - 1];
     const hidden = shown.filter((id) => behind && !made.includes(id)).map((id) => {
       const {visible: _visible, ...look} = state.looks[id] ?? {};
@@ -115,8 +137,14 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays, before: string|nu
   };
   return [
     el("p", {class: "says"}, chosen.says),
-    before ? el("p", {class: "says"},
-                `It acts on ${before}, what the plan has planned before. Place its landmarks where the scan shows them, as in slices: those that lie on a moved piece go along with it. If the plan holds this procedure already, its steps are replaced.`) :
+    said.outcome ? el("p", {class: "says"},
+                `It acts on ${said.outcome}, what the plan has planned before. Place its landmarks where the scan shows them, as in slices: those that lie on a moved piece go along with it.`) :
+             null,
+    said.is_planned ? el("p", {class: "says", "data-key": "is-planned"},
+                "The plan has this procedure. The form shows the values of its steps; Plan it replaces these steps, also where they were changed by hand.") :
+             null,
+    in_doubt.length ? el("p", {class: "sentence warn", role: "alert", "data-key": "in-doubt"},
+                `Check ${in_doubt.join(", ")}: steps or landmarks were changed since they were planned, and do not state one value.`) :
              null,
     el("ul", {class: "marks"},
        chosen.landmarks.map(

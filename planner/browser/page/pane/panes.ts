@@ -104,11 +104,12 @@ export class Pane {
   }
   private is_dragging = false;
 
-  /// Adapts the canvas to its size in the page.
+  /// Adapts the canvas to its size in the page. A pane that comes into sight again requests what it wanted meanwhile.
   resized(): void {
     const width = Math.round(this.canvas.clientWidth * this.ratio);
     const height = Math.round(this.canvas.clientHeight * this.ratio);
-    if (!width || !height || (width === this.canvas.width && height === this.canvas.height)) return;
+    if (!width || !height) return;
+    if (width === this.canvas.width && height === this.canvas.height) return this.pump();
     // A pane that changes its size keeps showing the same part.
     const before = this.is_sized ? Math.min(this.canvas.width, this.canvas.height) : Math.min(width, height);
     this.is_sized = true;

@@ -55,7 +55,7 @@ export function make_inspector(host: HTMLElement): void {
 function inspector(): Child {
   const draft = state.draft_step;
   if (draft)
-    return el(
+    return [tool_card(), el(
         "section", {class: "card"}, el("h3", {}, `New step: ${draft.do.replace(/_/g, " ")}`),
         el("label", {class: "field"}, el("span", {}, "name"), el("input", {
              value: draft.id,
@@ -71,7 +71,7 @@ function inspector(): Child {
                  if (ok && state.draft_step === draft) set({draft_step: null});
                }),
                {class: "primary"}),
-           button("Cancel", "Adds nothing", () => set({draft_step: null}))));
+           button("Cancel", "Adds nothing", () => set({draft_step: null}))))];
   const step = selected_step();
   const motion =
       step?.do === "move" || state.tool === "move" || (step && is_piece(step)) ? movement_fields() : null;

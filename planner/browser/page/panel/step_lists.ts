@@ -3,9 +3,9 @@
 import {change_history, try_to} from "../actions";
 import {motion_words} from "../base/anatomical";
 import {badge} from "./certificate_badge";
-import {copy_command, name_version, new_branch, remove_step} from "../commands";
+import {copy_command, name_version, new_branch, put_step_at, remove_step} from "../commands";
 import {look_of, object_ids} from "../drawn_objects";
-import {makes_body, makes_shape} from "../operations";
+import {makes_body, makes_scan, makes_shape} from "../operations";
 import {button, Child, el, fill, fill_tabs} from "../base/html";
 import {icon} from "../base/icons";
 import {show_scan} from "../pane/pane_grid";
@@ -143,6 +143,15 @@ export function step_words(step: Step): string {
   }
 }
 
+// The kind of what a drag carries between rows.
+const dragged_step = "text/x-octotomy-step";
+
+/// Why a step has no result. That of a scan is told beside the measurements.
+function error_of(step: Step): string|null|undefined {
+  if (!makes_scan(step)) return object_of(step.id)?.error;
+  return state.plan?.measurements?.find((one) => one.id === step.id && one.value === null)?.sentence;
+}
+
 function step_rows(): Child {
   return [
     steps().map((step, index) => {
@@ -150,7 +159,16 @@ function step_rows(): Child {
       return el(
           "div", {
             class: `item step${state.selected === step.id ? " selected" : ""}`,
-            onclick: () => set({selected: step.id, right_tab: "inspector"})
+            draggable: true,
+            onclick: () => set({selected: step.id, right_tab: "inspector"}),
+            ondragstart: (event: DragEvent) => event.dataTransfer?.setData(dragged_step, step.id),
+            ondragover: (event: DragEvent) => {
+              if (event.dataTransfer?.types.includes(dragged_step)) event.preventDefault();
+            },
+            ondrop: (event: DragEvent) => {
+              const dropped = event.dataTransfer?.getData(dragged_step);
+              if (dropped) put_step_at(dropped, index);
+            }
           },
           el("div", {class: "item-line"},
              makes_shape(step) ? el("span", {class: "chip", style: `background:${look_of(step.id).colour}`}) :
@@ -161,7 +179,7 @@ function step_rows(): Child {
              makes_body(step) ? badge(step.id, object?.certificate, object?.volume) : null,
              makes_shape(step) ? eye(step.id) : null, step_menu(step)),
           el("p", {class: "words"}, el("b", {}, step.do.replace(/_/g, " ")), " ", step_words(step)),
-          object?.error ? el("p", {class: "error"}, object.error) : null);
+          error_of(step) ? el("p", {class: "error"}, error_of(step)) : null);
     }),
     steps().length ? null : el("p", {class: "says"}, "No step yet."),
   ];
@@ -186,6 +204,12 @@ function step_menu(step: Step): Child {
          button(
              "Copy as Python", "Copies a line of Python that adds this step",
              () => void copy_command(step, "python"), {role: "menuitem"}),
+         button(
+             "Put earlier", "Puts the step one place earlier. Dragging its row does it, too",
+             () => put_step_at(step.id, steps().indexOf(step) - 1), {role: "menuitem"}),
+         button(
+             "Put later", "Puts the step one place later. Dragging its row does it, too",
+             () => put_step_at(step.id, steps().indexOf(step) + 1), {role: "menuitem"}),
          button(
              "Remove", "Removes the step from the plan; undo restores it", () => remove_step(step),
              {role: "menuitem", class: "danger"}));

@@ -58,6 +58,45 @@ async function violations(one, screen) {
   return found.map((one_of) => `${screen}: ${one_of.id}: ${one_of.help}: ${one_of.nodes.slice(0, 4).map((node) => `${node.target.join(' ')} ${node.any[0]?.message ?? ''}`).join('; ')}`);
 }
 
+/// What reaches out of the window and cannot be scrolled into it.
+const beside = (screen) => [...document.querySelectorAll('button, select, input, h1, h2, p, table')].flatMap((each) => {
+  const box = each.getBoundingClientRect();
+  if (!box.width || !each.checkVisibility({ visibilityProperty: true }) || (box.left >= -1 && box.right <= innerWidth + 1)) return [];
+  for (let around = each.parentElement; around && around !== document.body; around = around.parentElement)
+    if (['auto', 'scroll'].includes(getComputedStyle(around).overflowX) && around.scrollWidth > around.clientWidth) return [];
+  return each.matches('.unseen, .unseen *') ? [] : [`${screen}: ${each.tagName} ${each.className} "${each.textContent.trim().slice(0, 30)}" from ${box.left} to ${box.right}`];
+});
+
+test('nothing reaches out of a window of any width', async () => {
+  const server = await start_server(folder);
+  try {
+    for (const [width, height] of [[390, 844], [820, 1180], [1024, 768], [1440, 900]]) {
+      const one = await PlannerWindow.open(server.url, { size: { width, height } });
+      const found = [];
+      await one.page.locator('.start .offers').waitFor();
+      found.push(...(await one.page.evaluate(beside, `start at ${width}`)));
+      await one.page.locator('.offer').nth(2).click();
+      await one.page.locator('.picker .file', { hasText: 'jaw.plan.json' }).click();
+      await one.page.locator('.plan-name', { hasText: 'jaw' }).waitFor({ state: 'attached' });
+      await one.page.waitForTimeout(300);
+      const go_on = one.page.getByRole('button', { name: 'Continue' });
+      if (await go_on.isVisible()) await go_on.click();
+      await one.press('Escape');
+      await one.at_rest();
+      for (const name of ['steps', 'window', 'numbers', 'Procedure from landmarks', 'help', 'export']) {
+        await screens[name](one);
+        await one.page.waitForTimeout(200);
+        found.push(...(await one.page.evaluate(beside, `${name} at ${width}`)));
+        for (let i = 0; i < 2; ++i) await one.press('Escape');
+      }
+      await one.close();
+      assert.deepEqual(found, []);
+    }
+  } finally {
+    server.stop();
+  }
+});
+
 for (const theme of ['light', 'dark'])
   test(`no screen has a violation, ${theme}`, async () => {
     // A new server begins with the start page.

@@ -99,6 +99,23 @@ for (const { name, button, values, chin, outcome } of cases)
     const without_marks = (steps) => steps.filter((step) => step.do !== 'landmarks');
     assert.deepEqual(without_marks(plan().steps), without_marks(JSON.parse(fs.readFileSync(both, 'utf8')).steps));
 
+    // What was typed stands in the plan, not in the page: planned again after a reload it is the same.
+    const steps_before = plan().steps;
+    await one.page.reload();
+    for (const [again, chosen] of [[/^Sliding genioplasty/, chin], [button, values]]) {
+      await one.click(one.page.locator('.bar').getByRole('button', { name: 'Procedure' }));
+      await one.click(one.page.locator('dialog').getByRole('button', { name: again }).first());
+      await one.page.locator('dialog [data-key="is-planned"]').waitFor();
+      for (const [key, value] of Object.entries(chosen))
+        assert.equal(await one.page.locator(`dialog input[name="${key}"]`).inputValue(), String(value), key);
+      assert.equal(await one.page.locator('dialog [data-key="in-doubt"]').count(), 0);
+      if (again === button) break;
+      await one.click('Plan it');
+      await one.until(async () => (await one.page.locator('dialog').count()) === 0, 'planned again');
+      assert.deepEqual(plan().steps, steps_before);
+    }
+    await one.press('Escape');
+
     // Certified in the page; no object is contradicted.
     await one.press('Control+Enter');
     const badges = one.page.locator('.numbers .badge:not(.none)');

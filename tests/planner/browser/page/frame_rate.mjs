@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // How fast the panes follow a drag, in four panes of a window of 1200 x 900, browser and server on the same machine:
 //   OCTOTOMY_PROGRAM=build/release/octotomy node frame_rate.mjs SCAN
-// Prints the time to the page's first paint, in a browser just started and at best; then frames a second and the latency from
-// the request to the picture on the canvas, for a view that is turned and for a piece that is moved with its overlap.
+// Prints the time to the page's first paint, in a browser just started and at best; then frames a second, the latency from
+// the request to the picture on the canvas, and the program's processor time a frame, which depends less on what else the
+// machine does: for views that are turned, slices, a radiograph, a threshold, and a piece that is moved with its overlap.
 import fs from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
@@ -21,19 +22,37 @@ fs.writeFileSync(plan, JSON.stringify({
   ],
 }));
 
+const ticks_per_s = 100; // of /proc, on every Linux of today
+/// Seconds of processor time that the program took so far, all its threads together.
+function processor_s() {
+  const fields = fs.readFileSync(`/proc/${server.process.pid}/stat`, 'utf8').replace(/^.*\) /, '').split(' ');
+  return (Number(fields[11]) + Number(fields[12])) / ticks_per_s;
+}
+
+/// Prints how pictures follow a drag; those of one pane, or, where `pane` is null, of all.
 async function measured(one, what, pane, drag) {
   await one.at_rest();
   const first = await one.page.evaluate(() => window.pictures.length);
+  const spent_before_s = processor_s();
   const began = Date.now();
   await drag(began + drag_ms);
   const seconds = (Date.now() - began) / 1000;
-  const pictures = (await one.page.evaluate((from) => window.pictures.slice(from), first)).filter((each) => each.quality === 'moving' && Number(each.pane) === pane);
+  const spent_s = processor_s() - spent_before_s;
+  const moving = (await one.page.evaluate((from) => window.pictures.slice(from), first)).filter((each) => each.quality === 'moving');
+  const pictures = moving.filter((each) => pane === null || Number(each.pane) === pane);
   const latencies = pictures.map((each) => each.latency_ms).filter((each) => each !== null).sort((a, b) => a - b);
   const at = (share) => latencies[Math.min(latencies.length - 1, Math.floor(share * latencies.length))] ?? NaN;
-  const row = { what, frames_per_s: pictures.length / seconds, median_ms: at(0.5), p95_ms: at(0.95) };
-  console.log(`${what.padEnd(34)} ${row.frames_per_s.toFixed(1).padStart(6)} frames/s   median ${row.median_ms.toFixed(1)} ms   95th percentile ${row.p95_ms.toFixed(1)} ms`);
-  return row;
+  const spent_ms = (1000 * spent_s) / moving.length;
+  console.log(`${what.padEnd(34)} ${(pictures.length / seconds).toFixed(1).padStart(6)} frames/s   median ${at(0.5).toFixed(1)} ms   95th percentile ${at(0.95).toFixed(1)} ms   ${spent_ms.toFixed(1)} ms of processor a picture of ${moving.length}`);
 }
+
+/// Calls a function of the page once a frame of the browser, with the frame's number, until the time has come.
+const each_frame = (one, until, act, given) => one.page.evaluate(`(async () => {
+  for (let i = 0; Date.now() < ${until}; ++i) {
+    await new Promise(requestAnimationFrame);
+    (${act})(i, ${JSON.stringify(given)});
+  }
+})()`);
 
 /// Moves the pressed pointer in a circle about a place until the time has come, once a frame of the browser, as it gives a
 /// hand's movements to a page.
@@ -41,14 +60,10 @@ async function circle(one, pane, centre, radius, until) {
   const { mouse } = one.page;
   await mouse.move(centre.x, centre.y);
   await mouse.down();
-  await one.page.evaluate(async ([index, x, y, r, end]) => {
-    const canvas = document.querySelectorAll('.pane canvas')[index];
-    for (let i = 0; Date.now() < end; ++i) {
-      await new Promise(requestAnimationFrame);
-      const at = { clientX: x + r * Math.cos(i * 0.07), clientY: y + r * Math.sin(i * 0.07) };
-      canvas.dispatchEvent(new PointerEvent('pointermove', { pointerId: 1, bubbles: true, buttons: 1, ...at }));
-    }
-  }, [pane, centre.x, centre.y, radius, until]);
+  await each_frame(one, until, (i, given) => {
+    const at = { clientX: given.x + given.radius * Math.cos(i * 0.07), clientY: given.y + given.radius * Math.sin(i * 0.07) };
+    document.querySelectorAll('.pane canvas')[given.pane].dispatchEvent(new PointerEvent('pointermove', { pointerId: 1, bubbles: true, buttons: 1, ...at }));
+  }, { pane, radius, x: centre.x, y: centre.y });
   await mouse.up();
 }
 
@@ -69,6 +84,21 @@ try {
   };
   await measured(one, 'a view turned', 3, async (until) => circle(one, 3, await middle(3), 90, until));
   await measured(one, 'anterior view turned', 0, async (until) => circle(one, 0, await middle(0), 90, until));
+  const shading = one.page.locator('.pane').nth(0).locator('select').nth(1);
+  await shading.selectOption('radiograph');
+  await measured(one, 'a radiograph turned', 0, async (until) => circle(one, 0, await middle(0), 90, until));
+  await shading.selectOption('partial_volume');
+  await one.press('Shift+2');
+  await measured(one, 'slices by a cross-hair', null, async (until) => circle(one, 2, await middle(2), 60, until));
+  await one.press('Shift+1');
+  await one.press('w');
+  await one.page.locator('[data-key="low-range"]').waitFor();
+  await measured(one, 'a threshold dragged, four views', null, (until) => each_frame(one, until, (i, low) => {
+    const slider = document.querySelector('[data-key="low-range"]');
+    slider.value = String(low + 150 * Math.sin(i * 0.05));
+    slider.dispatchEvent(new Event('input', { bubbles: true }));
+  }, Number(process.env.BONE_LOW ?? 300)));
+  await one.page.getByRole('button', { name: 'Cancel', exact: true }).click();
   // A piece: a region about the middle of the left view, cut, and moved within its ring.
   const centre = (await one.setting(1)).centre_mm;
   const corners = [[-90, -50], [-20, -50], [-20, -15], [-90, -15]].map(([y, z]) => [centre[1] + y, centre[2] + z]);

@@ -81,6 +81,17 @@ test('many images that are dropped are one series', async () => {
   await one.click('Continue');
 });
 
+test('a folder of images is opened from within, too', async () => {
+  await start_page();
+  await one.click('Scan or plan');
+  const whole = one.page.getByRole('button', { name: 'Open this folder as scan' });
+  await one.click(one.page.locator('dialog .file', { hasText: 'uploads' }));
+  await one.click(one.page.locator('dialog .file', { hasText: 'ST0001' }).first());
+  await one.page.locator('dialog .file', { hasText: '..' }).waitFor();
+  await one.click(whole);
+  await one.until(async () => (await one.page.locator('.plan-name').innerText()).startsWith('ST0001'), 'the folder as a scan');
+});
+
 test('files that are no scan are refused with the reason', async () => {
   await start_page();
   await drop([['notes.txt', [65, 66]], ['more.txt', [67]]]);

@@ -255,7 +255,7 @@ export class PlannerWindow {
   /// Runs a command of the palette by its name.
   async command(name) {
     await this.press('Control+k');
-    await this.page.locator('.palette-field').fill(name);
+    await this.page.locator('dialog[open] .palette-field').fill(name);
     await this.press('Enter');
   }
   select(step) {

@@ -71,6 +71,7 @@ test('no value of a tool or a procedure goes into another plan', async () => {
   await one.click(one.page.locator('dialog').getByRole('button', { name: /^Le Fort I/ }).first());
   const forward = one.page.locator('dialog [name="forward_mm"]');
   const usual = await forward.inputValue();
+  assert.equal(await one.page.locator('dialog [name="bone_low"]').inputValue(), '662', "this plan's bone");
   await forward.fill('9');
   await forward.press('Tab');
   await one.press('Escape');
@@ -82,7 +83,74 @@ test('no value of a tool or a procedure goes into another plan', async () => {
   await one.click(one.page.locator('.bar').getByRole('button', { name: 'Procedure' }));
   await one.click(one.page.locator('dialog').getByRole('button', { name: /^Le Fort I/ }).first());
   assert.equal(await forward.inputValue(), usual);
+  assert.equal(await one.page.locator('dialog [name="bone_low"]').inputValue(), '300');
   await one.press('Escape');
+});
+
+test('a tool that is taken by its key shows its rows, whatever was in sight', async () => {
+  await one.tab('Numbers');
+  await one.press('w');
+  await one.page.locator('[data-key="low-range"]').waitFor();
+  await one.press('Escape');
+  await one.command('Add step: smooth');
+  await one.press('w');
+  await one.page.locator('[data-key="low-range"]').waitFor();
+  assert.ok(await one.page.locator('[data-key="draft-id"]').isVisible(), 'and the draft stays');
+  await one.press('Escape');
+  await one.click(one.page.locator('.inspector').getByRole('button', { name: 'Cancel', exact: true }));
+});
+
+test('why a scan cannot be made is said at its step, though nothing uses it yet', async () => {
+  await one.command('Add step: n4 bias field');
+  await one.click(one.page.locator('.inspector').getByRole('button', { name: 'Add step' }));
+  const error = one.page.locator('.lists .error');
+  await error.waitFor();
+  assert.match(await error.innerText(), /no magnetic field to correct/);
+  await one.press('Control+z');
+  await one.until(async () => (await error.count()) === 0, 'the step taken back');
+});
+
+test('an error of one plan is not shown over the next', async () => {
+  await one.command('Add step: combine');
+  await one.click(one.page.locator('.inspector').getByRole('button', { name: 'Add step' }));
+  await one.page.locator('.notice.error').waitFor();
+  await one.click(one.page.locator('.inspector').getByRole('button', { name: 'Cancel', exact: true }));
+  await open('other');
+  assert.equal(await one.page.locator('.notice.error').count(), 0);
+  await open('one');
+});
+
+test('pieces that only meet in an overlap stay in sight, also where they are joined first', async () => {
+  await open('other');
+  await one.click(one.page.locator('.bar').getByRole('button', { name: 'Procedure' }));
+  await one.click(one.page.locator('dialog').getByRole('button', { name: 'Le Fort I in two pieces' }));
+  await one.page.locator('dialog [name="up_mm"]').fill('3');
+  await one.page.locator('dialog [name="bone_low"]').fill('300');
+  await one.click('Plan it');
+  for (const object of ['rest', 'left_moved', 'right_moved', 'overlap']) await one.shows(0, object);
+  assert.deepEqual(newest(0).objects.filter((id) => ['skull', 'maxilla', 'planned', 'maxilla_moved'].includes(id)), []);
+  const { objects, colours } = newest(0).step;
+  assert.equal(colours[objects.indexOf('overlap')], '#e5484d');
+  await one.press('Control+z');
+  await open('one');
+});
+
+test('a pane that was out of sight shows what the plan became meanwhile', async () => {
+  await one.press('Shift+1');
+  await one.at_rest();
+  await one.click(one.page.locator('.pane').nth(1).getByRole('button', { name: /Enlarge this pane/ }));
+  await one.at_rest();
+  await one.press('w');
+  await one.type('low', 500);
+  await one.click(one.page.locator('[data-key="apply-window"]'));
+  await one.until(() => written().steps.find((step) => step.id === 'bone').low === 500, 'another threshold');
+  await one.at_rest();
+  const before = newest(0).id;
+  await one.press('m');
+  await one.at_rest();
+  assert.ok(newest(0).id > before, 'a picture of the plan as it is');
+  await one.press('Control+z');
+  await one.until(() => written().steps.find((step) => step.id === 'bone').low === 300, 'the threshold again');
 });
 
 test('settings of tools end with their plan', async () => {

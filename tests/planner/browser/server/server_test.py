@@ -441,17 +441,29 @@ class Session(Served):
         self.assertEqual(self.window.ask("acts_on", name="genioplasty")["outcome"], "planned")
         again = self.window.ask("acts_on", name="le_fort_i")
         self.assertIsNone(again["outcome"], "it replaces its own steps")
-        self.assertEqual(again["with"], [])
+        self.assertEqual((again["is_planned"], again["with"]), (True, []))
+        self.assertEqual(again["values"]["forward_mm"], {"value": 5, "is_agreed": True})
+        self.assertEqual(again["values"]["kerf_mm"], {"value": 1, "is_agreed": True})
+        moved = next(step for step in state["plan"]["steps"] if step["id"] == "maxilla_moved")
+        moved["by"]["forward_mm"] = 7.5
+        self.window.ask("edit", replace={"id": "maxilla_moved", "step": moved})
+        self.assertEqual(self.window.ask("acts_on", name="le_fort_i")["values"]["forward_mm"]["value"], 7.5)
+        self.assertFalse(self.window.ask("acts_on", name="genioplasty")["is_planned"])
         for forward_mm in (4, 6):  # the second time in place of the first
             state = self.window.ask("procedure", name="genioplasty", landmarks=chin,
-                                    values={"forward_mm": forward_mm, "bone_low": 300})
+                                    values={"forward_mm": forward_mm, "below_foramen_mm": 6, "bone_low": 300})
             steps = {step["id"]: step for step in state["plan"]["steps"]}
             self.assertEqual(len(steps), len(state["plan"]["steps"]))
             self.assertEqual(steps["genioplasty_chin"]["expression"], "planned & genioplasty_below_cut")
             self.assertEqual(steps["genioplasty_chin_moved"]["by"]["forward_mm"], forward_mm)
             self.assertIn("maxilla_moved", steps)
         self.assertTrue(all(entry["evaluated"] for entry in self.window.ask("evaluate")["objects"]))
-        self.assertEqual(self.window.ask("acts_on", name="genioplasty")["with"], [])
+        again = self.window.ask("acts_on", name="genioplasty")
+        self.assertEqual((again["is_planned"], again["with"]), (True, []))
+        values = {name: said["value"] for name, said in again["values"].items()}
+        self.assertEqual((values["forward_mm"], values["below_foramen_mm"], values["kerf_mm"]), (6, 6, 1))
+        self.assertNotIn("bone_low", values, "its bone is the planned skull")
+        self.assertTrue(all(said["is_agreed"] for said in again["values"].values()), again["values"])
         state = self.window.ask("procedure", name="genioplasty", landmarks=chin, values={"bone_low": 300}, **{"with": ["guides"]})
         self.assertIn("genioplasty_chin_guide", [step["id"] for step in state["plan"]["steps"]])
         self.assertEqual(self.window.ask("acts_on", name="genioplasty")["with"], ["guides"])
@@ -459,6 +471,20 @@ class Session(Served):
         file.write_text('{"secret": 1}')
         with self.assertRaisesRegex(RuntimeError, "there is no procedure"):
             self.window.ask("procedure", name=str(file), landmarks=marks)
+
+    def test_the_other_cheek_does_not_replace_the_first(self):
+        for side, x in (("left", 1), ("right", -1)):
+            marks = {f"lateral_rim_{side}": [51 * x, -66, 13], f"orbital_rim_{side}": [25 * x, -75, -7],
+                     f"buttress_{side}": [30 * x, -68, -28], f"zygoma_{side}": [60 * x, -42, -13],
+                     f"cheek_{side}": [47 * x, -64, -12], "incisor": [0, -85, -57.5], f"molar_{side}": [27 * x, -52, -57.5]}
+            said = next(one for one in self.window.ask("hello")["procedures"] if one["name"] == f"zygoma_{side}")
+            marks = {mark["name"]: marks[mark["name"]] for mark in said["landmarks"]}
+            state = self.window.ask("procedure", name=f"zygoma_{side}", landmarks=marks, values={"forward_mm": 3})
+        steps = [step["id"] for step in state["plan"]["steps"]]
+        self.assertIn("zygoma_moved", steps)
+        self.assertIn("zygoma_right_zygoma_moved", steps)
+        self.assertIsNone(self.window.ask("acts_on", name="zygoma_left")["outcome"])
+        self.assertEqual(self.window.ask("acts_on", name="zygoma_right")["outcome"], "planned")
 
     def test_a_broken_step_is_told_and_the_others_are_there(self):
         lost = {"id": "lost", "do": "window", "scan": "ct", "low": 30000}

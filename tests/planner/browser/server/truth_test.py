@@ -35,6 +35,25 @@ class Truth(server_test.Served):
                               preview={"object": "piece", "of": "piece", "move": {"by": {"forward_mm": 60}}, "against": []})
         self.assertIn("lie outside of the universe", " ".join(header["preview"]["findings"]))
 
+    def test_a_certified_measurement_stays_one_until_its_object_changes(self):
+        for step in (BOX, PIECE, {"id": "size", "do": "measure", "object": "piece"}):
+            self.window.ask("edit", add={"step": step}, what=step["id"])
+
+        def size(**how):
+            return next(each for each in self.window.ask("evaluate", **how)["measurements"] if each["id"] == "size")
+
+        steps = ["bone", "piece", "size"]
+        quick, certified = size(objects=steps), size(certify=True)
+        self.assertNotEqual(quick["value"], certified["value"], "voxels alone, and both kernels")
+        self.window.ask("edit", add={"step": {"id": "other", "do": "smooth", "object": "bone"}})
+        self.assertEqual(size(objects=steps), certified)
+        plan = self.window.ask("hello")["plan_state"]["plan"]
+        bone = {**next(step for step in plan["steps"] if step["id"] == "bone"), "low": 350}
+        self.window.ask("edit", replace={"id": "bone", "step": bone})
+        changed = size(objects=steps)
+        self.assertNotEqual(changed["value"], quick["value"])
+        self.assertNotEqual(changed, certified)
+
     def test_a_motion_widens_no_interval(self):
         self.plan_of({**MOVED, "by": {"forward_mm": 30}})
         made = {each["id"]: each for each in self.window.ask("evaluate", certify=True)["objects"]}

@@ -43,5 +43,24 @@ TEST(Formula, RefusalsSayWhereAndWhat) {
   EXPECT_NE(refusal(std::string(100000, '(').c_str()).find("too many parentheses"), std::string::npos);
 }
 
+TEST(SumOf, NamesAreTermsAndFactorsAreMultipliedOut) {
+  const Sum sum = sum_of("2 * (ans.x - kerf_mm / 4) - -ans.x + 3 * (1 + kerf_mm) - 5");
+  EXPECT_EQ(sum.terms, (std::map<std::string, double>{{"ans.x", 3.0}, {"kerf_mm", 2.5}}));
+  EXPECT_EQ(sum.constant, -2.0);
+  EXPECT_TRUE(sum_of("ans.x + 2 - ans.x").terms.empty());
+  EXPECT_EQ(sum_of("max(3, hypot(3, 4))").constant, 5.0);
+}
+
+TEST(SumOf, WhatIsNoSumIsOneTermWhichSameFormulasShare) {
+  const Sum far = sum_of("max(rim_1.x, rim_2.x) + (reach_mm + 1)"), near = sum_of("max(rim_1.x,rim_2.x) - 4");
+  EXPECT_EQ(far.terms.size(), 2u);
+  EXPECT_EQ(far.terms.at("reach_mm"), 1.0);
+  for (const auto& [name, factor] : near.terms) EXPECT_EQ(far.terms.at(name), factor) << name;
+  EXPECT_EQ(sum_of("a * b - a * b + a / b").terms.size(), 1u) << "the quotient";
+  EXPECT_NE(sum_of("max(a, b)").terms, sum_of("max(b, a)").terms);
+  EXPECT_THROW(sum_of("a / (1 - 1)"), std::runtime_error);
+  EXPECT_THROW(sum_of("sin(a)"), std::runtime_error);
+}
+
 }  // namespace
 }  // namespace octotomy::planner
