@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_answer = 16 << 20, most_reason = 1 << 16;
+constexpr std::size_t most_answer = 16 << 20, most_reason = 1 << 16, most_header_lines = 1 << 18;
 
 /// One request. Exceptions of the callbacks end it and are thrown again.
 class Request {
@@ -46,6 +46,8 @@ class Request {
     set(CURLOPT_ERRORBUFFER, error_.data());
     set(CURLOPT_WRITEFUNCTION, &Request::take);
     set(CURLOPT_WRITEDATA, this);
+    set(CURLOPT_HEADERFUNCTION, &Request::take_header);
+    set(CURLOPT_HEADERDATA, this);
     set(CURLOPT_NOPROGRESS, 0L);
     set(CURLOPT_XFERINFOFUNCTION, &Request::is_stopped);
     set(CURLOPT_XFERINFODATA, this);
@@ -118,6 +120,15 @@ class Request {
       return 0;
     }
   }
+  /// Counts the header lines, all of which libcurl keeps.
+  static std::size_t take_header(char*, std::size_t, std::size_t count, void* self) {
+    auto& request = *static_cast<Request*>(self);
+    request.header_bytes_ += count;
+    if (request.header_bytes_ <= most_header_lines) return count;
+    request.thrown_ = std::make_exception_ptr(
+        PeerError(request.archive_.url + ": answers more than 256 KB of header lines: is it an archive?"));
+    return 0;
+  }
   static std::size_t give(char* to, std::size_t, std::size_t count, void* self) {
     auto& request = *static_cast<Request*>(self);
     try {
@@ -141,6 +152,7 @@ class Request {
   std::function<std::size_t(char*, std::size_t)> body_;
   const std::function<void(const std::string&, std::string_view)>* answer_ = nullptr;
   std::string reason_;
+  std::size_t header_bytes_ = 0;
   std::exception_ptr thrown_;
 };
 

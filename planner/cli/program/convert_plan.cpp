@@ -7,6 +7,7 @@
 #include "planner/operation/file/path_checks.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/result/pack/clinical_document.h"
+#include "planner/result/pack/pack_objects.h"
 #include "planner/result/report/patient.h"
 #include "planner/result/report/result_folder.h"
 #include "voxel/archive/read_archived.h"
@@ -33,46 +34,6 @@ Json plan_json(const std::string& text, const std::string& where) {
   if (!plan.is_object() || !plan.contains(plan_key))
     refuse(where, "is no plan: it lacks \"octotomy_plan\"; only plans (.plan.json) are written as documents");
   return plan;
-}
-
-/// All keys and texts of a JSON value, in lower case and one a line.
-void add_words(const Json& value, std::string& words) {
-  const auto add = [&](const std::string& text) {
-    for (const char c : text) words += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    words += '\n';
-  };
-  if (value.is_string()) add(value.get<std::string>());
-  if (value.is_object())
-    for (const auto& [key, inside] : value.items()) {
-      if (key != plan_key) add(key);
-      add_words(inside, words);
-    }
-  if (value.is_array())
-    for (const Json& inside : value) add_words(inside, words);
-}
-
-/// Refuses a plan with a text, such as a step's name, that names the source's patient or study.
-void need_unnamed(const Json& plan, const voxel::DicomSource& source, const fs::path& path) {
-  std::string words;
-  add_words(plan, words);
-  constexpr std::size_t least_letters = 3;
-  for (const voxel::DicomTag tag : {0x00100010, 0x00100020, 0x00100030, 0x00080050, 0x00080090, 0x00200010}) {
-    const auto found = source.attributes.find(tag);
-    if (found == source.attributes.end()) continue;
-    std::string word;
-    for (const char c : found->second.value + "^") {
-      if (std::isalnum(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80) {
-        word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-        continue;
-      }
-      if (word.size() >= least_letters && words.find(word) != std::string::npos)
-        refuse(path.string(),
-               "a text of the plan holds '" + word +
-                   "', which the source states of the patient or the study: rename it in the plan, because "
-                   "--identity cannot change a step");
-      word.clear();
-    }
-  }
 }
 
 /// The views of a result of this plan.
@@ -144,7 +105,8 @@ int convert_plan(const Program& program, const ConvertText& text) {
     text.changes->emplace_back("plan: name and paths of scans removed");
     plan = plan_json(bytes, text.in.string());
     if (!text.source.empty())
-      need_unnamed(plan, voxel::dicom_source(text.source, read_options(program, text.scan)), text.in);
+      need_unnamed(plan, voxel::dicom_source(text.source, read_options(program, text.scan)),
+                   text.in.string());
   }
   const auto name = plan.find("name");
   objects.title = !text.label.empty() ? text.label

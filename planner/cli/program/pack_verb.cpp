@@ -14,7 +14,7 @@ namespace {
 struct PackText : PlanIn {
   std::filesystem::path out;
   bool anonymous = false;
-  std::string identity = "keep";
+  std::string identity = "keep", dicom = "series";
 };
 
 int pack(Program& program, const PackText& text) {
@@ -28,16 +28,21 @@ int pack(Program& program, const PackText& text) {
   options.keep_scans = true;
   result.evaluation = evaluated(program, result.plan, options);
   result.pictures = plan_pictures(result.plan, result.evaluation);
+  PackOptions packing{{program.stop.get_token(), program.progress()}, std::nullopt};
+  if (text.dicom != "never") packing.objects_of = series_of(result);
+  if (text.dicom == "always" && !packing.objects_of) packing.objects_of = SeriesOfPlan{};
   std::vector<std::string> changes;
   if (text.identity == "remove") changes = leave_out_names(result);
   Timings timings = result.evaluation.timings;
   Json manifest;
   {
     const Stopwatch watch(timings, "pack");
-    manifest = write_pack(result, text.out, {program.stop.get_token(), program.progress()});
+    manifest = write_pack(result, text.out, packing);
   }
   for (const Exported& exported : result.exported)
     for (const std::string& finding : exported.findings) warn_finding(exported.path + ": " + finding);
+  if (manifest.contains("dicom"))
+    for (const Json& finding : manifest["dicom"]["findings"]) warn_finding(finding.get<std::string>());
   const auto bytes = std::filesystem::file_size(text.out);
   Json json = answer(timings);
   json["path"] = text.out.string();
@@ -67,6 +72,13 @@ void add_pack(Program& program) {
   verb.add_option("-o,--out", text->out, "The .zip to write")->required();
   add_anonymous(verb, text->anonymous);
   add_result_identity(verb, text->identity);
+  verb.add_option(
+          "--dicom", text->dicom,
+          "Objects, contours, exported surfaces, plan and views also as DICOM objects. series: if a scan of "
+          "the plan is a DICOM series, whose patient and study they name (not with --anonymous or --identity "
+          "remove); always: otherwise in a study of its own; never. Default: series")
+      ->check(CLI::IsMember({"series", "always", "never"}))
+      ->type_name("WHEN");
 }
 
 }  // namespace octotomy::planner::cli

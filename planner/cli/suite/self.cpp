@@ -152,6 +152,8 @@ std::string meaning_of(const KnownFault& fault, const Json& versions, bool is_co
       return text + ": not linked, " + fault.reason;
     case KnownFault::Place::NotCalled:
       return text + ": not called, " + fault.reason;
+    case KnownFault::Place::InProgram:
+      return text + ": called in this program, " + fault.reason;
     case KnownFault::Place::InDecoder:
       break;
   }
@@ -198,7 +200,8 @@ SuiteAnswer run_self(Program& program, const VerifyText&) {
     faults.push_back({{"library", fault.library},
                       {"fault", fault.name},
                       {"repaired_in", fault.repaired_in.empty() ? Json(nullptr) : Json(fault.repaired_in)},
-                      {"reached", fault.place == KnownFault::Place::InDecoder},
+                      {"reached", fault.place == KnownFault::Place::InDecoder ||
+                                      fault.place == KnownFault::Place::InProgram},
                       {"meaning", meaning}});
   }
   answer.more = {{"build", build},

@@ -47,6 +47,24 @@ SuiteAnswer verify_plan(Program& program, const VerifyText& text) {
   return answer;
 }
 
+/// The series to which a replay's DICOM objects refer, as those of the pack did; none if it has no such
+/// objects.
+std::optional<SeriesOfPlan> objects_wanted(const PackContents& packed, const Result& result,
+                                           const std::filesystem::path& path) {
+  const auto dicom = packed.manifest.find("dicom");
+  if (dicom == packed.manifest.end()) return std::nullopt;
+  const bool has_series = dicom->is_object() && dicom->contains("scan") && dicom->at("scan").is_string();
+  if (!has_series) return SeriesOfPlan{};
+  std::optional<SeriesOfPlan> series = series_of(result);
+  if (!series)
+    throw std::runtime_error(
+        path.string() + ": its DICOM objects refer to the series of the scan '" +
+        dicom->at("scan").get<std::string>() +
+        "', which was read from another kind of file: give the folder of the series, --scan "
+        "NAME=FOLDER");
+  return series;
+}
+
 /// Replays a pack and compares every value and entry with the packed ones.
 SuiteAnswer verify_pack(Program& program, const VerifyText& text, const std::filesystem::path& path) {
   const PackContents packed = read_pack(path);
@@ -61,11 +79,11 @@ SuiteAnswer verify_pack(Program& program, const VerifyText& text, const std::fil
   answer.timings = result.evaluation.timings;
   answer.counts = verdict_counts(result.evaluation);
   const voxel::UnfinishedFolder work(std::filesystem::temp_directory_path(), "octotomy-replay-");
-  if (packed.manifest.value("identity", "") == "removed") {
-    result.anonymous = true;
-    leave_out_names(result);
-  }
-  write_pack(result, work.path() / "replayed.zip", {program.stop.get_token(), program.progress()});
+  PackOptions packing{{program.stop.get_token(), program.progress()}, objects_wanted(packed, result, path)};
+  const std::string identity = packed.manifest.value("identity", "");
+  result.anonymous = !identity.empty();
+  if (identity == "removed") leave_out_names(result);
+  write_pack(result, work.path() / "replayed.zip", packing);
   const PackContents replayed = read_pack(work.path() / "replayed.zip");
   const PackComparison comparison = compare_packs(packed, replayed);
   answer.certificates = replayed.result["certificates"];

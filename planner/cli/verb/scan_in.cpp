@@ -7,6 +7,7 @@
 
 #include "planner/cli/verb/numbers.h"
 #include "planner/operation/file/path_checks.h"
+#include "planner/operation/table/same_patient.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner::cli {
@@ -135,8 +136,7 @@ voxel::ReadOptions read_options(const Program& program, const ScanIn& in) {
 }
 
 bool is_dicom(const voxel::Scene& scene) {
-  return std::any_of(scene.audit.begin(), scene.audit.end(),
-                     [](const voxel::Finding& line) { return line.check == "series"; });
+  return is_of_series(scene.audit);
 }
 
 voxel::Scene read_scan(const Program& program, const std::filesystem::path& path, const ScanIn& in,

@@ -60,6 +60,11 @@ bool quotes_identity(const std::string& check) {
          (check.starts_with("patient_") && check != "patient_position" && check != "patient_orientation");
 }
 
+bool is_of_series(const std::vector<voxel::Finding>& audit) {
+  return std::any_of(audit.begin(), audit.end(),
+                     [](const voxel::Finding& line) { return line.check == "series"; });
+}
+
 std::vector<std::string> need_same_patient(const IdentityOf& scan, const IdentityOf& laid, bool is_allowed,
                                            const std::string& option) {
   const voxel::Finding finding = identity_finding(scan, laid);

@@ -21,6 +21,9 @@ voxel::Finding identity_finding(const IdentityOf& scan, const IdentityOf& laid);
 /// Whether the details of this check may quote differing patients, studies and series from files.
 bool quotes_identity(const std::string& check);
 
+/// Whether an audit is that of a DICOM series.
+bool is_of_series(const std::vector<voxel::Finding>& audit);
+
 /// Throws std::runtime_error if identity_finding() fails and names `option` as the way to proceed; with
 /// `is_allowed`, returns the failure instead. Adds a WARN if `laid` is a structure set that was drawn only on
 /// other series than the scan's. Returns no lines if the files agree.

@@ -8,6 +8,7 @@ Computes the numbers of result.json again from the surfaces, voxels and samples 
 each number whether it is confirmed, contradicted or not checked. Exits with 0; with 1 where anything is contradicted;
 with 2 where the file is no such archive. All lengths are in mm, coordinates in DICOM's patient frame, LPS.
 """
+import base64
 import csv
 import functools
 import hashlib
@@ -579,6 +580,78 @@ READERS = {".stl": read_stl, ".ply": read_ply, ".obj": read_obj, ".off": read_of
            ".nrrd": read_nrrd, ".nii": read_nifti, ".nii.gz": read_nifti}
 
 
+class Dicom:
+    """The elements of an uncompressed little-endian DICOM file, by tag: bytes, or a list of items for a sequence."""
+
+    # Sequences that are read; implicit value representations do not say which elements are sequences.
+    SEQUENCES = {0x004008ea, 0x00620002, 0x0062000a, 0x00209113, 0x00209116, 0x00289110, 0x52009229, 0x52009230,
+                 0x30060020, 0x30060039, 0x30060040}
+    LONG = {b"OB", b"OD", b"OF", b"OL", b"OV", b"OW", b"SQ", b"SV", b"UC", b"UN", b"UR", b"UT", b"UV"}
+    UNDEFINED = 0xffffffff
+
+    def __init__(self, data):
+        if data[128:132] != b"DICM":
+            raise ValueError("it is no DICOM file")
+        self.data = data
+        self.is_implicit = False
+        head, at = self._elements(132, len(data), True)
+        syntax = self.text(head, 0x00020010)
+        if syntax not in ("1.2.840.10008.1.2", "1.2.840.10008.1.2.1"):
+            raise ValueError(f"its transfer syntax {syntax} is not read")
+        self.is_implicit = syntax == "1.2.840.10008.1.2"
+        self.all, _ = self._elements(at, len(data), False)
+
+    def _elements(self, at, end, is_head):
+        """The elements between two places; those of a file's head end where another group begins."""
+        elements = {}
+        while at + 8 <= end:
+            group, number = struct.unpack_from("<HH", self.data, at)
+            tag = group << 16 | number
+            if is_head and group != 2:
+                break
+            if tag in (0xfffee00d, 0xfffee0dd):  # the end of an item or of a sequence of no stated length
+                return elements, at + 8
+            kind = self.data[at + 4:at + 6]
+            if self.is_implicit:
+                size, at = struct.unpack_from("<I", self.data, at + 4)[0], at + 8
+            elif kind in self.LONG:
+                size, at = struct.unpack_from("<I", self.data, at + 8)[0], at + 12
+            else:
+                size, at = struct.unpack_from("<H", self.data, at + 6)[0], at + 8
+            if size != self.UNDEFINED and at + size > end:
+                raise ValueError("it is cut short")
+            if size == self.UNDEFINED or (kind == b"SQ" and not self.is_implicit) or tag in self.SEQUENCES:
+                elements[tag], at = self._items(at, end if size == self.UNDEFINED else at + size)
+            else:
+                elements[tag], at = self.data[at:at + size], at + size
+        return elements, at
+
+    def _items(self, at, end):
+        items = []
+        while at + 8 <= end:
+            group, number, size = struct.unpack_from("<HHI", self.data, at)
+            at += 8
+            if (group, number) == (0xfffe, 0xe0dd):
+                break
+            if (group, number) != (0xfffe, 0xe000) or (size != self.UNDEFINED and at + size > end):
+                raise ValueError("a sequence is damaged")
+            item, at = self._elements(at, end if size == self.UNDEFINED else at + size, False)
+            items.append(item)
+        return items, at
+
+    @staticmethod
+    def text(item, tag):
+        return item.get(tag, b"").decode("utf-8", "replace").strip(" \0")
+
+    @staticmethod
+    def short(item, tag):
+        return struct.unpack("<H", item[tag])[0]
+
+    @classmethod
+    def decimals(cls, item, tag):
+        return np.array(cls.text(item, tag).split("\\"), dtype=float)
+
+
 class Checker:
     def __init__(self, archive):
         self.archive = archive
@@ -605,6 +678,7 @@ class Checker:
         self.check_movements()
         self.check_exports()
         self.check_completeness()
+        self.check_dicom()
         self.check_tables()
         self.check_report()
         return self.findings
@@ -1065,6 +1139,138 @@ class Checker:
             # The file's coordinates are rounded.
             for key, value in (("min_dihedral_deg", angles.min()), ("max_dihedral_deg", angles.max())):
                 self.findings.number(path + ("quality", key), value, 0.01, "the file's elements")
+
+    def check_dicom(self):
+        """The DICOM objects: voxels, contours, surfaces and plan are those of the archive; all are of one patient."""
+        stated = self.archive.manifest.get("dicom")
+        entries = sorted(name for name in self.archive.sizes if name.startswith("dicom/"))
+        rows = stated["objects"] if stated else []
+        listed = sorted("dicom/" + row["path"] for row in rows)
+        self.findings.claim(listed == entries, f"manifest.json describes the {len(entries)} DICOM objects of the archive")
+        # Voxels out of order are contradicted already.
+        if not all(voxels.sound for voxels in self.voxels.values()):
+            return
+        checks = {"segmentation": self.check_segmentation, "structures": self.check_structures,
+                  "model": self.check_model, "plan": self.check_plan_document}
+        read = []
+        for row in rows:
+            name = "dicom/" + row["path"]
+            if name not in self.archive.sizes:
+                continue
+            try:
+                dicom = Dicom(self.archive.bytes(name))
+                read.append(dicom.all)
+                if row["kind"] in checks:
+                    checks[row["kind"]](row, dicom)
+            except (ValueError, KeyError, IndexError, TypeError, OverflowError, struct.error, RecursionError) as error:
+                self.findings.claim(False, f"{name}: cannot be read: {error!r}")
+        if read:
+            self.check_identity(stated, read)
+
+    def check_identity(self, stated, read):
+        def of(tag):
+            return {Dicom.text(item, tag) for item in read}
+        self.findings.claim(all(len(of(tag)) == 1 for tag in (0x00100010, 0x00100020, 0x0020000d))
+                            and len(of(0x00080018)) == len(read),
+                            f"dicom/: its {len(read)} objects are of one patient and one study, each with an identifier")
+        if self.archive.manifest.get("identity") is not None or stated["identity"]["choice"] == "remove":
+            # Without a series there is no patient: a study of a phantom.
+            removed = of(0x00120062) == {"YES"} and of(0x00100010) == {""} and of(0x00100020) == {""}
+            self.findings.claim(removed or stated["scan"] is None, "dicom/: its objects name no patient")
+
+    def check_segmentation(self, row, dicom):
+        """Each frame shows a slice of an object in the universe."""
+        file, universe = dicom.all, self.universe
+        rows, columns = Dicom.short(file, 0x00280010), Dicom.short(file, 0x00280011)
+        shared, frames = file[0x52009229][0], file[0x52009230]
+        turned = Dicom.decimals(shared[0x00209116][0], 0x00200037)
+        apart = Dicom.decimals(shared[0x00289110][0], 0x00280030)
+        inverse = np.linalg.inv(universe.matrix[:3, :3])
+        steps = np.stack([inverse @ turned[:3] * apart[1], inverse @ turned[3:] * apart[0]])
+        self.findings.claim(bool(np.abs(steps - np.eye(3)[:2]).max() <= 1e-4),
+                            f"dicom/{row['path']}: its pixels lie along the universe's voxels")
+        names = row["of"]
+        labels = {Dicom.short(item, 0x00620004): Dicom.text(item, 0x00620005) for item in file[0x00620002]}
+        self.findings.claim(labels == {i + 1: name[:64] for i, name in enumerate(names)},
+                            f"dicom/{row['path']}: its segments are {', '.join(names)}")
+        seen, wrong, far = {}, [0] * len(names), 0.0
+        counts = [0] * len(names)
+        for i, frame in enumerate(frames):
+            place = inverse @ (Dicom.decimals(frame[0x00209113][0], 0x00200032) - universe.matrix[:3, 3])
+            x, y, z = (int(v) for v in np.rint(place))
+            far = max(far, float(np.abs(place - np.rint(place)).max()))
+            number = Dicom.short(frame[0x0062000a][0], 0x0062000b) - 1
+            if seen.setdefault((number, z), i) != i or min(x, y, z) < 0 or max(x + columns, y + rows, z + 1) > universe.side:
+                raise ValueError(f"frame {i + 1} is there twice, or lies outside the universe")
+            bits = np.frombuffer(file[0x7fe00010], np.uint8, -(-(i + 1) * rows * columns // 8) - i * rows * columns // 8,
+                                 i * rows * columns // 8)
+            bits = np.unpackbits(bits, bitorder="little")[i * rows * columns % 8:][:rows * columns].reshape(rows, columns) > 0
+            voxels = self.voxels[names[number]].slice(z)
+            counts[number] += int(bits.sum())
+            wrong[number] += int((bits != voxels[y:y + rows, x:x + columns]).sum())
+        for name, count, off in zip(names, counts, wrong):
+            runs = self.voxels[name].runs
+            whole = int((runs[:, 3] - runs[:, 2]).sum())
+            self.findings.claim(off == 0 and count == whole and far <= 1e-3,
+                                f"dicom/{row['path']}: its {count} pixels of {name} are its {whole} voxels, but for {off}")
+
+    def check_structures(self, row, dicom):
+        """Each plane of contours encloses, by exclusive or, the voxels of the nearest slice of the universe."""
+        file, universe = dicom.all, self.universe
+        inverse, side = np.linalg.inv(universe.matrix[:3, :3]), universe.side
+        numbers = {Dicom.text(item, 0x30060022): Dicom.text(item, 0x30060026) for item in file[0x30060020]}
+        names = row["of"]
+        self.findings.claim(numbers == {str(i + 1): name[:64] for i, name in enumerate(names)},
+                            f"dicom/{row['path']}: its regions are {', '.join(names)}")
+        drawn = [{} for _ in names]  # plane -> contours, of each object
+        for region in file[0x30060039]:
+            planes = drawn[int(Dicom.text(region, 0x30060084)) - 1]
+            for contour in region[0x30060040]:
+                points = (Dicom.decimals(contour, 0x30060050).reshape(-1, 3) - universe.matrix[:3, 3]) @ inverse.T
+                planes.setdefault(round(float(points[0, 2]), 3), []).append(points)
+        shown = {plane for planes in drawn for plane in planes}
+        for name, planes in zip(names, drawn):
+            wrong, uneven = 0, 0.0
+            for plane in shown:
+                # Where edges along y begin and end; summed along y, the edges; summed along x, what they enclose.
+                edges = np.zeros((side + 1, side + 1), dtype=np.int32)
+                for points in planes.get(plane, []):
+                    a = np.rint(points[:, :2] + 0.5).astype(np.int64)
+                    b = np.roll(a, -1, axis=0)
+                    uneven = max(uneven, float(np.abs(points[:, :2] + 0.5 - a).max()), float(np.ptp(points[:, 2])))
+                    if a.min() < 0 or a.max() > side or ((a != b).sum(axis=1) > 1).any():
+                        raise ValueError("a contour does not follow the voxels' edges")
+                    upright = a[:, 0] == b[:, 0]
+                    a, b = a[upright], b[upright]
+                    np.add.at(edges, (np.minimum(a, b)[:, 1], a[:, 0]), 1)
+                    np.add.at(edges, (np.maximum(a, b)[:, 1], a[:, 0]), -1)
+                inside = np.cumsum(np.cumsum(edges, axis=0), axis=1)[:side, :side] % 2 == 1
+                # An image half way between two slices shows either.
+                slices = {min(max(math.floor(plane + 0.5 + d), 0), side - 1) for d in (-0.01, 0.01)}
+                wrong += min(int((inside != self.voxels[name].slice(z)).sum()) for z in slices)
+            self.findings.claim(wrong == 0 and uneven <= 0.01 and len(planes) > 0,
+                                f"dicom/{row['path']}: its contours of {name} enclose its voxels on {len(planes)} planes, "
+                                f"but for {wrong}")
+
+    def check_model(self, row, dicom):
+        name, file = row["of"], dicom.all
+        unit = Dicom.text(file[0x004008ea][0], 0x00080100)
+        self.findings.claim(unit == "mm", f"dicom/{row['path']}: its unit is {unit}, which is to be mm")
+        data = file[0x00420011]
+        points, triangles = read_stl(data[:84 + 50 * struct.unpack("<I", data[80:84])[0]])
+        whole = self.surfaces[name]
+        same = len(triangles) == len(whole.triangles)
+        apart = float(np.abs(points[triangles] - whole.points[whole.triangles]).max()) if same and len(triangles) else 0.0
+        # Coordinates are rounded to 24 bits.
+        self.findings.claim(same and apart <= float(np.abs(points).max()) * 2.0 ** -23,
+                            f"dicom/{row['path']}: its {len(triangles)} triangles are the {len(whole.triangles)} of {name}")
+
+    def check_plan_document(self, row, dicom):
+        found = re.search(rb'<text mediaType="application/json" representation="B64"[^>]*>([^<]*)</text>',
+                          dicom.all[0x00420011])
+        plan = base64.b64decode(found.group(1)) if found else b""
+        self.findings.claim(plan == self.archive.bytes("plan.plan.json"),
+                            f"dicom/{row['path']}: it carries the text of plan.plan.json")
 
     def check_tables(self):
         for part in ("certificates", "measurements", "movements"):

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // Sources: the CVE records of these numbers; GDCM's pull requests 213, 233 and 235; CISA's advisories ICSMA-26-083-01
-// (GDCM) and of June 2026 (DCMTK). The release that repaired the faults of 2024 is not confirmed by a record.
+// (GDCM) and of June 2026 (DCMTK); OpenImageIO's SECURITY.md; Expat's Changes; the release notes of libpng 1.6.51 and
+// 1.6.55, of zlib 1.3.1 and of OpenSSL 3.0.20; curl's list of CVEs. The releases that repaired GDCM's faults of 2024 and
+// CVE-2023-36183 (NixOS's update to 2.4.13) are not confirmed by a record of their projects. The list is not complete: it
+// holds faults of which a record was seen. Which functions of libpng OpenImageIO calls was read from its symbols.
 #include "planner/result/pack/known_faults.h"
 
 #include <algorithm>
@@ -12,6 +15,10 @@ namespace octotomy::planner {
 namespace {
 
 using Place = KnownFault::Place;
+
+constexpr const char* refused = "pictures in that format are refused";
+constexpr const char* on_pictures = "on stacks of pictures";
+constexpr const char* on_drawings = "on drawings (SVG) and 3MF files";
 
 const std::vector<KnownFault>& all_faults() {
   static const std::vector<KnownFault> faults = {
@@ -29,6 +36,51 @@ const std::vector<KnownFault>& all_faults() {
        "GDCM reads no overlay"},
       {"GDCM", "CVE-2026-3650", "a file's meta header fills the memory", "", Place::NotCalled,
        "headers are read by this program's own reader"},
+      {"OpenJPEG", "CVE-2024-56826", "colours write beyond their memory", "2.5.3", Place::NotCalled,
+       "that code is in the library's own tool, opj_decompress"},
+      {"OpenJPEG", "CVE-2026-107080", "the encoder writes beyond its memory", "", Place::NotCalled,
+       "nothing is encoded as JPEG 2000"},
+      {"OpenImageIO", "CVE-2023-24472", "threads race in the reader of TIFF", "2.4.8.1", Place::InProgram,
+       on_pictures},
+      {"OpenImageIO", "CVE-2023-42295", "the number of a BMP picture's pixels overflows", "2.5.3",
+       Place::InProgram, on_pictures},
+      {"OpenImageIO", "CVE-2023-22845", "a damaged Targa picture is not refused", "2.4.8.1", Place::NotCalled,
+       refused},
+      {"OpenImageIO", "CVE-2023-36183", "ICO pictures overflow their memory", "2.4.13", Place::NotCalled,
+       refused},
+      {"OpenImageIO", "CVE-2026-7582", "DDS pictures write beyond their memory", "3.0.18", Place::NotCalled,
+       refused},
+      {"OpenImageIO", "CVE-2026-43903", "SGI pictures write beyond their memory", "3.0.18", Place::NotCalled,
+       refused},
+      {"OpenImageIO", "CVE-2026-63419", "IFF pictures write beyond a tile", "", Place::NotCalled, refused},
+      {"libtiff", "CVE-2025-9900", "a picture's height chooses where its colours are written", "4.7.1",
+       Place::InProgram, on_pictures},
+      {"libpng", "CVE-2025-65018", "interlaced pictures write beyond their memory", "1.6.51",
+       Place::NotCalled, "OpenImageIO calls the full reader, not the simplified one"},
+      {"libpng", "CVE-2026-25646", "reducing a palette writes beyond its memory", "1.6.55", Place::NotCalled,
+       "OpenImageIO reduces no palette"},
+      {"Expat", "CVE-2023-52425", "a long token is read again and again", "2.6", Place::NotCalled,
+       "a text is parsed in one call"},
+      {"Expat", "CVE-2024-8176", "a chain of entities exhausts the stack", "2.7", Place::NotCalled,
+       "references to entities stay as written, and 3MF files that declare some are refused"},
+      {"Expat", "CVE-2025-59375", "a small text takes much memory", "2.7.2", Place::InProgram, on_drawings},
+      {"Expat", "CVE-2026-45186", "names of attributes take quadratic time", "2.8.1", Place::InProgram,
+       on_drawings},
+      {"Expat", "CVE-2026-66046", "attributes take quadratic time", "2.8.4", Place::InProgram, on_drawings},
+      {"zlib", "CVE-2023-45853", "minizip writes beyond its memory for a long name of an entry", "1.3.1",
+       Place::NotCalled, "names of entries are paths, which end at 4096 bytes"},
+      {"libcurl", "CVE-2023-38545", "a slow SOCKS5 proxy makes a long host name overflow its memory", "8.4",
+       Place::InProgram, "if the environment names such a proxy"},
+      {"libcurl", "CVE-2023-38039", "header lines without end fill the memory", "8.3", Place::NotCalled,
+       "this program ends a request at 256 KB of header lines"},
+      {"libcurl", "CVE-2024-2398", "pushed header lines leak memory", "8.7", Place::NotCalled,
+       "no server may push"},
+      {"OpenSSL", "CVE-2026-31790", "RSASVE continues after a failure", "3.0.20", Place::NotCalled,
+       "no key is encapsulated by RSASVE"},
+      {"SQLite", "CVE-2025-6965", "a statement with many aggregates damages the memory", "3.50.2",
+       Place::NotCalled, "statements are this program's own"},
+      {"SQLite", "CVE-2026-11822", "a database's full-text pages damage the memory", "3.53.2",
+       Place::NotCalled, "no full-text search is made"},
       {"DCMTK", "CVE-2026-50003", "a peer chooses the path of a received file", "", Place::NotLinked,
        "this program's own receiver names files by their SHA-256"}};
   return faults;

@@ -14,9 +14,9 @@ struct KnownFault {
   std::string effect;         ///< what the data of an attacker do
   std::string repaired_in;    ///< the first version without the fault; empty: no release is
   /// Where the faulty code stands: in no part of the program; in a linked library, but never called; called in the
-  /// process that decodes.
-  enum class Place { NotLinked, NotCalled, InDecoder } place;
-  std::string reason;  ///< why it is not called, or not linked
+  /// process that decodes; called in the program itself, whose memory and calls are not confined.
+  enum class Place { NotLinked, NotCalled, InDecoder, InProgram } place;
+  std::string reason;  ///< why it is not called, or not linked; of InProgram: on which data it is called
 };
 
 /// The faults that `versions` (library_versions()) may have: the library is not linked, or its version is before the

@@ -4,6 +4,7 @@
 #include <CGAL/version.h>
 #include <OpenMesh/Core/System/config.h>
 #include <boost/version.hpp>
+#include <dlfcn.h>
 #include <expat.h>
 #include <glm/glm.hpp>
 #include <gmp.h>
@@ -30,6 +31,31 @@ std::string dotted(int major, int minor, int patch) {
   return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
 }
 
+/// What a function of a library answers; empty if the library is not loaded. `file` is its name with the version of its
+/// interface.
+template <typename Version, typename Ask>
+std::string loaded_version(const char* file, const char* function, const Ask& ask) {
+  void* const library = dlopen(file, RTLD_LAZY | RTLD_NOLOAD);
+  if (library == nullptr) return "";
+  void* const found = dlsym(library, function);
+  std::string answer = found == nullptr ? "" : ask(reinterpret_cast<Version*>(found));
+  dlclose(library);
+  return answer;
+}
+
+/// Adds the libraries by which OpenImageIO reads TIFF and PNG, as far as it has loaded them with these interfaces.
+void add_picture_libraries(nlohmann::ordered_json& versions) {
+  // "LIBTIFF, Version 4.5.0" and lines of copyright
+  const std::string tiff = loaded_version<const char*()>("libtiff.so.6", "TIFFGetVersion",
+                                                         [](auto* ask) { return std::string(ask()); });
+  const std::size_t digits = tiff.find_first_of("0123456789");
+  if (digits != std::string::npos)
+    versions["libtiff"] = tiff.substr(digits, tiff.find_first_not_of("0123456789.", digits) - digits);
+  const std::string png = loaded_version<const char*(const void*)>(
+      "libpng16.so.16", "png_get_libpng_ver", [](auto* ask) { return std::string(ask(nullptr)); });
+  if (!png.empty()) versions["libpng"] = png;
+}
+
 /// Adds the libraries of the parts that are started or loaded. `verify --self` reports a part that is missing.
 void add_parts(nlohmann::ordered_json& versions) {
   try {
@@ -38,6 +64,7 @@ void add_parts(nlohmann::ordered_json& versions) {
   }
   try {
     versions["OpenImageIO"] = voxel::image_library_version();
+    add_picture_libraries(versions);
   } catch (const voxel::Error&) {
   }
 }

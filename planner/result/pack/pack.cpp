@@ -72,12 +72,12 @@ class Listed {
   Json files_ = Json::array();
 };
 
-void add_folder(Listed& archive, const fs::path& folder) {
+void add_folder(Listed& archive, const fs::path& folder, const std::string& prefix) {
   std::set<fs::path> paths;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
     if (entry.is_regular_file()) paths.insert(entry.path());
   for (const fs::path& path : paths)
-    archive.add("result/" + path.lexically_relative(folder).generic_string(), voxel::file_bytes(path));
+    archive.add(prefix + path.lexically_relative(folder).generic_string(), voxel::file_bytes(path));
 }
 
 /// The scan of which an object is a window; nullptr for other objects.
@@ -122,21 +122,27 @@ Json scans_json(const Evaluation& evaluation) {
 
 }  // namespace
 
-Json write_pack(Result& result, const fs::path& path, const ExportOptions& options) {
+Json write_pack(Result& result, const fs::path& path, const PackOptions& options) {
   const voxel::UnfinishedFolder work(path.parent_path().empty() ? "." : path.parent_path(),
                                      ".octotomy-pack-");
-  write_without_times(result, write_result_files(result, work.path(), options), work.path());
+  write_without_times(result, write_result_files(result, work.path(), options.files), work.path());
   voxel::StagedOutputs staged;
   Listed archive(staged.beside(path));
   archive.add("plan.plan.json", result.plan.text);
   archive.add("NOTICE.txt", notice);
-  add_folder(archive, work.path());
+  add_folder(archive, work.path(), "result/");
   Json manifest{{"octotomy_pack", pack_format}, {"octotomy", OCTOTOMY_VERSION}};
-  if (names_nobody(result)) manifest["identity"] = "removed";
+  if (result.anonymous) manifest["identity"] = names_nobody(result) ? "removed" : "unnamed";
   manifest["universe"] = {{"side", result.evaluation.universe.side()},
                           {"lps_from_voxel", to_json(result.evaluation.universe.lps_from_voxel)}};
   manifest["scans"] = scans_json(result.evaluation);
-  manifest["objects"] = add_witnesses(archive, result, options);
+  manifest["objects"] = add_witnesses(archive, result, options.files);
+  if (options.objects_of) {
+    const voxel::UnfinishedFolder objects(work.path(), ".objects-");
+    manifest["dicom"] =
+        write_result_objects(result, *options.objects_of, work.path(), objects.path(), options.files);
+    add_folder(archive, objects.path(), "dicom/");
+  }
   manifest["libraries"] = library_versions();
   archive.close(manifest);
   staged.commit();

@@ -3,27 +3,36 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
-#include "planner/result/report/report.h"
+#include "planner/result/pack/pack_objects.h"
 
 namespace octotomy::planner {
 
 /// The version of the packs' format. It changes whenever a checker of earlier packs would misread new ones.
 inline constexpr int pack_format = 1;
 
+struct PackOptions {
+  ExportOptions files = {};
+  /// The series to which DICOM objects refer. None: no DICOM objects are written.
+  std::optional<SeriesOfPlan> objects_of = std::nullopt;
+};
+
 /// Writes a result as one zip archive that somebody else can check without this program: equal results make
 /// equal archives, so times are left out. Entries:
 /// - plan.plan.json: the plan's text as it was read;
 /// - result/: the files of write_result_files();
 /// - witness/NUMBER/NAME.npy: witness_arrays() of each object;
+/// - dicom/: the files of write_result_objects(), if `options` asks for them;
 /// - NOTICE.txt: licences, and what the archive does not contain;
 /// - manifest.json, last: every other entry with its length and SHA-256; the objects with their entries; the scans
 ///   with their lattice and SHA-256; the versions of the program and its libraries.
-/// A result after leave_out_names() is marked "identity": "removed", so that a replay leaves out the same.
+/// A result after leave_out_names() is marked "identity": "removed", another anonymous one "unnamed", so that a
+/// replay leaves out the same.
 /// The scans' samples are not in it, except for the cells of witness_arrays(). Precondition: the evaluation has
 /// stored its scans (EvaluateOptions::keep_scans), and a pdf is not wanted. Returns the manifest. Throws as
 /// write_result_files(), and voxel::Error (Resource) if the disk is full; then `path` is as before.
 nlohmann::ordered_json write_pack(Result& result, const std::filesystem::path& path,
-                                  const ExportOptions& options = {});
+                                  const PackOptions& options = {});
 
 }  // namespace octotomy::planner

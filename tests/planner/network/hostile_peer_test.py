@@ -325,12 +325,17 @@ class Fetcher(unittest.TestCase):
                 while True:
                     yield part
             return made
+        def header_lines():
+            yield b"HTTP/1.1 200 OK\r\n"
+            while True:
+                yield b"x: " + b"y" * 10000 + b"\r\n"
         for name, parts in {
                 "no boundary": lambda: [b"HTTP/1.1 200 OK\r\nContent-Type: text/html\r\n\r\nhello"],
                 "no object": lambda: [self.HEAD, self.PART + b"hello\r\n--b--\r\n"],
                 "cut": lambda: [self.HEAD, self.PART + file[:-4]],
                 "redirection": lambda: [b"HTTP/1.1 302 Found\r\nLocation: file:///etc/passwd\r\nContent-Length: 0\r\n\r\n"],
                 "lengths": lambda: [b"HTTP/1.1 200 OK\r\nContent-Length: -5\r\n\r\n"],
+                "header lines without end": header_lines,
                 "header without end": endless(b"--b\r\n" + b"x: " + b"y" * 100000),
                 "object without end": endless(self.PART + b"\0" * 100000),
                 "nothing but an end": lambda: [self.HEAD, b"--b--\r\n"] + [b"z" * 100000] * 300,

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "planner/result/report/report.h"
+#include "voxel/scan/dicom_source.h"
+
+namespace octotomy::planner {
+
+/// The series to which a result's DICOM objects refer.
+struct SeriesOfPlan {
+  std::string scan;  ///< its name in the plan; empty: none
+  std::optional<voxel::DicomSource> series = std::nullopt;
+};
+
+/// The series of the plan's first scan that was read from one; none if no scan was. Call it before
+/// leave_out_names(), which removes the paths. Throws as voxel::dicom_source() does.
+std::optional<SeriesOfPlan> series_of(const Result& result);
+
+/// Refuses a plan in whose texts something stands that names the source's patient, as in a step's name, because
+/// no writer can change a step. `where` is the plan's path. Throws std::runtime_error with the word.
+void need_unnamed(const nlohmann::ordered_json& plan, const voxel::DicomSource& source,
+                  const std::string& where);
+
+/// Writes a result as DICOM objects into `folder`:
+/// - segmentation.dcm: each object that is no tool and not empty, as a segment with the universe's voxels;
+/// - structures.dcm: the same objects as contours on the series' images;
+/// - model_NNN.dcm: the surface of each object that the plan exports, as an encapsulated STL;
+/// - plan.dcm and picture_NNN.dcm: the plan's text, and the views/*.png of `results`.
+/// Patient and study are those of the series; without one, a study of its own. An anonymous result's objects
+/// have the identity that decide_identity() makes of IdentityChoice::Remove, and need_unnamed() holds. Equal
+/// results make equal files. Returns {"scan", "identity": {"choice", "changes"}, "objects": [{"path", "kind",
+/// ...}], "findings"}. Throws as the writers do, and Stopped.
+nlohmann::ordered_json write_result_objects(const Result& result, const SeriesOfPlan& of,
+                                            const std::filesystem::path& results,
+                                            const std::filesystem::path& folder,
+                                            const ExportOptions& options = {});
+
+}  // namespace octotomy::planner
