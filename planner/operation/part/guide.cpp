@@ -286,15 +286,17 @@ void triangles(const Guide& guide, const MeshBench& bench, MeshSide& made) {
     if (!core.empty()) body.parts.push_back({{core, guide.rounding_mm}});
     body.without.push_back({slot.opening.solid(guide.slot_width_mm(slot)), 0.0});
   }
+  std::vector<brep::Level> holes;
   for (const Sleeve& sleeve : guide.sleeves) {
     body.parts.push_back(
         {{rod(sleeve.outer_mm, sleeve.through_mm(below_mm), guide.sleeve_radius_mm()), 0.0}});
-    body.without.push_back({rod(sleeve.through_mm(-beyond_mm(guide)), sleeve.through_mm(beyond_mm(guide)),
-                                guide.hole_radius_mm()),
-                            0.0});
+    holes.push_back({rod(sleeve.through_mm(-beyond_mm(guide)), sleeve.through_mm(beyond_mm(guide)),
+                         guide.hole_radius_mm()),
+                     0.0});
   }
+  body.without.insert(body.without.end(), holes.begin(), holes.end());
   body.parts.push_back({{patch, guide.clearance_mm + guide.thickness_mm}});
-  made.whole = thick_part(body, {guide.least_wall_mm, guide_cell_mm}, "guide", bench, made);
+  made.whole = thick_part(body, {guide.least_wall_mm, guide_cell_mm, holes}, "guide", bench, made);
   if (made.whole->empty()) throw std::runtime_error("nothing of the guide is left: make the region larger");
   made.details["holes"] = nlohmann::ordered_json::array();
   for (const Sleeve& sleeve : guide.sleeves) {

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 
+#include "brep/measure/necks.h"
 #include "brep/mesh/flat_triangles.h"
 #include "brep/mesh/health.h"
 #include "brep/shape/offset.h"
 #include "brep/shape/untangle.h"
+#include "planner/operation/measure/result_json.h"
 #include "planner/operation/table/number_format.h"
 #include "voxel/filter/components.h"
 #include "voxel/filter/offset.h"
@@ -53,6 +55,38 @@ voxel::Expression balls_within(const voxel::Expression& solid, double radius_mm,
   const voxel::Octree largest = voxel::components(all, voxel::Neighbours::Corners).largest;
   return solid & voxel::Expression(voxel::offset(largest, of_largest(middles, all, largest, bench), reach_mm,
                                                  bench.progress));
+}
+
+/// Necks are walls thinner than this share of the least wall. Other walls are thinner than the least wall by at most
+/// twice the tolerance of triangles.
+constexpr double neck_share = 0.8;
+/// Half the width of the cleft that parts the two sides of a neck. Printers keep clefts from 0.5 mm on open.
+constexpr double half_cleft_mm = 0.3;
+
+/// The union of the balls of the radius about points.
+brep::Solid balls_about(const std::vector<brep::Neck>& necks, double radius_mm,
+                        const brep::Progress& progress) {
+  // Triangles this small change the balls by less than the tolerance of their surface.
+  constexpr double small_mm = 1e-3;
+  brep::Triangles points;
+  for (const brep::Neck& neck : necks) {
+    const auto first = static_cast<std::uint32_t>(points.points_mm.size());
+    for (int axis = 0; axis < 3; ++axis) {
+      points.points_mm.push_back(neck.middle_mm);
+      points.points_mm.back()[axis] += small_mm;
+    }
+    points.faces.push_back({first, first + 1, first + 2});
+  }
+  return brep::thickened(points, {radius_mm, 0.5 * radius_mm, progress});
+}
+
+/// Records the middles of necks, one of those nearer to each other than a length.
+void record_necks(const std::vector<brep::Neck>& necks, double apart_mm, std::vector<glm::dvec3>& at_mm) {
+  for (const brep::Neck& neck : necks)
+    if (std::none_of(at_mm.begin(), at_mm.end(), [&](const glm::dvec3& other_mm) {
+          return glm::distance(neck.middle_mm, other_mm) < apart_mm;
+        }))
+      at_mm.push_back(neck.middle_mm);
 }
 
 }  // namespace
@@ -106,16 +140,40 @@ brep::Solid thick_part(const brep::LevelBody& body, const ThickPart& asked, cons
                        const MeshBench& bench, MeshSide& made) {
   const brep::Progress progress{bench.progress.stop, bench.progress.report};
   const double radius_mm = 0.5 * asked.least_wall_mm;
-  brep::Solid whole;
+  brep::Solid middles;
   {
     const Stopwatch watch(bench.timings, part + "_core");
     // Balls about other pieces would hang on by necks, as in balls_within().
-    whole = first_piece(brep::core_of(body, {-radius_mm, asked.cell_mm, progress}));
+    middles = first_piece(brep::core_of(body, {-radius_mm, asked.cell_mm, progress}));
   }
-  if (whole.empty()) return whole;
-  {
-    const Stopwatch watch(bench.timings, part + "_surface");
-    whole = brep::offset(whole, {radius_mm, asked.cell_mm, progress});
+  brep::Solid whole;
+  std::vector<glm::dvec3> necks_mm;
+  // A neck that is cut may leave another one beside it, where its two sides come nearer to each other.
+  constexpr int most_rounds = 6;
+  for (int round = 0; !middles.empty(); ++round) {
+    {
+      const Stopwatch watch(bench.timings, part + "_surface");
+      whole = asked.holes.empty()
+                  ? brep::offset(middles, {radius_mm, asked.cell_mm, progress})
+                  : brep::core_of({{{{middles, radius_mm}}}, asked.holes}, {0.0, asked.cell_mm, progress});
+    }
+    const Stopwatch watch(bench.timings, part + "_necks");
+    const std::vector<brep::Neck> necks =
+        brep::necks(whole, {.below_mm = neck_share * asked.least_wall_mm, .stop = progress.stop});
+    if (necks.empty() || round == most_rounds) break;
+    const double cut_mm = radius_mm + half_cleft_mm;
+    record_necks(necks, 2.0 * cut_mm, necks_mm);
+    middles = first_piece(brep::boolean(middles, brep::Operation::Difference,
+                                        balls_about(necks, cut_mm, progress), progress.stop)
+                              .solid);
+  }
+  if (middles.empty()) return {};
+  if (!necks_mm.empty()) {
+    made.details["necks_mm"] = nlohmann::ordered_json::array();
+    for (const glm::dvec3& at_mm : necks_mm) made.details["necks_mm"].push_back(to_json(at_mm));
+    made.findings.push_back("necks thinner than " + three_figures(neck_share * asked.least_wall_mm) +
+                            " mm are cut through at " + std::to_string(necks_mm.size()) +
+                            " places, the first at " + place_in_words(necks_mm.front()));
   }
   {
     const Stopwatch watch(bench.timings, part + "_thin");

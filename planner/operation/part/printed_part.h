@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "brep/boolean/boolean.h"
 #include "brep/shape/level_body.h"
@@ -31,10 +32,15 @@ brep::Solid printed(const brep::Solid& solid, const std::string& part, MeshSide&
 struct ThickPart {
   double least_wall_mm = 0.8;
   double cell_mm = 0.8;  ///< of the mesh's level sets; flat parts lie within an eighth of it
+  /// Levels of the body's `without`, as drills' holes, whose surface has its points within a thousandth of a cell.
+  /// That of others follows the triangles of the balls' middles, which narrow a hole by up to a 16th of a cell.
+  std::vector<brep::Level> holes = {};
 };
 /// The mesh of a body without walls and necks thinner than the least wall: the union of balls of that width within the
-/// body whose middles hang together, so edges are rounded. Keeps the largest piece, as printed(). `made` lists the volume that is cut off
-/// with thin walls. Throws as brep::core_of().
+/// body whose middles hang together, so edges are rounded. Where two sides overlap in a neck thinner than 0.8 of
+/// the least wall, a ball that leaves a cleft of 0.6 mm is cut out between them. Keeps the largest piece, as
+/// printed(). `made` lists the volume that is cut off with thin walls, and the necks. Throws as brep::core_of() and
+/// brep::boolean().
 brep::Solid thick_part(const brep::LevelBody& body, const ThickPart& asked, const std::string& part,
                        const MeshBench& bench, MeshSide& made);
 /// The mean distance of the triangles from the body's surface, over smooth parts.

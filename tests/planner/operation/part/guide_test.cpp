@@ -149,6 +149,49 @@ TEST(GuideStep, ASlotThatRunsOutAtTheGuidesEdgeLeavesNoSliver) {
   EXPECT_GT(line_of(measured.at(0), "wall").at("least_mm").get<double>(), 0.7);
 }
 
+/// A guide with two sleeves of 2.35 mm radius whose axes are a length apart.
+Plan two_sleeves(const ScratchFolder& folder, double apart_mm) {
+  std::string screws;
+  for (const auto& [name, side] : {std::pair("left_one", 0.5), {"right_one", -0.5}})
+    screws += R"({"id": ")" + std::string(name) + R"(", "do": "screw", "object": "ball", "at": [)" +
+              std::to_string(side * apart_mm) + R"(, -19.87, 0], "direction": [0, 1, 0]}, )";
+  return ball_plan(
+      folder, screws + guide_step(at_front + R"(, "radius_mm": 9, "screws": ["left_one", "right_one"])") +
+                  R"(, {"id": "prints", "do": "printable", "object": "jig"})");
+}
+
+TEST(GuideStep, SleevesThatMeetInAThinNeckArePartedByACleft) {
+  const ScratchFolder folder;
+  EvaluateOptions options;
+  options.certify = false;
+  // The sleeves' circles have a common chord of 0.39 mm.
+  const Plan plan = two_sleeves(folder, 4.684);
+  const Evaluation made = evaluate(plan, options);
+  const Object& jig = made.objects.at("jig");
+  ASSERT_TRUE(jig.mesh.within) << testing::PrintToString(jig.findings);
+  ASSERT_TRUE(jig.mesh.details.contains("necks_mm")) << testing::PrintToString(jig.findings);
+  for (const Json& at_mm : jig.mesh.details.at("necks_mm"))
+    EXPECT_NEAR(at_mm[0].get<double>(), 0.0, 0.5) << at_mm.dump();
+  EXPECT_NE(testing::PrintToString(jig.findings).find("necks thinner than 0.640 mm"), std::string::npos);
+  EXPECT_FALSE(jig.mesh.within->tree().is_inside({0.0, -25.0, 0.0}));
+  const Json measured = measurements_json(plan, made);
+  EXPECT_EQ(line_of(measured.at(0), "wall").at("verdict"), "PASS") << line_of(measured.at(0), "wall").dump(1);
+  EXPECT_EQ(line_of(measured.at(0), "pieces").at("verdict"), "PASS");
+}
+
+TEST(GuideStep, SleevesThatMeetInAThickWallStayOnePiece) {
+  const ScratchFolder folder;
+  EvaluateOptions options;
+  options.certify = false;
+  const Evaluation made = evaluate(two_sleeves(folder, 4.5), options);
+  const Object& jig = made.objects.at("jig");
+  ASSERT_TRUE(jig.mesh.within) << testing::PrintToString(jig.findings);
+  EXPECT_FALSE(jig.mesh.details.contains("necks_mm"));
+  EXPECT_TRUE(jig.mesh.within->tree().is_inside({0.0, -25.0, 0.0}));
+  for (const Json& hole : jig.mesh.details.at("holes"))
+    EXPECT_LT(hole.at("off_axis_mm").get<double>(), 0.005) << hole.dump();
+}
+
 TEST(GuideStep, AMaskGetsASlotWhereItsWallCutsBoneInTheRegionWhicheverViewDrewIt) {
   const ScratchFolder folder;
   EvaluateOptions options;

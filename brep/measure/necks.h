@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <stop_token>
+#include <vector>
+
+#include "brep/mesh/solid.h"
+
+namespace octotomy::brep {
+
+struct NecksOptions {
+  double below_mm = 0.6;  ///< the width from which a neck is wide enough; above 0
+  /// Largest distance of the places that are measured on an edge; above 0.
+  double spacing_mm = 0.1;
+  /// Edges count whose faces meet at an angle inside of at least 180 degrees and this; 1..170.
+  double reentrant_deg = 20.0;
+  std::stop_token stop = {};
+};
+
+/// A ball inside a solid that touches a reentrant edge and a second place nearly opposite to it.
+struct Neck {
+  glm::dvec3 middle_mm{0.0};  ///< LPS
+  double width_mm = 0.0;      ///< the ball's diameter
+};
+
+/// The necks of a solid at its reentrant edges, in the order of the edges: the narrow places of a union of wide
+/// balls, where two that overlap little meet. Balls touch an edge square to the bisector of its faces, and the other
+/// side at least 120 degrees from it, seen from their centres. Throws std::invalid_argument if the solid is empty
+/// or an option is out of its range; Stopped. The same bits on any number of threads. Cost: n log n for the tree, about log n a place; parallel.
+std::vector<Neck> necks(const Solid& solid, const NecksOptions& options);
+
+}  // namespace octotomy::brep
