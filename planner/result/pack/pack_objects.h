@@ -21,7 +21,7 @@ struct SeriesOfPlan {
 /// leave_out_names(), which removes the paths. Throws as voxel::dicom_source() does.
 std::optional<SeriesOfPlan> series_of(const Result& result);
 
-/// Refuses a plan in whose texts something stands that names the source's patient, as in a step's name, because
+/// Refuses a plan with a text, such as a step's name, that names the source's patient or study, because
 /// no writer can change a step. `where` is the plan's path. Throws std::runtime_error with the word.
 void need_unnamed(const nlohmann::ordered_json& plan, const voxel::DicomSource& source,
                   const std::string& where);
