@@ -116,8 +116,8 @@ MirrorFit plane_of(const SurfaceFit& fit, const MirrorPlane& start, const glm::d
   found.last_step_mm = fit.last_step_mm;
   found.rest_mm = fit.rest_mm;
   found.findings = fit.findings;
-  // A reflection has the eigenvalue -1 along its normal and 1 in the plane. A twist about the normal does not
-  // change that axis.
+  // A reflection has the eigenvalue -1 along its normal and 1 in the plane. A twist about the normal leaves
+  // the eigenvector of -1 unchanged.
   const glm::dmat3 turn(image_of);
   found.plane.normal = axes_of(turn)[0];
   const glm::dvec3 between = glm::dvec3(image_of * glm::dvec4(centre, 1.0)) - centre;
@@ -179,7 +179,7 @@ std::vector<MirrorPlane> voted_planes(const Cloud& cloud, std::size_t count) {
   return planes;
 }
 
-/// A plane with its residual; infinite where too little of the surface found a counterpart.
+/// A plane with its residual, which is infinite if too little of the surface has a counterpart.
 struct Tried {
   MirrorPlane plane;
   double rms_mm = 0.0;
