@@ -43,7 +43,7 @@ SidePoints side_points(std::uint32_t v, std::uint32_t w) {
   return {std::min(v, w), std::max(v, w)};
 }
 
-/// A triangle cannot be divided, as rounding left sides that cross.
+/// A triangle cannot be divided, because rounding left sides that cross.
 struct NotDivided : std::exception {};
 
 class Imprint {

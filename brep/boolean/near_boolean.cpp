@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 find the triangles that intersect; 2 corefine these near patches; 3 decide from each border between near
-// and far whether the far part beyond it is inside the other solid: by whether the results contain the
-// border's edges; 4 confirm this by a ray from each far part, which alone decides for parts without a border;
-// 5 join: far triangles keep their points, near ones use the far points at their borders. A border belongs to
-// a triangle that does not meet the other surface, so no cut reaches it.
+// 1 find the triangles that intersect; 2 corefine these near patches; 3 decide for each far part whether it
+// is inside the other solid: its border edges show this by being in a result or not; 4 confirm this by a ray
+// from each far part; for parts without a border, the ray alone decides; 5 join: far triangles keep their
+// points, near ones use the far points at their borders. A border belongs to a triangle that does not meet
+// the other surface, so no cut reaches it.
 #include "brep/boolean/near_boolean.h"
 
 #include <algorithm>

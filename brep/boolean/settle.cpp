@@ -142,7 +142,7 @@ Folds folds_of(const Triangles& surface, const std::vector<std::uint8_t>& is_mar
 }
 
 struct Tolerances {
-  double length_mm = 0.0;  ///< triangles as low as this are thin
+  double length_mm = 0.0;  ///< triangles of at most this height are thin
   double beside_mm = 0.0;  ///< how far the surface may move along its normal
 };
 
