@@ -221,7 +221,7 @@ class Stuffing {
   Tetrahedra result() && { return std::move(made_); }
 
  private:
-  /// A side by the end from which the direction leaves.
+  /// The key of a side: the end from which its direction leaves, and the direction.
   std::uint64_t key(const LatticePoint& from, std::size_t w) const { return lattice_.index(from) * 7 + w; }
   bool is_inside(const LatticePoint& p) const { return lattice_.has(p) && inside_[lattice_.index(p)] != 0; }
 
@@ -380,10 +380,10 @@ class Stuffing {
     }
   }
 
-  /// Adds the four tetrahedra about each long side that leaves a cube's corner. Their other two corners are
-  /// neighbours on the square of cubes' middles about the side. Each tetrahedron has two long sides, one
-  /// between corners and one between middles of cubes, so visiting only the former adds each tetrahedron
-  /// once.
+  /// Adds the four tetrahedra about each long side that leaves a cube's corner. The other two corners of such
+  /// a tetrahedron are neighbours on the square of cubes' middles about the side. Each tetrahedron has two
+  /// long sides, one between corners and one between middles of cubes, so visiting only the former adds each
+  /// tetrahedron once.
   void add_about(const LatticePoint& p) {
     if ((p.x & 1) != 0) return;
     for (int axis = 0; axis < 3; ++axis) {

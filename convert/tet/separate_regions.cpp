@@ -27,8 +27,8 @@ std::vector<Use> uses_of(const Tetrahedra& tetrahedra) {
   return uses;
 }
 
-/// For each region at a node, the first region that it shares the node with; itself if there is none before
-/// it.
+/// For each region at a node, the first region with which it shares the node; the region itself if there is
+/// no earlier one.
 std::vector<std::size_t> sharers(const Use* first, std::size_t count, const AreApart& are_apart) {
   std::vector<std::size_t> with(count);
   std::iota(with.begin(), with.end(), std::size_t{0});

@@ -26,10 +26,11 @@
 // 2 A cavity is a connected part of the surface that is inside out. Half way from one of its triangles to
 //   the next surface in front of it lies a point in the cavity and in nothing else: the hole point.
 // 3 TetGen runs, with fewer and fewer demands. Its answer counts only if all volumes are positive and their
-//   sum is the volume that the surface encloses: that shows filled cavities and leaks.
+//   sum is the volume that the surface encloses: a wrong sum shows filled cavities and leaks.
 // 4 Nodes inside move to improve flat elements. If that is not enough and the surface need not be kept,
 //   Mesh_3 makes one of its own.
-// 5 Where that fails, too, or leaves elements that no solver takes, a lattice's cells are cut to the surface.
+// 5 Where Mesh_3 fails, too, or leaves elements too flat for a solver, a lattice's cells are cut to the
+// surface.
 
 namespace octotomy::convert {
 namespace {
@@ -216,7 +217,7 @@ constexpr double asked_volume_share() {
   return 0.85;
 }
 
-/// The switches to try, the most demanding first. The bound of volumes is given up last.
+/// The switches to try, the most demanding first. The bound of volumes is dropped last.
 std::vector<std::string> ladder(const TetOptions& options) {
   const std::string quality = "q" + switch_number(options.radius_edge);
   const std::string volume =
