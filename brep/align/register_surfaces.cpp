@@ -500,7 +500,7 @@ SurfaceFit fit_cloud(const Cloud& cloud, const OrientedSurface& fixed, const glm
   if (!fit.converged)
     answer.findings.push_back("the motion still moved by " + short_text(fit.last_step_mm) +
                               " mm a round after " + std::to_string(fit.rounds) +
-                              " rounds: start it nearer, by landmarks, or allow more by --rounds");
+                              " rounds: start nearer, by landmarks, or allow more rounds by --rounds");
   if (fit.stiffness < sliding_stiffness())
     answer.findings.emplace_back(
         "the surfaces can slide on each other, as spheres and planes can, so a part of the motion is "
