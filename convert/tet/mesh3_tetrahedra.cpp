@@ -301,7 +301,7 @@ std::optional<std::string> finish(Try& t, const Given& given, const TetOptions& 
         restore_volume(t.made, given.volume_mm3, play_off_flats_mm(t.made, improving.surface_play_mm));
     if (!(std::abs(moved) <= 1.0))
       return "misses the volume by " + rounded(std::abs(moved)) +
-             " times the amount that its facets' distances from the surface allow";
+             " times the largest amount that its facets may cut off";
     improve(t.made, improving);
     fault = fault_in_filling(t.made, given.volume_mm3, own_surface_volume_tolerance());
   }

@@ -43,7 +43,7 @@ std::vector<std::size_t> sharers(const Use* first, std::size_t count, const AreA
 
 Tetrahedra separated(const Tetrahedra& tetrahedra, const AreApart& are_apart) {
   if (!tetrahedra.mid_nodes.empty())
-    throw std::invalid_argument("separate_regions: nodes on sides come after");
+    throw std::invalid_argument("separate_regions: separate the regions before adding nodes on sides");
   if (tetrahedra.region_of_tet.empty()) return tetrahedra;
   const std::vector<Use> uses = uses_of(tetrahedra);
   Tetrahedra apart = tetrahedra;

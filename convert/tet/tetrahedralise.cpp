@@ -427,14 +427,14 @@ std::optional<Tetrahedra> by_stuffing(const MesherInput& surface, double surface
   put_on_sharp_edges(made, {triangles, brep::SurfaceTree(triangles)}, least_deg);
   std::vector<double> apart_mm = brep::SurfaceTree(surface_of(made)).distances_mm(surface.points_mm);
   std::sort(apart_mm.begin(), apart_mm.end());
-  made.findings.push_back("the elements are of isosurface stuffing, whose nodes on the surface lie on the " +
+  made.findings.push_back("isosurface stuffing made the elements; their nodes on the surface lie on the " +
                           std::string("given one, with cells of ") + rounded(cell_mm) + " mm: volume " +
                           switch_number(quality(made).volume_mm3) + " of " + switch_number(surface_mm3) +
                           " mm3; 95 % of the given points are within " +
                           rounded(apart_mm[apart_mm.size() * 95 / 100]) + " mm of it, all within " +
                           rounded(apart_mm.back()) + " mm");
   if (!options.finer.empty())
-    made.findings.push_back("elements are not finer where that was requested: stuffing has one size");
+    made.findings.push_back("elements are not finer where requested: stuffing makes elements of one size");
   return made;
 }
 
