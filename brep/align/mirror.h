@@ -47,7 +47,8 @@ struct MirrorFit {
   int rounds = 0;                            ///< number of rounds of the last two refinements
   bool converged = false;                    ///< both refinements came to rest within max_rounds
   double last_step_mm = 0.0, rest_mm = 0.0;  ///< as in SurfaceFit
-  /// Doubts. Without a start also another plane that fits nearly as well, and the use of a smaller overlap.
+  /// Doubts about the fit. Without a start also: another plane that fits nearly as well, and the use of a
+  /// smaller overlap.
   std::vector<std::string> findings;
 };
 

@@ -53,7 +53,8 @@ constexpr double least_matched = 0.55;
 constexpr double common_share = 0.05, own_share = 0.25;
 constexpr double deviations_99 = 2.58;
 
-/// The scan matches the object's surface within this distance, which the points and the samples resolve.
+/// Surfaces within this distance of each other match. The scan's points and the object's samples resolve no
+/// less.
 double match_mm(const ToothScanOptions& options) {
   return std::max(0.3, 0.5 * options.sample_mm);
 }
