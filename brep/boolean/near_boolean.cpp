@@ -241,8 +241,8 @@ Seam seam_of(const Triangles& result, const Side& a, const Side& b) {
   std::map<Edge, int> sides;
   for (const auto& face : result.faces)
     for (std::size_t k = 0; k < 3; ++k) ++sides[edge_of(face[k], face[(k + 1) % 3])];
-  // Points are matched by their edges, because coordinates may coincide: sheets that touch in a point have it
-  // twice, and a new point may have been rounded to the same place.
+  // Points are matched by their edges, because coordinates may coincide: sheets that touch in a point each
+  // have a point there, and a new point may have been rounded to the same place.
   const auto know = [](std::vector<std::uint32_t>& on, std::uint32_t v, std::uint32_t point) {
     if (on[v] != none && on[v] != point) throw Obstacle("sheets of an operand touch at a border");
     on[v] = point;
