@@ -317,7 +317,7 @@ class Strips {
   SlabSurface& surface_;
   TileCost cost_;
   std::optional<double> most_span_mm_;
-  std::vector<FaceList> strips_;  ///< of each group; empty where the surface is overlay()'s
+  std::vector<FaceList> strips_;  ///< strip of each group; empty where the surface is that of overlay()
   SpanClearance sides_;
   std::vector<int> attempts_;                      ///< number of each group's present attempt
   std::vector<FaceList> avoided_;                  ///< triangles that each group avoids, numbered by its
