@@ -45,7 +45,7 @@ struct Difference {
   /// The true Hausdorff distance is at most this much larger: the distance changes at most as much as the
   /// position.
   double hausdorff_short_by_mm = 0.0;
-  DistanceHistogram histogram;      ///< of a to b
+  DistanceHistogram histogram;      ///< distances from a to b
   std::vector<double> vertex_mm;    ///< signed distance to b of each vertex of a
   std::size_t sample_count = 0;     ///< number of samples on both surfaces
   std::size_t on_border_count = 0;  ///< samples whose nearest point is on a border, so that their sign is a

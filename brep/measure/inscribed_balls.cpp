@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A ball that touches a plane at one point lies within every larger one that touches there. So one pass
+// A ball that touches a plane at one point lies within every larger ball that touches there. So one pass
 // through the tree suffices: the ball shrinks at each triangle of which it contains a point, and a node that
 // the ball does not reach is out of reach of the smaller balls too.
 #include "brep/measure/inscribed_balls.h"
