@@ -63,8 +63,8 @@ inline Lanes absolute(Lanes a) {
 }
 
 /// The part of a segment inside a box around the origin, as its middle and half its extent. `slack` exceeds
-/// the sum of all roundings: in floats, those of the part's ends and of a box's middle and size, at most five
-/// times 2^-24 of the largest lengths; in doubles, those of the point where a far end is clipped.
+/// the sum of all roundings: in floats, of the part's ends and of a box's middle and size, at most five times
+/// 2^-24 of the largest lengths; in doubles, of the point at which a far end is clipped.
 struct FlatSegment {
   ThreeLanes middle, way, reach;
   Lanes slack;

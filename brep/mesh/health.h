@@ -28,8 +28,8 @@ enum class Defect {
 };
 
 /// The checks of a mesh, in this order. Empty `findings` mean a solid or, without the intersection test, that
-/// no other check failed. An edge is a pair of points joined by a triangle. Points that no triangle uses are
-/// counted but are no defect.
+/// no other check failed. An edge is a pair of points that a triangle connects. Points that no triangle uses
+/// are counted but are no defect.
 struct Health {
   std::size_t vertices = 0;
   std::size_t faces = 0;
