@@ -48,7 +48,7 @@ double too_near(std::size_t w) {
 struct Lattice {
   glm::dvec3 origin_mm{0.0};
   double half_mm = 0.5;
-  glm::ivec3 points{0};  ///< along each axis, in halves
+  glm::ivec3 points{0};  ///< extent of the lattice along each axis, in halves of a cell
 
   glm::dvec3 at(const LatticePoint& p) const { return origin_mm + half_mm * glm::dvec3(p); }
   bool has(const LatticePoint& p) const {
@@ -335,7 +335,8 @@ class Stuffing {
     }
   }
 
-  /// A prism between the triangles a and b: its first node, then the pyramid or tetrahedron that lies across.
+  /// Adds a prism between the triangles a and b: divides it from its first node, over the faces that do not
+  /// contain this node.
   void add_prism(std::array<Node, 3> a, std::array<Node, 3> b) {
     const auto before = [](const Node& p, const Node& q) { return p.order < q.order; };
     auto first = std::min_element(a.begin(), a.end(), before);

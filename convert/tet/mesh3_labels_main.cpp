@@ -176,7 +176,7 @@ bool read(const MesherRequest& request, Labels& labels, LabelSizes& sizes) {
                   &sizes.cell_mm, &labels.share_step) != 4 ||
       request.triangles != 0 || labels.share_step < 1)
     return false;
-  // One plane a pair of labels.
+  // One plane for each pair of labels.
   constexpr std::uint64_t most_planes = 256 * 255 / 2;
   if (request.points > most_planes) return false;
   labels.planes.resize(request.points);

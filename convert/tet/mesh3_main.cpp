@@ -81,7 +81,7 @@ struct Sizes {
   }
 };
 
-/// A share of the field, under which nothing is refined.
+/// A share of the field. Nothing smaller is refined.
 struct Least {
   const SizeField& field;
   double share = 1.0;

@@ -212,8 +212,8 @@ std::vector<bool> lost_specks(Try& t, const Given& given, const std::vector<bool
   return is_speck;
 }
 
-/// Finds the points of the given surface that are further from the new one than a facet's size: they lie on a
-/// lost detail. Returns a reason if too much is lost: the tip of a spike and specks may be lost, other
+/// Finds the points of the given surface that are further from the new surface than a facet's size: they lie
+/// on a lost detail. Returns a reason if too much is lost: the tip of a spike and specks may be lost, other
 /// triangles may not.
 std::optional<std::string> lost_details(Try& t, const Given& given, const std::vector<double>& to_own_mm) {
   std::vector<bool> is_lost(to_own_mm.size(), false);
