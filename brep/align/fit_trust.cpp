@@ -199,7 +199,8 @@ FitTrust matched_trust(const glm::dmat4& motion, const TrustedFrom& from) {
       trust.equals.push_back(other);
   }
   trust.rival_share = rival[near_rungs - 1];
-  // At least twice and four times the noise, unless that is above 4 % of the spread.
+  // Shares within about two and four times the noise, or within larger distances; noise above 4 % of the
+  // spread counts as 4 %.
   const std::vector<double> wide =
       matched_shares(from.cloud, from.fixed, motion, {8.0 * ladder_mm[0], 16.0 * ladder_mm[0]});
   const auto is_scattered = [&](std::size_t rung, double below_share) {
@@ -226,8 +227,8 @@ FitTrust matched_trust(const glm::dmat4& motion, const TrustedFrom& from) {
                          is_scattered(near_rungs - 1, chance_share());
   if (!trust.equals.empty() && !is_chance) return trust;
   trust.equals.clear();
-  // The share of samples that coincide: those within the smaller distance, minus the number that samples
-  // scattered evenly would have there.
+  // The share of samples that coincide: those within the smaller distance, minus those that evenly scattered
+  // samples would have within it.
   const double coincident_share = 2.0 * wide[0] - wide[1];
   const bool is_near = leads(ladder_mm.size() - 1) || own[near_rungs - 1] >= equal_share() ||
                        coincident_share >= least_share();

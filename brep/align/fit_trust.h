@@ -20,8 +20,8 @@ double own_noise_mm(const Mesh& mesh);
 /// Root mean square distance between a cloud's points under two motions.
 double apart_mm(const Cloud& cloud, const glm::dmat4& a, const glm::dmat4& b);
 
-/// The motions, each once and in their order: those closer than a tenth of the spread to an earlier one are
-/// left out. At most `most`.
+/// The first `most` different motions, in their order: motions closer than a tenth of the spread to an
+/// earlier one are left out.
 std::vector<glm::dmat4> different_motions(const Cloud& cloud, const std::vector<glm::dmat4>& motions,
                                           std::size_t most);
 

@@ -116,8 +116,8 @@ MirrorFit plane_of(const SurfaceFit& fit, const MirrorPlane& start, const glm::d
   found.last_step_mm = fit.last_step_mm;
   found.rest_mm = fit.rest_mm;
   found.findings = fit.findings;
-  // A reflection has the eigenvalue -1 along its normal and 1 in the plane. A twist about the normal does not
-  // change that axis.
+  // A reflection has the eigenvalue -1 along its normal and 1 in the plane. A twist about the normal leaves
+  // the eigenvector of -1 unchanged.
   const glm::dmat3 turn(image_of);
   found.plane.normal = axes_of(turn)[0];
   const glm::dvec3 between = glm::dvec3(image_of * glm::dvec4(centre, 1.0)) - centre;
@@ -179,7 +179,7 @@ std::vector<MirrorPlane> voted_planes(const Cloud& cloud, std::size_t count) {
   return planes;
 }
 
-/// A plane with its residual; infinite where too little of the surface found a counterpart.
+/// A plane with its residual, which is infinite if too little of the surface has a counterpart.
 struct Tried {
   MirrorPlane plane;
   double rms_mm = 0.0;
@@ -237,9 +237,9 @@ void tell_rival(const std::vector<Tried>& planes, MirrorFit& found) {
   if (planes.size() < 2 || !planes[1].is_fit() || planes[1].rms_mm > rival_share() * planes[0].rms_mm) return;
   const glm::dvec3& n = planes[1].plane.normal;
   found.findings.push_back("WARN mid-plane: another plane, of normal (" + short_text(n.x) + ", " +
-                           short_text(n.y) + ", " + short_text(n.z) + "), fits nearly as well, to " +
-                           short_text(planes[1].rms_mm) + " mm beside " + short_text(planes[0].rms_mm) +
-                           " mm: look at the image, or give a plane near the right one, --plane");
+                           short_text(n.y) + ", " + short_text(n.z) + "), fits nearly as well: residual " +
+                           short_text(planes[1].rms_mm) + " mm instead of " + short_text(planes[0].rms_mm) +
+                           " mm: look at the image, or give a plane near the right one by --plane");
 }
 
 Triangles mirrored_triangles(Triangles triangles, const MirrorPlane& plane) {
@@ -290,10 +290,10 @@ MirrorFit fit_mirror_plane(const Mesh& mesh, const MirrorFitOptions& options) {
     const double wide_mm = fit.rms_mm;
     fit_options.overlap *= trial_overlap();
     fit = fit_cloud(mirrored_cloud(all, plane), surface, glm::dmat4(1.0), fit_options);
-    fit.findings.push_back("WARN mid-plane: of " + short_text(100.0 * options.overlap) +
-                           " % of the surface the residual is " + short_text(wide_mm) + " mm, so that only " +
-                           short_text(100.0 * fit_options.overlap) + " % were fitted, to " +
-                           short_text(fit.rms_mm) +
+    fit.findings.push_back("WARN mid-plane: at " + short_text(100.0 * options.overlap) +
+                           " % overlap the residual is " + short_text(wide_mm) + " mm, so only " +
+                           short_text(100.0 * fit_options.overlap) +
+                           " % of the surface were fitted, with a residual of " + short_text(fit.rms_mm) +
                            " mm: give by --overlap the share that has a counterpart");
   }
   if (options.progress) options.progress(1.0);

@@ -37,8 +37,8 @@ struct MirrorFitOptions {
 };
 
 struct MirrorFit {
-  MirrorPlane plane;  ///< as near to the surface's centre as possible; the largest component of its normal is
-                      ///< positive
+  MirrorPlane plane;  ///< its point is as near to the surface's centre as possible; the largest component of
+                      ///< its normal is positive
   double rms_mm = 0.0;  ///< distance of the mirrored surface from the surface, over the samples kept
   double kept_share = 0.0;
   /// The remaining motion that would fit the mirror image to the surface best, as rotation about the normal
@@ -47,7 +47,8 @@ struct MirrorFit {
   int rounds = 0;                            ///< number of rounds of the last two refinements
   bool converged = false;                    ///< both refinements came to rest within max_rounds
   double last_step_mm = 0.0, rest_mm = 0.0;  ///< as in SurfaceFit
-  /// Doubts. Without a start also another plane that fits nearly as well, and the use of a smaller overlap.
+  /// Doubts about the fit. Without a start also: another plane that fits nearly as well, and the use of a
+  /// smaller overlap.
   std::vector<std::string> findings;
 };
 

@@ -48,8 +48,8 @@ std::map<std::string, Landmark> by_name(const std::vector<Landmark>& set, const 
   return named;
 }
 
-/// Eigenvalues left on the diagonal of `a`, eigenvectors in the columns of `v`. Cyclic Jacobi converges
-/// quadratically: for 4 x 4 six sweeps reach rounding, forty are never reached.
+/// Leaves the eigenvalues on the diagonal of `a` and the eigenvectors in the columns of `v`. Cyclic Jacobi
+/// converges quadratically: for 4 x 4 six sweeps reach rounding, forty are never reached.
 void diagonalise(Symmetric& a, Symmetric& v) {
   v = {};
   for (std::size_t k = 0; k < 4; ++k) v[k][k] = 1.0;

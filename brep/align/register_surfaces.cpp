@@ -51,8 +51,8 @@ constexpr double rest_share() {
   return 1e-6;
 }
 
-/// A fit that repeats itself, or hardly improves, for this many rounds counts as at rest: samples at the
-/// trimming limit are then kept and dropped in turn, and none of these choices is better than another.
+/// A fit that hardly improves for this many rounds counts as at rest: samples at the trimming limit are then
+/// kept and dropped in turn, and none of these choices is better than another.
 constexpr int cycle_rounds = 12;
 
 /// A fit hardly improves if its rms falls by less than this share in cycle_rounds rounds.
@@ -378,7 +378,7 @@ Searched search(const Cloud& cloud, const Cloud& fixed, const OrientedSurface& s
   for (Fit& fit : fits) fit = refinement.run(fit.motion, finalist_rounds);
   sort_by_score(fits);
   searched.best = fits.front().motion;
-  // Several finalists are often the same motion. So further, different motions are refined with as many
+  // Several finalists often end at the same motion. Therefore other, different ends are refined with as many
   // rounds.
   for (const glm::dmat4& end : different_motions(cloud, searched.ends, finalists + 1)) {
     const bool is_refined = apart_mm(cloud, end, searched.ends.front()) == 0.0;
@@ -500,7 +500,7 @@ SurfaceFit fit_cloud(const Cloud& cloud, const OrientedSurface& fixed, const glm
   if (!fit.converged)
     answer.findings.push_back("the motion still moved by " + short_text(fit.last_step_mm) +
                               " mm a round after " + std::to_string(fit.rounds) +
-                              " rounds: start it nearer, by landmarks, or allow more by --rounds");
+                              " rounds: start nearer, by landmarks, or allow more rounds by --rounds");
   if (fit.stiffness < sliding_stiffness())
     answer.findings.emplace_back(
         "the surfaces can slide on each other, as spheres and planes can, so a part of the motion is "

@@ -53,7 +53,8 @@ constexpr double least_matched = 0.55;
 constexpr double common_share = 0.05, own_share = 0.25;
 constexpr double deviations_99 = 2.58;
 
-/// The scan matches the object's surface within this distance, which the points and the samples resolve.
+/// Surfaces within this distance of each other match. The scan's points and the object's samples resolve no
+/// less.
 double match_mm(const ToothScanOptions& options) {
   return std::max(0.3, 0.5 * options.sample_mm);
 }
@@ -244,7 +245,7 @@ Patches patches_of(const Triangles& crowns) {
   return patches;
 }
 
-/// A patch with fewer samples is a scrap at the edge of a cell.
+/// A patch with fewer samples is only a scrap at the border of the crowns.
 constexpr std::size_t least_samples = 12;
 
 /// Fits the crowns and measures the held patches.
@@ -340,7 +341,7 @@ bool is_upright(const Triangles& surface, const glm::dmat4& motion, const ToothP
   return depths >= 0.0;
 }
 
-/// Leaves out patches that lie too far off, and bounds the error by the others.
+/// Leaves out patches too far from the fixed surface, and bounds the error by the others.
 void bound_error(const ToothScanOptions& options, LaidToothScan& laid) {
   constexpr double far = 4.0;  // times the middle patch
   std::vector<double> squares;

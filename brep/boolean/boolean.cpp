@@ -72,8 +72,8 @@ double reach_mm(const Size& a, const Size& b) {
 /// The largest error of a sum of volumes for correct results. A new point is rounded by half a unit of the
 /// last place in each coordinate, which moves the surface by no more than that, and errors of either sign
 /// cancel: on skulls of 600k triangles the volumes add up to within a hundredth of one unit over the whole
-/// area. Slivers that cross at a small angle may be worse. 2^12 units leave room for them and are still far
-/// below the volume of a lost triangle.
+/// area. Slivers that cross at a small angle may be worse. 2^12 units leave room for slivers and are still
+/// far below the volume of a lost triangle.
 double volume_tolerance_mm3(const Size& a, const Size& b) {
   return 0x1p12 * std::numeric_limits<double>::epsilon() * reach_mm(a, b) * (a.area_mm2 + b.area_mm2);
 }
@@ -252,7 +252,7 @@ void judge(const Question& question, const Solid& b, Attempt& attempt) {
     attempt.failure = "the results' volumes are " + std::to_string(*attempt.disagreement_mm3) +
                       " mm3 from adding up, " + std::to_string(tolerance) + " is allowed";
   if (!attempt.failure.empty()) return;
-  // Volumes cannot detect a surplus shell that is also in the result it is checked against. Lines can.
+  // Volumes cannot detect a surplus shell if the result that they are checked against has it, too. Lines can.
   const auto wrong =
       attempt.widest.empty()
           ? disagreement_along_lines(question.a, b, attempt.results, question.wanted)
@@ -342,7 +342,7 @@ std::size_t settle(const Question& question, Attempt& attempt, SettleReach reach
   return unfit;
 }
 
-/// The wanted results, before meshes are made of them.
+/// The wanted results as triangles, before they become solids.
 struct Answer {
   Results results;
   std::optional<double> residual;
@@ -411,7 +411,8 @@ void answer_in_common_frame(const Question& question, Best& best) {
   }
 }
 
-/// Answers with operands that have the same triangles on common planes; these may have several directions.
+/// Answers with operands that have the same triangles on common planes. These planes may have several
+/// directions.
 void answer_of_imprinted(const Question& question, Best& best) {
   const std::optional<Imprinted> divided = imprinted(question.a, question.b);
   if (!divided) return;

@@ -63,7 +63,7 @@ struct Booleans {
   /// relative to A + B; only those whose volumes were all computed.
   std::optional<double> residual;
   /// The distance by which an operand was moved (see "shifted"): about 4e-6 of the operands' extent, 1 um for
-  /// a head. The error of each volume is at most this times its area.
+  /// a head. The error of each volume is at most this length times the area of the operand's surface.
   double shift_mm = 0.0;
   /// Doubts. "shifted": the operands touch so that a difference or intersection would not be manifold (a shared
   /// edge), or intersect in a way that corefinement cannot resolve, so the named operand was moved. "touches

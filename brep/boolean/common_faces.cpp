@@ -36,7 +36,7 @@ std::optional<Solid> united_at_common_faces(const Solid& a, const Solid& b) {
   both.points_mm.insert(both.points_mm.end(), of_b.points_mm.begin(), of_b.points_mm.end());
   const auto shift = static_cast<std::uint32_t>(of_a.points_mm.size());
   const std::vector<std::uint32_t> first = first_equal_points(both.points_mm);
-  // Faces of the second solid, reversed, by the numbers of their corners in the first.
+  // Reversed faces of the second solid, by the numbers that their corners have in the first solid.
   std::unordered_map<Face, std::uint32_t, FaceHash> opposite;
   for (std::uint32_t f = 0; f < of_b.faces.size(); ++f) {
     const Face& face = of_b.faces[f];

@@ -23,14 +23,14 @@ namespace {
 constexpr std::size_t most_triangles = 200'000;
 
 /// How far points of one plane may lie beside it, in roundings. A rotation sums three products, a file
-/// rounds once more, and three points rounded like that define a plane that is off by as much again between
-/// them.
+/// rounds once more, and three points rounded in this way define a plane that is off by as much again between
+/// the points.
 constexpr double beside_plane() {
   return 8.0;
 }
 
-/// Coordinates that differ by less than this many roundings become equal: twice the value above, and the
-/// rotation into the frame.
+/// Coordinates that differ by less than this many roundings become equal: twice beside_plane(), plus the
+/// error of the rotation into the frame.
 constexpr double apart_along_axis() {
   return 32.0;
 }
@@ -45,8 +45,8 @@ bool is_axis(const glm::dvec3& normal) {
   return (normal.x != 0.0) + (normal.y != 0.0) + (normal.z != 0.0) == 1;
 }
 
-/// Directions of the common planes, in the order in which they are found. A direction is that of its widest
-/// triangle. Cost: n log n, and the pairs of triangles whose planes lie equally far from the origin.
+/// Directions of the common planes, in the order in which they are found. A direction is the normal of its
+/// widest triangle. Cost: n log n, and the pairs of triangles whose planes lie equally far from the origin.
 std::vector<Direction> common_directions(const std::vector<Plane>& of_a, const std::vector<Plane>& of_b,
                                          double tolerance_mm) {
   std::vector<Direction> directions;
@@ -92,8 +92,8 @@ std::optional<glm::dvec3> widest_plane(const std::vector<Plane>& of_a, const std
   return best == nullptr ? std::nullopt : std::optional(best->normal);
 }
 
-/// The positions along an axis of the frame of planes that are square to it: ascending, farther apart than
-/// the tolerance.
+/// The positions, along an axis of the frame, of the planes that are square to this axis: ascending, farther
+/// apart than the tolerance.
 std::vector<double> offsets_along(const std::vector<Plane>& of_a, const std::vector<Plane>& of_b,
                                   const glm::dvec3& axis, const glm::dvec3& origin_mm, double tolerance_mm) {
   std::vector<double> all, apart;
@@ -107,7 +107,7 @@ std::vector<double> offsets_along(const std::vector<Plane>& of_a, const std::vec
   return apart;
 }
 
-/// The offset within the tolerance of a coordinate, else the coordinate.
+/// The offset that lies within the tolerance of a coordinate; if there is none, the coordinate.
 double on_plane(double coordinate, const std::vector<double>& offsets, double tolerance_mm) {
   auto above = std::lower_bound(offsets.begin(), offsets.end(), coordinate);
   if (above != offsets.end() && *above - coordinate <= tolerance_mm) return *above;

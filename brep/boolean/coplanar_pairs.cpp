@@ -70,7 +70,8 @@ void for_each_coplanar_pair(const std::vector<Plane>& of_a, const std::vector<Pl
   std::vector<Offset> offsets;
   for (const Plane& plane : of_b) {
     const double along_mm = glm::dot(plane.normal, plane.on_mm - origin_mm);
-    // If two components of a normal are almost equally large, rounding decides the sign; so both are listed.
+    // If two components of a normal are almost equally large, rounding decides the normal's sign, so both
+    // signs are listed.
     offsets.push_back({along_mm, &plane, false});
     offsets.push_back({-along_mm, &plane, true});
   }

@@ -62,9 +62,9 @@ thread_local std::size_t StepBudget::left = 0;
 thread_local std::stop_token StepBudget::stop;
 
 // CGAL finds these overloads for this mesh instead of its own functions. CGAL's output builder does not
-// accept open operands: it would refuse surfaces that it has classified by edges alone, although patches of
-// solids need no more. Solids are checked to be closed and outward before this point, and patches have the
-// winding of their solids.
+// accept open operands: it would refuse them, although for patches of solids the classification by edges,
+// which it has made, suffices. Solids are checked to be closed and outward before this point, and patches
+// have the winding of their solids.
 inline bool is_closed(const Mesh&) {
   return true;
 }

@@ -86,8 +86,8 @@ void append(const Faces& group, Faces& batch) {
     batch[side].insert(batch[side].end(), group[side].begin(), group[side].end());
 }
 
-/// Batches of groups. Each has a group with parts of both operands, because CGAL expects two surfaces; parts that
-/// meet nothing of the other operand fill them up.
+/// Batches of groups. Each has a group with parts of both operands, because CGAL expects two surfaces. Parts
+/// that meet nothing of the other operand fill the batches up.
 std::vector<Faces> batches_of(const std::vector<Faces>& groups, std::size_t batch_size) {
   std::vector<Faces> batches;
   const auto has_both = [](const Faces& group) { return !group[0].empty() && !group[1].empty(); };
@@ -152,7 +152,7 @@ Corefined corefine_in_batches(const Mesh& a, const Mesh& b, const Wanted& wanted
     const Patch patches[] = {patch_of(operands[0].triangles, batches[i][0]),
                              patch_of(operands[1].triangles, batches[i][1])};
     parts[i] = corefine(patches[0].mesh, patches[1].mesh, wanted, stop);
-    if (parts[i].flat > 0) return;  // its points have numbers of their own
+    if (parts[i].flat > 0) return;  // its points are not numbered as the operand's
     for (const std::size_t side : {0u, 1u})
       for (std::uint32_t& v : parts[i].uncut[side]) v = patches[side].points.at(v);
   });

@@ -48,7 +48,7 @@ void need_points_apart(const Solid& solid, const Solid& other, const std::string
   }
 }
 
-/// Adds by halves, so that most sums are of numbers of similar length.
+/// Adds the sums of both halves, recursively, so that most sums are of numbers with similarly many digits.
 Rational sum_of(const std::vector<Rational>& terms, std::size_t begin, std::size_t end) {
   assert(begin <= end && end <= terms.size());
   if (end - begin == 0) return Rational(0);

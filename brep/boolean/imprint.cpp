@@ -43,7 +43,7 @@ SidePoints side_points(std::uint32_t v, std::uint32_t w) {
   return {std::min(v, w), std::max(v, w)};
 }
 
-/// A triangle cannot be divided, as rounding left sides that cross.
+/// A triangle cannot be divided, because rounding left sides that cross.
 struct NotDivided : std::exception {};
 
 class Imprint {
@@ -165,7 +165,7 @@ class Imprint {
            (found != on_side_[solid].end() && found->second.count(v) != 0);
   }
 
-  /// Adds the point where a side of each solid cross to both sides.
+  /// If a side of each solid cross, adds the crossing point to both sides.
   void cross_sides(std::uint32_t f, std::size_t i, std::uint32_t g, std::size_t j) {
     const FacePoints &of_a = faces_[0][f], &of_b = faces_[1][g];
     const SidePoints a = side_points(of_a[i], of_a[(i + 1) % 3]), b = side_points(of_b[j], of_b[(j + 1) % 3]);

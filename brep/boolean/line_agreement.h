@@ -33,7 +33,7 @@ std::vector<Corners> widest_triangles(const Triangles& surface);
 /// rounding. Every line through a shell that is surplus, missing or inverted disagrees. A point is inside if
 /// the surface winds around it at least once, so operands that intersect themselves agree with their results.
 /// Independent of the algorithm that made the results. A disagreement counts only if three lines through the
-/// triangle have it: a single line may graze a steep side, where rounded points move far. Shells as thin as
+/// triangle show it: a single line may graze a steep side, where rounded points move far. Shells as thin as
 /// rounding are not detected. Preconditions: the results are closed, and their triangles refer to finite
 /// points. The same bits on any number of threads. Cost: linear, about 10 ns per triangle, and log n for each
 /// crossing.
@@ -41,7 +41,7 @@ std::optional<LineDisagreement> disagreement_along_lines(const Solid& a, const S
                                                          const Results& results, const Wanted& wanted,
                                                          const std::vector<Corners>& through);
 
-/// Tests along lines through widest_triangles() of the operands and the wanted results. Cost: additionally
+/// Tests along lines through widest_triangles() of the operands and the wanted results. Cost: as above, plus
 /// that of widest_triangles().
 std::optional<LineDisagreement> disagreement_along_lines(const Solid& a, const Solid& b,
                                                          const Results& results, const Wanted& wanted);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 find the triangles that intersect; 2 corefine these near patches; 3 decide from each border between near
-// and far whether the far part beyond it is inside the other solid: by whether the results contain the
-// border's edges; 4 confirm this by a ray from each far part, which alone decides for parts without a border;
-// 5 join: far triangles keep their points, near ones use the far points at their borders. A border belongs to
-// a triangle that does not meet the other surface, so no cut reaches it.
+// 1 find the triangles that intersect; 2 corefine these near patches; 3 decide for each far part whether it
+// is inside the other solid: its border edges show this by being in a result or not; 4 confirm this by a ray
+// from each far part; for parts without a border, the ray alone decides; 5 join: far triangles keep their
+// points, near ones use the far points at their borders. A border belongs to a triangle that does not meet
+// the other surface, so no cut reaches it.
 #include "brep/boolean/near_boolean.h"
 
 #include <algorithm>
@@ -241,8 +241,8 @@ Seam seam_of(const Triangles& result, const Side& a, const Side& b) {
   std::map<Edge, int> sides;
   for (const auto& face : result.faces)
     for (std::size_t k = 0; k < 3; ++k) ++sides[edge_of(face[k], face[(k + 1) % 3])];
-  // Points are matched by their edges, because coordinates may coincide: sheets that touch in a point have it
-  // twice, and a new point may have been rounded to the same place.
+  // Points are matched by their edges, because coordinates may coincide: sheets that touch in a point each
+  // have a point there, and a new point may have been rounded to the same place.
   const auto know = [](std::vector<std::uint32_t>& on, std::uint32_t v, std::uint32_t point) {
     if (on[v] != none && on[v] != point) throw Obstacle("sheets of an operand touch at a border");
     on[v] = point;

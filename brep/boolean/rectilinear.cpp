@@ -142,7 +142,7 @@ std::optional<Cells> cells_in(const Triangles& surface, const Grid& grid) {
 }
 
 /// Divides each side where more than two triangles meet, in all of them at the same point. Each sheet that
-/// touches there then has points of its own, and a later motion rounds equal points equally.
+/// touches the side then has points of its own, and a later motion rounds equal points equally.
 void divide_pinched_sides(Triangles& surface) {
   using Side = std::pair<std::uint32_t, std::uint32_t>;
   const auto side_of = [](std::uint32_t v, std::uint32_t w) { return Side(std::min(v, w), std::max(v, w)); };

@@ -142,7 +142,7 @@ Folds folds_of(const Triangles& surface, const std::vector<std::uint8_t>& is_mar
 }
 
 struct Tolerances {
-  double length_mm = 0.0;  ///< triangles as low as this are thin
+  double length_mm = 0.0;  ///< triangles of at most this height are thin
   double beside_mm = 0.0;  ///< how far the surface may move along its normal
 };
 
@@ -217,7 +217,7 @@ class Settler {
   bool contract(Mesh::HalfedgeHandle h) {
     if (!mesh_.is_collapse_ok(h)) return false;
     const Mesh::Point moved = to(h) - from(h);
-    double volume_mm3 = 0.0, area_mm2 = 0.0;  // both six times
+    double volume_mm3 = 0.0, area_mm2 = 0.0;  // six times the volume, and likewise the area
     for (const auto face : mesh_.vf_range(mesh_.from_vertex_handle(h))) {
       const Mesh::HalfedgeHandle side = mesh_.halfedge_handle(face);
       const Mesh::Point normal =

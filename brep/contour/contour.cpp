@@ -186,8 +186,8 @@ class Enclosure {
 };
 
 /// A point that a closed contour encloses, even if other contours touch it: half way along the contour's
-/// lowest horizontal line between two heights of its points. The contour's first point if rounding leaves no
-/// such line.
+/// lowest horizontal line between two heights of its points. If rounding leaves no such line, the contour's
+/// first point.
 glm::dvec2 point_within(const Contour& contour) {
   const auto& points = contour.points_mm;
   double lowest = std::numeric_limits<double>::infinity(), next = lowest;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The k-th coefficient of a polygon of length L is the sum over its corners of the change of direction there
-// times e^(-2 pi i k s), s the corner's place along the contour in turns, times L / (2 pi k)^2. 1 Spread the
-// changes of direction over an even grid by a Gaussian; 2 transform; 3 divide by the Gaussian's transform,
-// which yields the sums for all k at once; 4 do the reverse to compute the smooth contour's points. Source of
-// 1-4: Greengard and Lee, "Accelerating the nonuniform fast Fourier transform", SIAM Review 46, 2004.
+// The k-th coefficient of a polygon of length L is L / (2 pi k)^2 times a sum over its corners: the change of
+// direction at the corner times e^(-2 pi i k s), where s is the corner's place along the contour in turns. 1
+// Spread the changes of direction over an even grid by a Gaussian; 2 transform; 3 divide by the Gaussian's
+// transform, which yields the sums for all k at once; 4 do the reverse to compute the smooth contour's
+// points. Source of 1-4: Greengard and Lee, "Accelerating the nonuniform fast Fourier transform", SIAM Review
+// 46, 2004.
 #include "brep/contour/fourier_smooth.h"
 
 #include <bit>

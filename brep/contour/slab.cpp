@@ -29,12 +29,12 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 enum Level : std::uint8_t { at_lower, at_upper, half_way };
 
 struct Mark {
-  Level level = half_way;  ///< half way: a crossing of sides
+  Level level = half_way;  ///< half_way: the vertex is a crossing of sides
   std::uint32_t point = none;
   std::uint32_t contour = none;  ///< number of its contour, counted over both sections
 };
 struct Held {
-  std::uint8_t by = 0;  ///< bit 0 the lower section, bit 1 the upper
+  std::uint8_t by = 0;  ///< sections that contain the face; bit 0: the lower one, bit 1: the upper one
   bool seen = false;
 };
 

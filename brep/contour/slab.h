@@ -44,11 +44,11 @@ struct SectionsCoincide : Error {
 
 /// The surface of an object between two sections, oriented outward and bounded by both sections' contours. It
 /// is manifold and does not intersect itself for any contours (except for the rounding of points where
-/// contours cross). Projected onto the plane, it covers the area that lies in exactly one section. Its height
-/// is that of the section at the section's contours, and half way where contours of both cross and in the
-/// middle of areas that only one contour bounds. Contours that overlap are thus connected, branches join in
-/// saddles half way, and a contour with nothing over it is closed by a roof half way. Throws ContoursMeet and
-/// SectionsCoincide. Cost: n log n in exact arithmetic, about 20 us per point.
+/// contours cross). Projected onto the plane, it covers the area that lies in exactly one section. At a
+/// section's contours it has the section's height. It is half way between the sections where contours of both
+/// cross, and in the middle of areas that only one contour bounds. Contours that overlap are thus connected,
+/// branches join in saddles half way, and a contour with nothing over it is closed by a roof half way. Throws
+/// ContoursMeet and SectionsCoincide. Cost: n log n in exact arithmetic, about 20 us per point.
 SlabSurface overlay(const Slab& slab);
 
 }  // namespace octotomy::brep

@@ -35,7 +35,7 @@ SpanClearance::SpanClearance(const std::vector<Contour>& lower, const std::vecto
         length_mm += glm::distance(sides_.back().from, sides_.back().to);
       }
   if (sides_.empty()) return;
-  // A cell about as long as two sides; at most 1,024 cells along an axis.
+  // Cells about as long as two sides, and at most 1024 cells along an axis.
   const double extent_mm = std::max(high.x - low_.x, high.y - low_.y);
   cell_mm_ = std::max({2.0 * length_mm / static_cast<double>(sides_.size()), extent_mm / 1024.0,
                        std::numeric_limits<double>::min()});
@@ -71,7 +71,7 @@ int SpanClearance::crossed(const glm::dvec2& from_mm, const glm::dvec2& to_mm, i
   };
   const int first_row = cell_of(a).y, last_row = cell_of(b).y;
   for (int y = first_row; y <= last_row; ++y) {
-    // The part of the segment in this row of cells, a hundredth of a cell longer for rounding.
+    // The part of the segment in this row of cells, lengthened by a hundredth of a cell because of rounding.
     const double height = b.y - a.y, slack = 0.01 * cell_mm_;
     const auto x_at = [&](double at_mm) {
       return height > 0.0 ? a.x + (b.x - a.x) * std::clamp((at_mm - a.y) / height, 0.0, 1.0) : a.x;

@@ -2,9 +2,9 @@
 // From each kept point, the anchor, a piece grows point by point while all points that it passes lie within
 // the distance. This holds if 1 its direction lies in the wedge of directions from the anchor that hit every
 // point's disc (Williams, "An efficient algorithm for the piecewise linear approximation of planar curves",
-// CGIP 8, 1978), and 2 no point lies beyond its end, or each that does lies near the end, which boxes over
-// the points decide. Both tests keep a margin above rounding. If they do not decide, all points are tested,
-// so the result is always that of testing all points.
+// CGIP 8, 1978), and 2 every point beyond its end lies near the end, which boxes over the points decide. Both
+// tests keep a margin above rounding. If neither decides, all points are tested, so the result is always the
+// same as by testing all points.
 #include "brep/contour/thin.h"
 
 #include <algorithm>

@@ -98,7 +98,8 @@ class Blame {
     return {least_of(m_, n_, [&](std::size_t i, std::size_t j) { return (*this)(i, j); }),
             least_of(n_, m_, [&](std::size_t j, std::size_t i) { return (*this)(i, j); })};
   }
-  /// The score of a step from a span: that of the step's triangle and of the span that it leads to.
+  /// The score of a step from a span: the score of the step's triangle plus that of the span to which the
+  /// step leads.
   int of(std::size_t i, std::size_t j, Step step) const {
     const int of_span = (*this)(i + (step == along_lower), j + (step == along_upper));
     if (of_step_[step].empty()) return of_span;
@@ -229,7 +230,7 @@ std::vector<Step> greedy_steps(const Ring& lower, const Ring& upper, std::array<
   return steps;
 }
 
-/// A path once around both rings from node (0, start), as its last column in each row.
+/// A path once around both rings from node (0, start), stored as its last column in each row.
 struct Path {
   std::size_t start = 0;
   std::vector<std::size_t> last;
@@ -279,7 +280,7 @@ Band all_of(const Pair& pair) {
   return {{0, std::vector<std::size_t>(rows, 0)}, {0, std::vector<std::size_t>(rows, 2 * pair.n())}};
 }
 
-/// The columns within `reach` of those of a path of steps from (0, 0).
+/// The columns within `reach` of the path that these steps make from (0, 0).
 Band about(const std::vector<Step>& steps, std::size_t reach) {
   Band band{path_of(steps, 0), path_of(steps, 0)};
   for (std::size_t& column : band.low.last) column -= std::min(column, reach);
@@ -323,7 +324,7 @@ class LeastPath {
     return *from(0, all, limit(known));
   }
 
-  /// The path of least sum from (0, 0) in a band that holds one.
+  /// The path of least sum from (0, 0) in a band. Precondition: the band holds a path.
   Found find_in(const Band& band) { return *from(0, band, no_limit); }
 
   /// The path of least sum among all starts.
@@ -431,8 +432,8 @@ class LeastPath {
     return {end.blame, cost_ == TileCost::greatest_volume ? no_limit.cost : end.cost};
   }
 
-  /// Sums up the least blame and the least cost of a step to each row and to each column, apart from angles and
-  /// volumes, which have no bound.
+  /// Sums up the least blame and the least cost of a step to each row and to each column. The costs of angles
+  /// and volumes have no bound and are left out.
   void bound_rest() {
     std::array least{std::vector<Sum>(m_, no_limit), std::vector<Sum>(n_, no_limit)};
     if (blame_ != nullptr) {
@@ -479,7 +480,8 @@ class LeastPath {
   /// A triangle's cost apart from angles.
   double own_cost(const Triangle& t, Step step, const glm::dvec3& normal) const {
     switch (cost_) {
-      // A step's own span is the one that it leads to: from b along the lower ring, from a along the upper one.
+      // A step's cost is the length of the span to which it leads: from b along the lower ring, from a along
+      // the upper one.
       case TileCost::shortest_span:
         return glm::distance(step == along_lower ? t.b : t.a, t.c);
       case TileCost::least_area:
@@ -552,7 +554,7 @@ class LeastPath {
         row.back().sums[preferred()] = {};
         reached.add(row.back());
       }
-      // From the last column, or the next one of the row above.
+      // The next column of this row follows the last one, or lies below a node of the row above.
       for (bool goes_on = i == 0;;) {
         Node node;
         const bool by_upper = goes_on && row.back().column < end;
@@ -660,7 +662,8 @@ std::vector<std::array<std::uint32_t, 3>> faces_of(const Ring& lower, const Ring
   return faces;
 }
 
-/// The best strip among all starts for costs of single triangles, else from the start, with the blame if any.
+/// The best strip: for costs of single triangles among all starts, for others from the given start. `blame`
+/// may be null.
 std::vector<std::array<std::uint32_t, 3>> best_strip(const Ring& lower, const Ring& upper, TileCost cost,
                                                      const std::array<std::size_t, 2>& start,
                                                      const Blame* blame) {

@@ -216,8 +216,8 @@ class Strips {
                                    : tile(below, above, TileCost::least_area);
   }
 
-  /// Tries the next strip of a group whose present strip is missing or crosses something; none after all
-  /// attempts.
+  /// Tries the next strip of a group whose present strip is missing or crosses something. After all attempts
+  /// the group has no strip.
   void retry(std::size_t g) {
     strips_[g].clear();
     while (strips_[g].empty() && attempts_[g] < most_attempts) {
@@ -317,9 +317,9 @@ class Strips {
   SlabSurface& surface_;
   TileCost cost_;
   std::optional<double> most_span_mm_;
-  std::vector<FaceList> strips_;  ///< of each group; empty where the surface is overlay()'s
+  std::vector<FaceList> strips_;  ///< strip of each group; empty where the surface is that of overlay()
   SpanClearance sides_;
-  std::vector<int> attempts_;                      ///< number of each group's attempt
+  std::vector<int> attempts_;                      ///< number of each group's present attempt
   std::vector<FaceList> avoided_;                  ///< triangles that each group avoids, numbered by its
                                                    ///< rings
   std::vector<std::vector<std::uint8_t>> scores_;  ///< scores of each group's spans, for further clear

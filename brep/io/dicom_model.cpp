@@ -115,7 +115,7 @@ Syntax syntax_of(std::string_view bytes) {
   const std::string_view syntax = found == meta.end() ? "" : trimmed(found->second);
   if (syntax != "1.2.840.10008.1.2" && syntax != "1.2.840.10008.1.2.1")
     throw Error(ErrorCode::Input, "is DICOM in the transfer syntax '" + std::string(syntax.substr(0, 64)) +
-                                      "', in which models are not read: convert it to explicit VR, "
+                                      "', which is not read for models: convert it to explicit VR, "
                                       "little-endian (dcmconv +te)");
   return {scanner.bytes(scanner.rest()), syntax == "1.2.840.10008.1.2.1"};
 }
@@ -186,9 +186,9 @@ MeshContent read_dicom_model(std::string_view bytes) {
   if (const std::string unit = word_of_unit(code); !unit.empty())
     made.says.add_unit(unit, "the measurement unit '" + code + "' of the DICOM header");
   else
-    made.says.warn("unit", code.empty() ? "the DICOM header states no measurement unit, which it must"
+    made.says.warn("unit", code.empty() ? "the DICOM header states no measurement unit, which is required"
                                         : "the measurement unit '" + code.substr(0, 16) +
-                                              "' of the DICOM header is none of length");
+                                              "' of the DICOM header is not a unit of length");
   if (!text(0x00200052).empty()) made.says.add_frame("LPS", "DICOM's frame of reference");
   made.says.tell("file", std::string(is_stl ? "STL" : "OBJ") + " in DICOM, of the patient '" +
                              std::string(text(0x00100020).substr(0, 64)) + "', frame of reference '" +

@@ -43,7 +43,8 @@ bool meet(const Extent& a, const Extent& b) {
   return true;
 }
 
-/// Whether a side has a likely size compared with the other object: from a small screw to twice its length.
+/// Whether a side has a likely size compared with the other object: from a small screw to twice the other's
+/// length.
 bool is_likely(double side_mm, double other_mm) {
   return side_mm >= other_mm / 50.0 && side_mm <= 2.0 * other_mm;
 }

@@ -38,8 +38,8 @@ struct LengthUnit {
   std::string name;
   double mm = 1.0;
 };
-/// The unit of a word in any case: nm, um, mm, cm, dm, m, mil, inch, foot, their plurals and long forms
-/// ("millimetres", "microns"); none if the word is not a unit.
+/// The unit that a word names, in upper or lower case: nm, um, mm, cm, dm, m, mil, inch, foot, their plurals
+/// and long forms ("millimetres", "microns"); none if the word is not a unit.
 std::optional<LengthUnit> length_unit(std::string_view word);
 
 /// Lowest and highest coordinates along the axes.

@@ -35,14 +35,14 @@ void MeshStatements::add_frame(const std::string& name, const std::string& words
   if (const std::optional<std::string> frame = frame_named(name))
     frames_.push_back({*frame, words});
   else
-    warn("frame", words + " is no frame that is known");
+    warn("frame", words + " is not a known frame");
 }
 
 void MeshStatements::add_unit(const std::string& name, const std::string& words) {
   if (const std::optional<LengthUnit> unit = length_unit(name))
     units_.push_back({unit->name, words});
   else
-    warn("unit", words + " is no unit that is known");
+    warn("unit", words + " is not a known unit");
 }
 
 void MeshStatements::add_writer(std::string_view text) {

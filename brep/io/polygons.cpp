@@ -104,7 +104,7 @@ class Ears {
     find_blocking();
   }
 
-  /// Triples of corners; empty if no ear is left before the end.
+  /// The triangles as triples of corners; empty if no ear is left before the polygon is used up.
   std::vector<std::array<std::size_t, 3>> run() {
     std::vector<std::array<std::size_t, 3>> triangles;
     std::size_t left = p_.size(), at = 0;

@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// An integer member of an object, at most `most`.
+/// An integer member of an object. Refuses values above `most`.
 std::size_t whole(const Json& object, const char* key, std::size_t otherwise,
                   std::size_t most = std::size_t{1} << 40) {
   const auto found = object.find(key);

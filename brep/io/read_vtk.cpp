@@ -96,7 +96,8 @@ struct VtkReader {
     return std::string(scanner.bytes(scanner.bounded(static_cast<long long>(length), 1)));
   }
 
-  /// FIELD name count, each array with its name, components, tuples and type. SPACE names the frame.
+  /// Reads "FIELD name count" and its arrays, each with name, components, tuples and type. SPACE names the
+  /// frame.
   void fields() {
     scanner.word();
     const std::size_t arrays = scanner.count(1);

@@ -44,7 +44,7 @@ struct Sink {
   std::ofstream& file;
   std::string bytes{};
 
-  /// Called between items: writes the buffer if it is large.
+  /// Writes the buffer if it is large; is called between items.
   void let_go() {
     if (bytes.size() >= (1u << 20)) flush();
   }

@@ -13,8 +13,8 @@ namespace octotomy::brep {
 
 /// The surfaces of parts that touch: a triangle between two parts is stored once.
 struct PartedSurface {
-  /// The parts behind a triangle and in front of it, where its corners appear counter-clockwise; 0 is no
-  /// part.
+  /// The parts behind and in front of a triangle; 0 is no part. Seen from the front, its corners run
+  /// counter-clockwise.
   struct Sides {
     std::int32_t behind = 0, front = 0;
   };

@@ -30,8 +30,8 @@ struct Sums {
         area(count, 0.0) {}
 };
 
-/// The area of a triangle that is assigned to each corner: the part nearest to it. In an obtuse triangle,
-/// half belongs to the obtuse corner.
+/// The part of a triangle's area that is assigned to each corner: the part nearest to this corner. In an
+/// obtuse triangle, half belongs to the obtuse corner.
 std::array<double, 3> shares_of(const std::array<glm::dvec3, 3>& p, const std::array<Corner, 3>& corners,
                                 double area) {
   for (std::size_t k = 0; k < 3; ++k)

@@ -8,8 +8,8 @@
 
 namespace octotomy::brep {
 
-/// Curvature of a surface at its vertices. It is unknown, with zeros, at a vertex on a border or whose
-/// triangles have no area.
+/// Curvature of a surface at its vertices. At a vertex on a border, or whose triangles have no area, it is
+/// unknown and stored as zeros.
 struct Curvature {
   std::vector<double> mean_per_mm;       ///< positive where convex: 1 / r on a ball of radius r
   std::vector<double> gaussian_per_mm2;  ///< 1 / r^2 on a ball, negative on saddles

@@ -53,7 +53,8 @@ void check(const DifferenceOptions& options, double area_a_mm2, double area_b_mm
 /// Signed distances of a surface's samples and of its vertices.
 struct Distances {
   std::vector<double> areas_mm2, sample_mm, vertex_mm;
-  std::vector<bool> vertex_has_face;  ///< false for a point of no triangle, which is not on the surface
+  std::vector<bool> vertex_has_face;  ///< false for a point that no triangle uses and that is not on the
+                                      ///< surface
   double reach_mm = 0.0;
   std::size_t on_border_count = 0;
 };

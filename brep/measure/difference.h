@@ -13,7 +13,7 @@ namespace octotomy::brep {
 struct DifferenceOptions {
   /// Spacing of the samples that represent the surfaces. None: 200 000 samples on the larger surface, or a
   /// larger spacing if long slivers would need several times as many. The error of the Hausdorff distance is
-  /// at most the spacing, that of means and percentiles a small share of it.
+  /// at most the spacing; that of means and percentiles is a small share of the spacing.
   std::optional<double> spacing_mm = std::nullopt;
   std::vector<double> tolerances_mm = {0.5, 1.0, 2.0};  ///< upper limits of the bands, positive and ascending
   std::size_t bins = 41;  ///< bins of the histogram, at least 1; with an odd number one is centred at zero
@@ -45,7 +45,7 @@ struct Difference {
   /// The true Hausdorff distance is at most this much larger: the distance changes at most as much as the
   /// position.
   double hausdorff_short_by_mm = 0.0;
-  DistanceHistogram histogram;      ///< of a to b
+  DistanceHistogram histogram;      ///< distances from a to b
   std::vector<double> vertex_mm;    ///< signed distance to b of each vertex of a
   std::size_t sample_count = 0;     ///< number of samples on both surfaces
   std::size_t on_border_count = 0;  ///< samples whose nearest point is on a border, so that their sign is a

@@ -50,8 +50,8 @@ std::array<glm::dvec3, 3> corners_of(const Triangles& surface, std::uint32_t fac
   return {surface.points_mm[f[0]], surface.points_mm[f[1]], surface.points_mm[f[2]]};
 }
 
-/// The distance of a triangle from another one's plane, if it lies wholly on one side: a lower bound of their
-/// distance.
+/// The distance of a triangle from another one's plane, if it lies wholly on one side: a lower bound of the
+/// triangles' distance.
 double beyond_plane(const std::array<glm::dvec3, 3>& s, const std::array<glm::dvec3, 3>& t) {
   const glm::dvec3 normal = glm::cross(s[1] - s[0], s[2] - s[0]);
   const double length = glm::length(normal);

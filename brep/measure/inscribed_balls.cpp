@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A ball that touches a plane at one point lies within every larger one that touches there. So one pass
+// A ball that touches a plane at one point lies within every larger ball that touches there. So one pass
 // through the tree suffices: the ball shrinks at each triangle of which it contains a point, and a node that
 // the ball does not reach is out of reach of the smaller balls too.
 #include "brep/measure/inscribed_balls.h"
@@ -47,8 +47,8 @@ double squared(const glm::dvec3& v) {
   return glm::dot(v, v);
 }
 
-/// The distance along a line from `p` at which it passes a triangle, by Cramer's rule, or 0. Triangles are
-/// widened by more than rounding, so that a ray passes at least one on a closed surface.
+/// The distance from `p` at which a line passes a triangle, by Cramer's rule; 0 if the line misses it.
+/// Triangles are widened by more than rounding, so that a ray passes at least one on a closed surface.
 double passes(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& p,
               const glm::dvec3& along) {
   constexpr double widened = 1e-9;  // of a triangle's sides

@@ -35,10 +35,10 @@ class InscribedBalls {
   /// most some thousand further nodes of the tree.
   Ball touching(const glm::dvec3& p_mm, const glm::dvec3& normal, double ray_mm, double least_cosine) const;
 
-  /// Whether the surface touches a ball, within 2.5 % of its radius, at a second place nearly opposite to
-  /// `p_mm`, a place where it touches: seen from the ball's centre, the two places are at least `least_rad`
-  /// apart. Precondition: `least_rad` is above 90 degrees. Cost: about log n and the triangles near the
-  /// opposite point.
+  /// Whether the surface touches a ball, within 2.5 % of its radius, at a place nearly opposite to `p_mm`,
+  /// where it also touches: seen from the ball's centre, the two places are at least `least_rad` apart.
+  /// Precondition: `least_rad` is above 90 degrees. Cost: about log n and the triangles near the opposite
+  /// point.
   bool touches_opposite(const Ball& ball, const glm::dvec3& p_mm, double least_rad) const;
 
  private:

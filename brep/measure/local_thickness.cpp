@@ -84,7 +84,7 @@ std::vector<VolumePoint> volume_points(const Solid& solid, std::size_t wanted) {
   return all;
 }
 
-/// Every n-th sample, with the area of the samples left out up to the next one.
+/// Every n-th sample. Its area includes that of the samples left out up to the next one.
 std::vector<LocalThicknessAt> surface_points(const Solid& solid, std::size_t wanted, double& reach_mm) {
   const auto spacing = std::sqrt(solid.measures().area_mm2 / static_cast<double>(wanted));
   const SurfaceSamples samples = sample_surface(

@@ -10,7 +10,7 @@ namespace octotomy::brep {
 
 struct OverhangOptions {
   glm::dvec3 up{0.0, 0.0, 1.0};  ///< unit, LPS: from the printer's bed to the layers above
-  /// A face that looks down is an overhang if it is inclined by less than this from the bed, 0..90 degrees.
+  /// A face that looks down is an overhang if its angle to the bed is below this, 0..90 degrees.
   double incline_deg = 45.0;
   /// Faces within this height above the lowest point rest on the bed.
   double resting_mm = 0.1;
@@ -19,7 +19,7 @@ struct OverhangOptions {
 /// Overhanging triangles that are connected across edges.
 struct Overhang {
   double area_mm2 = 0.0;
-  glm::dvec3 at_mm{0.0};  ///< the middle of its largest triangle
+  glm::dvec3 at_mm{0.0};  ///< middle of the overhang's largest triangle
 };
 
 /// The overhangs of a surface, largest first, equal ones by their first triangle. Triangles without area are

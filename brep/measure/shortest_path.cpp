@@ -31,7 +31,8 @@ using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 using Traits = CGAL::Surface_mesh_shortest_path_traits<Kernel, Surface>;
 using Paths = CGAL::Surface_mesh_shortest_path<Traits>;
 
-/// A foot in CGAL's form: weights in CGAL's order of the face's corners, from the source of its halfedge.
+/// Converts a foot to CGAL's form. CGAL orders the weights by the face's corners, from the source of the
+/// face's halfedge.
 Paths::Face_location location_of(const Foot& foot, const Triangles& triangles, const Surface& surface) {
   const Surface::Face_index face(foot.face);
   const auto& corners = triangles.faces[foot.face];

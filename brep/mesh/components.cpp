@@ -132,8 +132,9 @@ std::vector<Component> components(const Linked& linked, const std::function<cons
   DisjointSets joined(linked.triangles.faces.size());
   for (std::uint32_t side = 0; side < linked.opposite.size(); ++side) {
     if (linked.opposite[side] == Linked::none)
-      throw InvalidInput("the components of open triangles have no volume: triangle " +
-                         std::to_string(side / 3) + " has a side of its own; close it first");
+      throw InvalidInput("components of an open surface have no volume: triangle " +
+                         std::to_string(side / 3) +
+                         " has a side without a neighbour; close the surface first");
     if (linked.is_inner_edge(side)) joined.join(side / 3, linked.opposite[side] / 3);
   }
   return components_of(linked.triangles, joined, tree);

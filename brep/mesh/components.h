@@ -25,8 +25,8 @@ struct Component {
 /// is open. Cost: n log n, one ray per shell.
 std::vector<Component> components(const Mesh& mesh);
 
-/// The components of triangles with their neighbours. `tree` returns their tree and is called only if there are
-/// cavities. Cost: linear, one ray per cavity.
+/// The components of linked triangles. `tree` returns the triangles' search tree and is called only if there
+/// are cavities. Cost: linear, one ray per cavity.
 std::vector<Component> components(const Linked& linked, const std::function<const SurfaceTree&()>& tree);
 
 /// The mesh of some of a mesh's faces, in the order given, without other vertices.

@@ -461,8 +461,8 @@ struct SurfaceTree::Tree {
     return {nodes[node].first, nodes[node].first + nodes[node].count};
   }
 
-  /// Whether triangle a precedes b, both equally near: the start comes first, otherwise the one that a search
-  /// of the nearer half first would reach first.
+  /// Whether triangle a precedes b if both are equally near. The start precedes all; otherwise the order is
+  /// that of a search that visits the nearer half first.
   bool comes_before(const glm::dvec3& p, std::uint32_t a, std::uint32_t b, std::uint32_t start) const {
     if (b == start || !is_halved) return false;
     std::uint32_t node = 0, begin = 0, end = static_cast<std::uint32_t>(faces.size());

@@ -11,8 +11,8 @@
 
 namespace octotomy::brep {
 
-/// Assigns equal points the same number, in order of first occurrence; 0.0 and -0.0 are equal, NaN equals
-/// nothing. Cost: linear; 32 to 40 bytes for each number.
+/// Numbers points. Equal points have the same number, in order of first occurrence; 0.0 and -0.0 are equal,
+/// NaN equals nothing. Cost: linear; 32 to 40 bytes for each number.
 class PointNumbers {
  public:
   /// Appends each new point to `points_mm`. Reserves memory for `expected` points. Preconditions: the list is

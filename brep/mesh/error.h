@@ -24,7 +24,7 @@ class Error : public std::runtime_error {
   ErrorCode code_;
 };
 
-/// A stop was requested, so no result was computed. Does not mean that there is no result.
+/// A stop was requested, so no result was computed. This does not mean that the operation has no result.
 struct Stopped : Error {
   explicit Stopped(const std::string& message) : Error(ErrorCode::Cancelled, message) {}
 };

@@ -63,8 +63,8 @@ inline Lanes absolute(Lanes a) {
 }
 
 /// The part of a segment inside a box around the origin, as its middle and half its extent. `slack` exceeds
-/// the sum of all roundings: in floats, those of the part's ends and of a box's middle and size, at most five
-/// times 2^-24 of the largest lengths; in doubles, those of the point where a far end is clipped.
+/// the sum of all roundings: in floats, of the part's ends and of a box's middle and size, at most five times
+/// 2^-24 of the largest lengths; in doubles, of the point at which a far end is clipped.
 struct FlatSegment {
   ThreeLanes middle, way, reach;
   Lanes slack;
@@ -102,7 +102,7 @@ struct FlatSegment {
   }
 };
 
-/// Child numbers from here on denote leaves.
+/// Child numbers from this one on denote leaves.
 inline constexpr std::uint32_t first_leaf = std::uint32_t{1} << 31;
 
 /// A node of the tree: boxes, relative to the middle of all and rounded outward, and their children.
@@ -130,9 +130,9 @@ struct FourBoxes {
   }
 
   /// Not 0 if a segment may meet the box: neither an axis of the box nor a cross product of an axis and the
-  /// segment separates them (Akenine-Moller et al., Real-Time Rendering, 2018, 22.9). An axis separates them
-  /// if their middles are farther apart than the sum of half extents. For a cross product, an error of
-  /// `slack` in one factor is multiplied by the size of the other.
+  /// segment separates box and segment (Akenine-Moller et al., Real-Time Rendering, 2018, 22.9). An axis
+  /// separates both if their middles are farther apart along it than the sum of half their extents. For a
+  /// cross product, an error of `slack` in one factor is multiplied by the size of the other.
   auto met(const FlatSegment& segment) const {
     ThreeLanes apart, size;
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -364,8 +364,8 @@ void tell(const Triangles& triangles, Health& health, const Offenders& offenders
       offenders.boundary);
   if (health.unwelded_edges > 0)
     add(Defect::Open, "unwelded: " + std::to_string(health.unwelded_edges) + " of " +
-                          std::to_string(health.boundary_edges) + " open edges close when welded, as " +
-                          std::to_string(health.coincident_points) + " points have the positions of others");
+                          std::to_string(health.boundary_edges) + " open edges close when welded, because " +
+                          std::to_string(health.coincident_points) + " points coincide with others");
   say(Defect::NonmanifoldEdge, health.nonmanifold_edges, "edges with more than two triangles",
       offenders.nonmanifold_edge);
   say(Defect::NonmanifoldVertex, health.nonmanifold_vertices,

@@ -13,7 +13,7 @@
 
 namespace octotomy::brep {
 
-/// Defects by which triangles are not a solid, in the order of the checks.
+/// Defects that keep triangles from being a solid, in the order of the checks.
 enum class Defect {
   NoTriangles,
   Open,               ///< an edge with one triangle
@@ -28,8 +28,8 @@ enum class Defect {
 };
 
 /// The checks of a mesh, in this order. Empty `findings` mean a solid or, without the intersection test, that
-/// no other check failed. An edge is a pair of points joined by a triangle. Points that no triangle uses are
-/// counted but are no defect.
+/// no other check failed. An edge is a pair of points that a triangle connects. Points that no triangle uses
+/// are counted but are no defect.
 struct Health {
   std::size_t vertices = 0;
   std::size_t faces = 0;
@@ -53,7 +53,7 @@ struct Health {
   std::vector<std::pair<int, int>> crossing;  ///< first pairs of triangles that intersect, at most 100
   bool closed = false;                        ///< there are triangles, and every edge has at least two
   bool manifold = false;
-  /// Neighbours have consistent winding. If the mesh is closed, also every shell's orientation fits the
+  /// Neighbours have consistent winding. If the mesh is closed, every shell's orientation also fits the
   /// shells around it, and the total volume is positive.
   bool oriented = false;
   std::vector<std::string> findings;   ///< each names its first triangle by number and position

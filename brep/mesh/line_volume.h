@@ -23,12 +23,12 @@ struct LineVolumes {
                                      ///< contradictory triangles
 };
 
-/// Volumes by lines along x: about `lines` lines over both surfaces' box, or fewer if they would cross the
-/// surfaces more than 2^26 times. Each line is evaluated exactly: triangles may cross and coincide, and whole
-/// shells may face inward. The common volume of a surface with itself is exactly its volume. Precondition:
-/// triangles refer to finite points. The same bits on any number of threads. Error: falls with about the
-/// 0.75th power of the number of lines; 1e-5 at a million on a head. Cost: proportional to the number of
-/// crossings; 0.15 s for a million lines and two surfaces of 500k triangles on two cores.
+/// Volumes by lines along x: about `lines` lines through both surfaces' box, or fewer if this number would
+/// cross the surfaces more than 2^26 times. Each line is evaluated exactly: triangles may cross and coincide,
+/// and whole shells may face inward. The common volume of a surface with itself is exactly its volume.
+/// Precondition: triangles refer to finite points. The same bits on any number of threads. Error: falls with
+/// about the 0.75th power of the number of lines; 1e-5 at a million on a head. Cost: proportional to the
+/// number of crossings; 0.15 s for a million lines and two surfaces of 500k triangles on two cores.
 LineVolumes line_volumes(const Triangles& a, const Triangles& b, std::size_t lines = 1u << 20);
 
 }  // namespace octotomy::brep

@@ -144,7 +144,7 @@ void MortonTree::build(const MortonOrder& order) {
   const std::uint32_t task_size = std::max(count / 12, std::uint32_t{1} << 14);
   // The tree's upper nodes, each before its children, over runs that are built in parallel.
   struct Upper {
-    std::uint32_t begin, end, second;  ///< the second child among these; 0 for a run
+    std::uint32_t begin, end, second;  ///< `second`: index of the second child in this list; 0 for a run
   };
   std::vector<Upper> upper;
   const auto part = [&](const auto& self, std::uint32_t begin, std::uint32_t end) -> void {

@@ -19,7 +19,7 @@ namespace octotomy::brep {
 /// The lines along x at one height that cross a triangle: those from low_y up to, not including, high_y.
 struct RowCrossing {
   double low_y = 0.0, low_x = 0.0;    ///< the point at which the row meets the side of lower y
-  double high_y = 0.0, high_x = 0.0;  ///< the point at which it meets the other side
+  double high_y = 0.0, high_x = 0.0;  ///< the point at which the row meets the other side
   int enters = 1;                     ///< 1 where lines enter a closed surface there, -1 where they leave it
 
   bool has(double y) const { return y >= low_y && y < high_y; }

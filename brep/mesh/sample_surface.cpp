@@ -121,7 +121,7 @@ Split split_of(const std::array<glm::dvec3, 3>& corners, double spacing_mm) {
                 std::max(1.0, std::ceil(split.longest_mm / spacing_mm))};
   split.count = split.grid.area_mm2 == 0.0 ? 0.0 : split.grid.count();
   const double enough = std::min(split.count / 4.0, static_cast<double>(most_of_all));
-  // Wedges have about two strips, or more, for each part of the longest side.
+  // Wedges have at least about two strips for each part of the longest side.
   if (!(2.0 * split.grid.parts < enough)) return split;
   split.wedges = wedges_of(corners, split.grid.area_mm2, spacing_mm);
   const double count = split.wedges[0].count(enough) + split.wedges[1].count(enough);

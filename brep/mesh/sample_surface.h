@@ -19,10 +19,11 @@ struct SurfaceSamples {
 };
 
 /// Splits each triangle into n * n equal ones with sides of at most `spacing_mm`, a sliver into cells of at
-/// most that diameter. The samples are their centres of gravity, in order of triangles. Triangles without
-/// area have none. Throws std::invalid_argument if the spacing is not positive; Error, Resource, if there
-/// would be more than `most_samples`, at most 2^26. Cost: linear in the samples, 56 bytes each. There is at
-/// least one sample per triangle, and a few for each square of the spacing and each spacing along a sliver.
+/// most that diameter. The samples are the centres of gravity of these parts, in order of triangles.
+/// Triangles without area have no samples. Throws std::invalid_argument if the spacing is not positive;
+/// Error, Resource, if there would be more than `most_samples`, at most 2^26. Cost: linear in the samples, 56
+/// bytes each. There is at least one sample per triangle, and a few for each square of the spacing and each
+/// spacing along a sliver.
 SurfaceSamples sample_surface(const Mesh& mesh, double spacing_mm);
 SurfaceSamples sample_surface(const Triangles& triangles, double spacing_mm,
                               std::size_t most_samples = std::size_t{1} << 26);

@@ -25,9 +25,9 @@ struct ShellPlace {
 };
 
 /// The places of all shells, by their lowest triangles. `tree` holds all triangles and may be null for a
-/// single shell. A point that shells share is used only if a shell has no other. Parallel, with the same
-/// result on any number of threads. Cost: n log n, and for each shell the triangles along a ray from its
-/// point to the end of the shells whose boxes contain that point.
+/// single shell. A point that several shells share is used only if a shell has no other point. Parallel, with
+/// the same result on any number of threads. Cost: n log n, and for each shell the triangles along a ray from
+/// its point to the end of the shells whose boxes contain that point.
 std::vector<ShellPlace> shell_places(const ShelledSurface& surface, const MortonTree* tree);
 
 }  // namespace octotomy::brep

@@ -12,7 +12,7 @@ namespace octotomy::brep {
 /// are numbered as in the surface, ascending. Shells may be open. Cost: linear.
 std::vector<std::vector<std::uint32_t>> shells(const Linked& surface);
 
-/// Appends a surface to another one, with points of its own.
+/// Appends a surface to another one. The two share no points afterwards.
 void append(const Triangles& more, Triangles& all);
 
 }  // namespace octotomy::brep

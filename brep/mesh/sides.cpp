@@ -43,7 +43,7 @@ SidesOfPoints::SidesOfPoints(const Triangles& triangles)
   std::uint32_t sum = 0;
   for (std::uint32_t& end : end_) {
     const std::uint32_t count = end;
-    end = sum;  // the beginning of the point's sides; storing them moves it to their end
+    end = sum;  // begins as the start of the point's sides; storing them moves it to their end
     sum += count;
   }
   each_side([&](std::uint32_t low, std::uint32_t corner) { corners_[end_[low]++] = corner; });

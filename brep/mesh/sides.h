@@ -34,9 +34,9 @@ class PointShares {
   explicit PointShares(const Triangles& triangles);
 
   /// Calls visit(first, end, each) for shares of the points, first..end - 1, from several threads. each(take)
-  /// calls take(f), in ascending order, for all triangles with a point of the share and some others. Cost
-  /// besides the calls: one pass over the triangles if they are roughly in the order of their points, else
-  /// one per share.
+  /// calls take(f), in ascending order, for all triangles with a point of the share, and for some other
+  /// triangles. Cost besides the calls: one pass over the triangles if they are roughly in the order of their
+  /// points, else one per share.
   template <typename Visit>
   void visit(const Visit& visit) const {
     const std::size_t points = triangles_.points_mm.size();
@@ -63,7 +63,7 @@ class PointShares {
 };
 
 /// The sides of triangles by the lower of their points. Preconditions: every triangle refers to existing
-/// points; 32 bits suffice for three corners of each. Cost: linear; 4 bytes per side and 4 per point.
+/// points; 32-bit numbers can name all corners. Cost: linear; 4 bytes per side and 4 per point.
 class SidesOfPoints {
  public:
   explicit SidesOfPoints(const Triangles& triangles);
@@ -76,7 +76,7 @@ class SidesOfPoints {
 
  private:
   const Triangles& triangles_;
-  std::vector<std::uint32_t> end_;            ///< by point, where its sides end among the corners
+  std::vector<std::uint32_t> end_;            ///< for each point, where its sides end in corners_
   std::unique_ptr<std::uint32_t[]> corners_;  ///< the corner at which each side starts
 };
 

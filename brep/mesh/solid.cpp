@@ -45,7 +45,7 @@ class Kept {
  public:
   template <typename Compute>
   const Value& get(const Compute& compute) {
-    // Isolated, because a thread that waits for its parallel loop must not run other tasks that wait for this
+    // Isolated, because a thread that waits within compute() must not run other tasks that wait for this
     // value.
     std::call_once(once_, [&] { tbb::this_task_arena::isolate([&] { value_.emplace(compute()); }); });
     return *value_;

@@ -21,8 +21,8 @@ enum class Proof {
   /// Made from solids by exact predicates, then rounded to doubles: a Boolean or a motion. Triangles thinner
   /// than the rounding may overlap their neighbours.
   Rounded,
-  /// Only closed and consistently wound: its points were moved individually, or whole shells were selected.
-  /// Check with health().
+  /// The surface is only closed and consistently wound: its points were moved individually, or whole shells
+  /// were selected. Check with health().
   Connection,
 };
 
@@ -54,7 +54,7 @@ class Solid {
   /// components() of the solid. Cost of the first call: linear, and tree() if there are cavities.
   const std::vector<Component>& components() const;
 
-  /// Whether both are copies of one value. Equal solids that were made independently are not.
+  /// Whether both are copies of one value. False for equal solids that were made independently.
   bool is_same(const Solid& other) const { return state_ == other.state_; }
 
  private:

@@ -30,9 +30,9 @@ bool fits(const Side* begin, const Side* end) {
   return end - begin == 1 || (end - begin == 2 && begin[0].upward != begin[1].upward);
 }
 
-/// A triangle that runs up the edge has the solid at smaller angles, one that runs down at larger ones. In
-/// order of falling angle, an upward triangle therefore opens a part of the solid and the next downward one
-/// closes it.
+/// A triangle that runs up the edge has the solid at smaller angles, a triangle that runs down has it at
+/// larger angles. In order of falling angle, an upward triangle therefore opens a part of the solid and the
+/// next downward one closes it.
 void join_by_angle(const Triangles& triangles, const Side* begin, const Side* end,
                    const std::vector<std::uint8_t>& ends_elsewhere, Pairs& pairs) {
   const glm::dvec3 low = triangles.points_mm[begin->low];

@@ -33,11 +33,12 @@ struct SplitFans {
 /// Converts arbitrary triangles to a surface that mesh_of() accepts. At an edge of more than two triangles,
 /// or of two with the same direction, neighbours around the edge with the solid between them are joined; the
 /// others end there. Each further fan of triangles around a point gets a copy of the point, and pairs that
-/// still share both ends of an edge are divided at its middle. Triangles that repeat a point are left out. A
-/// closed surface with equally many triangles in both directions at every edge stays closed. Throws Error
-/// (Input) for a triangle that refers to a missing point or to one that is not finite. Cost: n log n. Source:
-/// Gueziec, Taubin, Lazarus, Horn, "Cutting and stitching: converting sets of polygons to manifold surfaces",
-/// TVCG 7(2), 2001; pairs around an edge are chosen by angle, as for solids that touch at the edge.
+/// still share both ends of an edge are divided at the edge's middle. Triangles that repeat a point are left
+/// out. A closed surface with equally many triangles in both directions at every edge stays closed. Throws
+/// Error (Input) for a triangle that refers to a missing point or to one that is not finite. Cost: n log n.
+/// Source: Gueziec, Taubin, Lazarus, Horn, "Cutting and stitching: converting sets of polygons to manifold
+/// surfaces", TVCG 7(2), 2001; pairs around an edge are chosen by angle, as for solids that touch at the
+/// edge.
 SplitFans split_fans(const Triangles& triangles);
 
 /// "edge of 3 triangles at (1, 2, 3) mm: 1 pair joined, 1 triangle ends there".

@@ -8,9 +8,9 @@
 namespace octotomy::brep {
 
 /// The sign of a sum of products in doubles; 0 if rounding may decide. `permanent` is the sum of the terms'
-/// absolute values. The bound is eight half epsilons, and two for its own rounding (Shewchuk, "Adaptive
-/// precision floating-point arithmetic and fast robust geometric predicates", 1997, has seven for a
-/// determinant of three differences). Below `least` products may be lost to underflow.
+/// absolute values. The error bound is eight half epsilons of `permanent`, and two for the bound's own
+/// rounding (Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates",
+/// 1997, has seven for a determinant of three differences). Below `least` products may be lost to underflow.
 inline int sure_sign(double determinant, double permanent) {
   constexpr double half_epsilon = 0.5 * std::numeric_limits<double>::epsilon();
   constexpr double share = 10.0 * half_epsilon;

@@ -183,7 +183,8 @@ Mesh mesh_of(const Linked& linked) {
   const std::vector<std::uint32_t>& opposite = linked.opposite;
   const auto vertex = [](std::uint32_t point) { return Mesh::VertexHandle(static_cast<int>(point)); };
 
-  // Edges are numbered in order of their first sides; the halfedge of that side is the edge's first.
+  // Edges are numbered in order of their first sides; the halfedge of its first side is the edge's first
+  // halfedge.
   std::vector<Mesh::HalfedgeHandle> halfedge(opposite.size());
   int edge_count = 0;
   for (std::uint32_t c = 0; c < opposite.size(); ++c)

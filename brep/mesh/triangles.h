@@ -18,12 +18,12 @@ struct Triangles {
 };
 
 /// The mesh of these triangles: face i is triangle i, vertex i is point i, whether or not a triangle uses it.
-/// Where fans of triangles touch only at a point, the first keeps it and each further fan gets a copy after
-/// the last point; the surface does not change, and every vertex is manifold. Throws Error (Input), which
-/// names the first triangle that refers to a missing point, repeats a point, is not finite, or cannot be
-/// joined to the others without an edge of more than two triangles or of two with the same direction; Error
-/// (Resource) if there are too many triangles for 32 bits. Cost: n log n, about 100 bytes per triangle
-/// besides the mesh.
+/// Where fans of triangles touch only at a point, the first fan keeps the point and each further fan gets a
+/// copy, after the last point; the surface does not change, and every vertex is manifold. Throws Error
+/// (Input), which names the first triangle that refers to a missing point, repeats a point, is not finite, or
+/// cannot be joined to the others without an edge of more than two triangles or of two with the same
+/// direction; Error (Resource) if there are too many triangles for 32 bits. Cost: n log n, about 100 bytes
+/// per triangle besides the mesh.
 Mesh mesh_of(const Triangles& triangles);
 
 /// Triangles with their neighbours. A side has the number of the corner at which it starts: 3 f + k is side k
@@ -33,7 +33,7 @@ struct Linked {
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
   Triangles triangles;
-  std::vector<std::uint32_t> opposite;  ///< by side, the neighbour's side of the same edge
+  std::vector<std::uint32_t> opposite;  ///< for each side, the neighbour's side of the same edge
 
   std::uint32_t from(std::uint32_t side) const { return triangles.faces[side / 3][side % 3]; }
   std::uint32_t to(std::uint32_t side) const { return triangles.faces[side / 3][(side + 1) % 3]; }
@@ -52,7 +52,7 @@ Linked linked_of(const Mesh& mesh);
 /// The mesh of linked triangles, with the same numbers.
 Mesh mesh_of(const Linked& linked);
 
-/// Throws if mesh_of() would, at a third of its cost.
+/// Throws if mesh_of() would throw, at a third of the cost of mesh_of().
 void check_joins(const Triangles& triangles);
 
 /// The faces and vertices of a mesh in its own order. Precondition: nothing is marked as deleted.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 halve the triangles at the median centre along the longest axis; 2 sum the moments of each node from its
-// children; 3 for eight neighbouring points along a Morton curve, descend where a cluster is within
-// `nearness` radii of their ball, else use the moments. Departure from the source: no third order, because
-// only the level of one half is needed.
+// children; 3 for eight neighbouring points along a Morton curve, descend into clusters whose distance from
+// the points' ball is below `nearness` cluster radii, and use the moments of the others. Departure from the
+// source: no third order, because only winding numbers above and below one half are to be distinguished.
 #include "brep/mesh/winding_number.h"
 
 #include <algorithm>
@@ -23,7 +23,8 @@ namespace {
 
 constexpr std::uint32_t leaf_size = 8;
 
-/// Beyond this many of its radii, a cluster is evaluated by its moments; the source's accuracy scale.
+/// A cluster farther away than this many of its radii is evaluated by its moments. The source calls it the
+/// accuracy scale.
 constexpr double nearness() {
   return 2.0;
 }

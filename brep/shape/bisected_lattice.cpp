@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 level by level, drop tetrahedra whose middle is farther from the surface than from their corners, where
 // possible by the distances at their corners alone; keep those in which distances are linear, and bisect the
-// others; 2 bisect kept tetrahedra that have on an edge the middle at which a neighbour was bisected, until
-// there is none. All corners of a dropped tetrahedron lie on one side of the surface, and so do the corners
+// others; 2 bisect kept tetrahedra if a neighbour was bisected at the middle of one of their edges, until
+// there are none. All corners of a dropped tetrahedron lie on one side of the surface, and so do the corners
 // that neighbours have within its faces. So the surface is closed although dropped tetrahedra are not
 // bisected.
 #include "brep/shape/bisected_lattice.h"
@@ -30,8 +30,8 @@ glm::dvec3 at(std::uint64_t key) {
   return glm::dvec3(place_of(key));
 }
 
-/// A middle exists if the sum of both places is even on every axis. Its key is then half the sum of both
-/// keys.
+/// The middle of two places is a place if the sum of both is even on every axis. Its key is then half the sum
+/// of both keys.
 bool has_middle(std::uint64_t a, std::uint64_t b) {
   return glm::all(glm::equal((place_of(a) + place_of(b)) & 1, LatticePoint(0)));
 }
@@ -108,7 +108,7 @@ class Bisection {
     std::array<double, 4> at_corners_mm{};
   };
 
-  /// Whether each of these satisfies a condition, in parallel.
+  /// For each item, whether it satisfies a condition; in parallel.
   template <typename Condition>
   static std::vector<std::uint8_t> where(std::size_t count, const Condition& condition) {
     std::vector<std::uint8_t> is(count);
@@ -167,7 +167,7 @@ class Bisection {
     return inside != 0 && inside != 4;
   }
   /// Whether a corner alone shows that the middle is too far from the surface for may_be_passed(). The margin
-  /// is above the rounding of both.
+  /// is above the rounding of both distances.
   bool is_surely_beside(const Open& open) const {
     const glm::dvec3 centre = centre_of(open.simplex);
     const double reach = reach_of(open.simplex) * (1.0 + 1e-8);
@@ -193,8 +193,8 @@ class Bisection {
   }
 
   /// Appends points of a tetrahedron's flat piece of surface: where the distance is 0 if distances are
-  /// linear in the tetrahedron. The points are `narrowest_mm` apart at most. None if the tetrahedron is no
-  /// longer than twice that.
+  /// linear in the tetrahedron. The points are `narrowest_mm` apart at most. Appends none if no edge of the
+  /// tetrahedron is longer than twice `narrowest_mm`.
   void add_piece(const Simplex& simplex, std::vector<glm::dvec3>& places) const {
     if (longest_mm(simplex) <= 2.0 * options_.narrowest_mm) return;
     std::vector<glm::dvec3> corners;
@@ -218,8 +218,7 @@ class Bisection {
     }
   }
 
-  /// Among tetrahedra in which distances seem linear, drops those whose piece of plane differs from the
-  /// surface.
+  /// Among tetrahedra in which distances seem linear, drops those whose flat piece differs from the surface.
   void drop_bumpy(const std::vector<Open>& level, std::vector<std::uint8_t>& is_kept) const {
     std::vector<glm::dvec3> places;
     std::vector<std::size_t> owners;
@@ -246,7 +245,7 @@ class Bisection {
     return level;
   }
 
-  /// Distances at the centres of these tetrahedra of a level, at their numbers.
+  /// Computes the distances at the centres of the numbered tetrahedra of a level, stored at their numbers.
   void learn_centres(const std::vector<Open>& level, const std::vector<std::size_t>& numbers,
                      std::vector<double>& at_centres_mm) const {
     std::vector<glm::dvec3> centres(numbers.size());
@@ -342,7 +341,7 @@ class Bisection {
                           [&](const Open& open, std::vector<Open>& made) { add_halves(open, made); });
   }
 
-  /// The tetrahedra of the finest level first, those of one level in their order.
+  /// Sorts tetrahedra: the finest level first, those of one level in their given order.
   static std::vector<Simplex> finest_first(const std::vector<Simplex>& simplices) {
     std::array<std::size_t, 257> first{};
     for (const Simplex& simplex : simplices) ++first[256U - simplex.level];
@@ -366,9 +365,9 @@ class Bisection {
       hangs(half, middles_) ? bisect(half, closed, added) : closed.push_back(half);
   }
 
-  /// Bisects the tetrahedra that have one of these middles on an edge. Returns the middles that this adds.
-  /// A middle concerns tetrahedra of its own level and coarser ones, so the finest are processed first,
-  /// which needs few rounds.
+  /// Bisects the tetrahedra that have one of these middles on an edge. Returns the middles that these
+  /// bisections add. A middle concerns tetrahedra of its own level and coarser ones, so the finest are
+  /// processed first, which needs few rounds.
   std::vector<std::uint64_t> close(const Middles& middles) {
     check_count(0);
     const std::vector<Simplex> open = finest_first(found_.simplices);
@@ -376,7 +375,7 @@ class Bisection {
     const std::vector<std::uint8_t> is_hanging =
         where(open.size(), [&](std::size_t i) { return hangs(open[i], middles); });
     std::vector<std::uint64_t> added;
-    Middles added_here;  // the first round looks for these, too
+    Middles added_here;  // middles that this call adds; its first round searches these, too
     found_.simplices.clear();
     found_.simplices.reserve(open.size() + open.size() / 2);
     for (std::size_t i = 0; i < open.size(); ++i) {
@@ -407,7 +406,7 @@ class Bisection {
 
   const BisectionOptions& options_;
   const DistancesAt& distances_at_;
-  Middles middles_;  ///< of the edges that were bisected
+  Middles middles_;  ///< middles of the edges that were bisected
   BisectedLattice found_;
 };
 

@@ -30,11 +30,11 @@ struct CutEdge {
 };
 
 struct BisectionOptions {
-  int side = 2;             ///< of the cube; a power of two up to 2^19
+  int side = 2;             ///< side of the cube, a power of two up to 2^19
   double step_mm = 1.0;     ///< between neighbouring places
   double tolerance_mm = 0;  ///< how far values may be from linear in a tetrahedron that is left whole
-  /// The narrowest part that the surface has where it is smooth. A tetrahedron with longer edges counts as
-  /// flat only if points of its flat piece, this far apart, lie on the surface.
+  /// The width of the narrowest part of the surface where it is smooth. A tetrahedron with longer edges
+  /// counts as flat only if points of its flat piece, this far apart, lie on the surface.
   double narrowest_mm = 1.0;
 };
 

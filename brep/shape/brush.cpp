@@ -48,7 +48,8 @@ Polyhedron polyhedron_of(const std::vector<Plane>& planes) {
         const glm::dvec3 corner_mm = (a.distance_mm * bc + b.distance_mm * glm::cross(c.normal, a.normal) +
                                       c.distance_mm * glm::cross(a.normal, b.normal)) /
                                      volume;
-        // Other planes pass a corner at a hundredth of its distance or more; rounding is far below that.
+        // Planes that do not meet at a corner pass it at a hundredth of its distance or more; rounding is far
+        // below that.
         const double slack_mm = 1e-9 * glm::length(corner_mm);
         if (std::all_of(planes.begin(), planes.end(), [&](const Plane& plane) {
               return glm::dot(plane.normal, corner_mm) <= plane.distance_mm + slack_mm;
@@ -80,7 +81,8 @@ Polyhedron polyhedron_of(const std::vector<Plane>& planes) {
   return made;
 }
 
-/// Distances from the centre in radii at which the volumes are those of a ball and a disc.
+/// Distances of faces from the centre, in radii, at which the polyhedra have the volumes of the ball and the
+/// disc.
 constexpr double ball_plane = 0.9675583399663303;
 constexpr double disc_plane = 0.993537015401427;
 
@@ -128,7 +130,8 @@ Solid hull_of(const Polyhedron& polyhedron, const glm::dvec3& start_mm, const gl
     if (is_new) hull.points_mm.push_back((at_end ? end_mm : start_mm) + polyhedron.corners_mm[c]);
     return found->second;
   };
-  std::map<std::pair<std::uint32_t, std::uint32_t>, bool> looks_forward;  // of the face left of an edge
+  std::map<std::pair<std::uint32_t, std::uint32_t>, bool> looks_forward;  // by edge: whether the face on its
+                                                                          // left does
   for (std::size_t f = 0; f < polyhedron.faces.size(); ++f) {
     const std::vector<std::uint32_t>& ring = polyhedron.faces[f];
     const bool forward = glm::dot(polyhedron.normals[f], end_mm - start_mm) > 0.0;

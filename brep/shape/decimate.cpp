@@ -43,7 +43,7 @@ class CollapsedMesh : public Mesh {
   /// Records that this collapse is allowed.
   void found() { least_error_ = error_; }
 
-  /// Whether the mesh stays a manifold without that edge (the link condition): its ends have no common
+  /// Whether the mesh stays a manifold without that edge (the link condition): the edge's ends have no common
   /// neighbours except the tips of its two triangles. OpenMesh's decimater calls this function by name.
   bool is_collapse_ok(OpenMesh::HalfedgeHandle edge) {
     const OpenMesh::HalfedgeHandle back = opposite_halfedge_handle(edge);
@@ -89,9 +89,9 @@ struct Collapse {
   OpenMesh::VertexHandle from, to;
 };
 
-/// The number of planes about a vertex, of triangles of mean area, that may each be as far from the vertex
-/// as the largest error. Most of the six planes about a vertex are nearer. The resulting surface is
-/// measured, see decimate().
+/// A collapse's error is at most that of this number of planes, of triangles of mean area, each as far from
+/// the vertex as the largest error. Most of the six planes about a vertex are nearer. The resulting surface
+/// is measured, see decimate().
 constexpr double quadric_share() {
   return 4.0;
 }
@@ -165,8 +165,8 @@ class Decimater : public OpenMesh::Decimater::DecimaterT<CollapsedMesh> {
 };
 
 /// Vertices of the original mesh are locked within this multiple of the extent of a triangle that intersects
-/// another. The original triangles that it replaced lie within its extent, and their neighbours within half
-/// as much again.
+/// another. The original triangles that the intersecting triangle replaced lie within its extent, and their
+/// neighbours within half as much again.
 constexpr double lock_reach() {
   return 1.5;
 }
@@ -272,8 +272,8 @@ std::size_t lock_about(const Mesh& coarse, int face, const Mesh& mesh, std::vect
   return count;
 }
 
-/// The given surface, prepared for measuring every round against it. Nothing is measured if any error is
-/// allowed.
+/// The given surface, prepared for measuring every round against it. If the allowed error is infinite,
+/// nothing is measured.
 class Given {
  public:
   Given(const Mesh& mesh, double limit_mm) : limit_mm_(limit_mm) {

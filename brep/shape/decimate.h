@@ -16,7 +16,7 @@ struct DecimateOptions {
                                          ///< it earlier
   double max_normal_deviation_deg = 45;  ///< largest rotation of a triangle's normal by one collapse, 0..90
   double max_aspect = 10;  ///< largest allowed ratio of longest side to height for new triangles
-  int max_rounds = 8;      ///< see below; at least 1
+  int max_rounds = 8;      ///< rounds of decimate(), at least 1
 };
 
 /// A coarser mesh of the same topology whose vertices are vertices of the given one: edges are collapsed in

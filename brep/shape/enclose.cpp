@@ -418,8 +418,8 @@ std::size_t keep_hull(Triangles& surface) {
   const SurfaceTree tree(surface);
   std::map<std::uint32_t, bool> stays;
   for (const auto& [shell, volume] : volumes) {
-    // A point of a shell shows by parity which other shells contain it; an outermost shell lies in none of
-    // them.
+    // The parity of crossings from one point of a shell shows which other shells contain the shell. Outermost
+    // shells lie in no other.
     std::map<std::uint32_t, int> about;
     for (const Crossing& crossed : tree.crossings(surface.points_mm[shell])) {
       const std::uint32_t other = sets.set_of(surface.faces[crossed.face][0]);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A hole is closed by the triangulation of its border with the least sharpness and area. It is searched among
-// the triangles of the border's Delaunay tetrahedra and, if none of those close it, among all triangles.
-// Source: Liepa, "Filling holes in meshes", SGP 2003, and Zou et al., "An algorithm for triangulating
-// multiple 3D polygons", SGP 2013, as implemented in CGAL. The search among all triangles is cubic in the
-// border's sides, and the recursion of the Delaunay search is as deep as the border is long. Departure for
-// long borders: corners are cut off until the border is short enough for a search. A corner is cut off by a
-// triangle of two neighbouring sides, in order of the third side's length.
+// A hole is closed by the triangulation of its border with the least sharpness and area. This triangulation
+// is searched among the triangles of the border's Delaunay tetrahedra and, if none of those close it, among
+// all triangles. Source: Liepa, "Filling holes in meshes", SGP 2003, and Zou et al., "An algorithm for
+// triangulating multiple 3D polygons", SGP 2013, as implemented in CGAL. The search among all triangles is
+// cubic in the border's sides, and the recursion of the Delaunay search is as deep as the border is long.
+// Departure for long borders: corners are cut off until the border is short enough for a search. A corner is
+// cut off by a triangle of two neighbouring sides, in order of the third side's length.
 #include "brep/shape/fill_holes.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

@@ -3,8 +3,8 @@
 // How hidden triangles are found. Divide the view into cells. In each cell, join triangles across the edges
 // that they share to sheets. A sheet has a border within the cell only if the surface turns away at one of
 // the sheet's edges there. A sheet without a border in the cell covers the whole cell or nothing of it: all
-// if it covers the cell's middle. Parts deeper than all corners of such a covering sheet's triangles are
-// hidden in that cell.
+// if it covers the cell's middle. In that cell, everything deeper than all corners of a covering sheet's
+// triangles is hidden.
 #include "brep/shape/front_faces.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

@@ -27,7 +27,7 @@ class FrontFaces {
   static constexpr std::uint32_t none = Linked::none;
 
   /// Precondition: the surface is closed, and `points` are its points. `surface` and `points` must outlive
-  /// this.
+  /// this object.
   FrontFaces(const Linked& surface, const std::vector<glm::dvec3>& points);
 
   /// The triangles that may be seen, ascending. Triangles wholly behind sheets without a gap are left out,

@@ -57,7 +57,8 @@ class KeyTable {
     [[no_unique_address]] Value value{};
   };
 
-  /// Coordinates fill single bits of a key: they are mixed, or many keys would share a place of the table.
+  /// Coordinates fill single bits of a key: they are mixed, because many keys would otherwise share a slot of
+  /// the table.
   std::size_t slot_of(std::uint64_t key) const {
     std::uint64_t mixed = (key ^ key >> 31) * 0x9E3779B97F4A7C15U;
     std::size_t i = static_cast<std::size_t>(mixed ^ mixed >> 29) & (slots_.size() - 1);

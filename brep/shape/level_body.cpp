@@ -48,8 +48,8 @@ struct Bounds {
 };
 
 /// Distances at the middles of cells. They bound the distances at all points in a cell, because distances
-/// change by at most the distance between points. They are computed for a cell once `enough_points` points
-/// lay in it.
+/// change by at most the distance between points. A cell's distances are computed once `enough_points` points
+/// were in the cell.
 class CoarseDistances {
  public:
   CoarseDistances(const LevelBody& body, double edge_mm)
@@ -259,7 +259,7 @@ double volume_beyond_mm3(const LevelBody& body, const Solid& solid, double beyon
   check(body);
   const Size size = size_of(body);
   if (!glm::all(glm::lessThan(size.low_mm, size.high_mm))) return 0.0;
-  // Cubes are divided that may hold points of the body far enough outside the solid.
+  // Divides the cubes that may hold points of the body far enough outside the solid.
   constexpr int halvings = 3;
   double edge_mm = step_mm * (1 << halvings);
   std::vector<glm::dvec3> middles_mm;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 bisect tetrahedra until the distance is linear in each that the surface may pass; 2 find the surface on
-// each of their edges whose ends lie on either side; 3 join those points.
+// each edge of these whose ends lie on different sides; 3 join those points.
 #include "brep/shape/level_surface.h"
 
 #include <algorithm>

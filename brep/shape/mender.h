@@ -16,7 +16,7 @@
 namespace octotomy::brep {
 
 /// The steps of repair(): each changes the surface and lists its changes by the numbers of triangles in the input.
-/// Steps that need a connected mesh report it if the triangles do not form one.
+/// Steps that need a connected mesh report if the triangles do not form one.
 class Mender {
  public:
   explicit Mender(const Triangles& surface);
@@ -48,7 +48,7 @@ class Mender {
   const Triangles& surface() const { return repair_.surface; }
   /// The cell size of the lattice, if the surface was reconstructed.
   const std::optional<double>& cell_mm() const { return repair_.enclosed_cell_mm; }
-  /// Whether a side of a triangle is not shared by exactly one other.
+  /// Whether any side of a triangle is not shared by exactly one other triangle.
   bool is_open() const;
   double extent_mm() const;
   /// Ends the repair. Points that belong to no triangle are left out.

@@ -9,14 +9,14 @@ namespace octotomy::brep {
 struct OffsetOptions {
   double by_mm = 1.0;  ///< above 0 outward, below 0 inward
   /// Approximate edge length of the smallest triangles on parts that the offset rounds; above 0. Sharp edges
-  /// get a quarter of it, flat and gently curved parts larger triangles.
+  /// get triangles of a quarter of this length, flat and gently curved parts larger triangles.
   double cell_mm = 1.0;
   Progress progress = {};
 };
 
 /// The largest distance between triangles and the offset surface, away from the triangles' points: the height
 /// of a chord of sqrt(2) cells at a radius of the offset's own length, and at most a 16th of a cell. The mean
-/// over a smooth surface is at most a third of it.
+/// distance over a smooth surface is at most a third of this.
 double offset_tolerance_mm(const OffsetOptions& options);
 
 /// The surface of all points within by_mm of a solid, its Minkowski sum with a ball. If by_mm is negative,

@@ -99,7 +99,8 @@ bool collide(const Side& a, const Side& b) {
          !CGAL::collinear_are_strictly_ordered_along_line(a.from, a.to, b.to);
 }
 
-/// Sweeps along u. Cost: the number of pairs of sides whose ranges of u overlap.
+/// Refuses sides that meet, found by a sweep along u. Cost: the number of pairs of sides whose ranges of u
+/// overlap.
 void check_crossings(std::vector<Side> sides) {
   std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
     return std::make_tuple(a.low_u(), a.polygon, a.index) < std::make_tuple(b.low_u(), b.polygon, b.index);
@@ -119,12 +120,12 @@ void check_crossings(std::vector<Side> sides) {
     }
 }
 
-/// Fewer points are fast in any order; they are inserted in the outline's order, which determines the
-/// diagonals.
+/// Fewer points are fast to insert in any order. They are inserted in the outline's order, which determines
+/// the diagonals.
 constexpr std::size_t many_points = 2000;
 
 /// Along the outline or, for many points, along a Hilbert curve: in the order of a fine outline, each point
-/// would change a large fan of triangles around the last ones.
+/// would change a large fan of triangles around the points before it.
 std::vector<std::size_t> order_of_insertion(const std::vector<glm::dvec2>& points) {
   std::vector<std::size_t> order(points.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -80,8 +80,8 @@ std::optional<double> enclosed_mm3(const Triangles& surface, double cell_mm, boo
   }
 }
 
-/// The edge of a lattice's cells for a wall: at most half its thickness, so that no part of the wall is
-/// missed.
+/// The edge of a lattice's cells for a wall: at most half the wall's thickness, so that no part of the wall
+/// is missed.
 double wall_cell_mm(double wall_mm, const RepairOptions& options) {
   return std::min(options.cell_mm.value_or(0.5 * wall_mm), 0.5 * wall_mm);
 }

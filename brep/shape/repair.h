@@ -17,7 +17,8 @@ struct RepairOptions {
   /// the width of parts to preserve.
   std::optional<double> weld_mm = std::nullopt;
   bool remove_duplicates = false;  ///< removes triangles with the same three points as an earlier one
-  bool orient = false;             ///< neighbours consistently; closed shells outward, or inward as cavities
+  bool orient = false;             ///< orients neighbours consistently; closed shells outward, or inward as
+                                   ///< cavities
   /// Removes triangles that repeat a point, and others without area as in flat_triangles.h.
   bool remove_flat = false;
   /// Closes each hole by the triangles of least area and sharpness over its border.
@@ -44,7 +45,7 @@ struct RepairOptions {
 /// One change that was made, or that could not be made.
 struct Change {
   std::string step;  ///< weld, duplicates, orient, flat, fans, holes, intersections, solid
-  std::string what;  ///< names triangles and points by their numbers in the input
+  std::string what;  ///< text that names triangles and points by their numbers in the input
   glm::dvec3 at_mm{0.0};
 };
 

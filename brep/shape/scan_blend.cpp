@@ -129,7 +129,7 @@ class Weight {
 
   double far_mm() const { return far_mm_; }
 
-  /// How far a point lies within the depth and the chosen crowns.
+  /// How far inside the depth and the chosen crowns a point lies.
   double within_mm(const glm::dvec3& p_mm) const {
     double within = options_.depth_mm + options_.tips_mm - glm::dot(p_mm, options_.to_roots);
     if (options_.about_mm.empty()) return within;
@@ -217,7 +217,7 @@ struct TurnedBox {
 };
 
 /// The mixed distances, which end at the walls of the box. Within `strip_mm` of the walls the surface lies
-/// `inset_mm` within the solid's.
+/// `inset_mm` inside the solid's surface.
 class MixedField {
  public:
   MixedField(const Solid& solid, const Weight& weight, const TurnedBox& box, double strip_mm, double inset_mm,
@@ -276,8 +276,8 @@ class MixedField {
   std::stop_token stop_;
 };
 
-/// The field's values at the points of a lattice about the box, in blocks of points, x fastest. Blocks that lie
-/// farther from the surface than their size have the value of their middle: only its sign counts there.
+/// The field's values at the points of a lattice about the box, in blocks of points, x fastest. A block
+/// farther from the surface than its size has only the value of its middle: there, only the sign counts.
 class LatticeValues {
  public:
   static constexpr int block = 4, block_points = block * block * block;
@@ -344,7 +344,7 @@ LatticeValues values_about(const Size& size, const MixedField& field, double ste
       }
   lattice.middles = field.at(middles_mm);
   options.progress.at(0.1);
-  // From a block's middle to a cell beyond its farthest point.
+  // The distance from a block's middle to one cell beyond its farthest point, as a change of the field.
   const double reach_mm = steepness * options.cell_mm * (0.5 * std::sqrt(3.0) * (block - 1) + 1.0);
   std::vector<glm::dvec3> points_mm;
   lattice.first.assign(lowest.size(), LatticeValues::far_block);
@@ -453,7 +453,8 @@ Solid without_specks(const Solid& solid, ScanBlend& made) {
   return trusted_solid(part_of(solid.mesh(), kept), proof_of_part(solid.proof()));
 }
 
-/// The area of the surface by its source, and the largest distance of the scan's part from the solid before.
+/// Measures the surface's area by source, and the largest distance of its part from the scan to the solid
+/// before.
 void find_sources(const Solid& before, const Weight& weight, const TurnedBox& box, ScanBlend& made) {
   const Triangles& surface = made.solid.triangles();
   std::vector<glm::dvec3> middles_mm;

@@ -32,7 +32,7 @@ struct ScanBlendOptions {
   Progress progress = {};
 };
 
-/// Where the surface comes from, mm².
+/// The area of the surface by its source, mm².
 struct SurfaceSources {
   double scan_mm2 = 0.0, border_mm2 = 0.0, solid_mm2 = 0.0;
 };

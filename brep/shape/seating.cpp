@@ -127,7 +127,7 @@ Seating seating(const Solid& part, const Solid& object, const SeatingOptions& op
   if (part.empty() || object.empty()) throw InvalidInput("seating needs a part and an object");
   if (!(options.resolution_mm > 0.0)) throw InvalidInput("the resolution of depths must be above 0 mm");
   const glm::dvec3 away = -options.direction;
-  // The path begins so far before the object that the part does not touch it there.
+  // The part's path begins far enough before the object that the part does not touch the object.
   const glm::dvec3 extent = part.size().high_mm - part.size().low_mm;
   const double end_mm = std::max(far_end_mm(part, away), far_end_mm(object, away) + glm::length(extent));
   const Shadow swept = shadow(part, {away, end_mm, options.progress});

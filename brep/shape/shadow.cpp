@@ -60,8 +60,8 @@ glm::dvec2 place_in_view(ViewVertex vertex) {
 /// exactly, instead of facing it as slivers. Visible points keep their coordinates.
 constexpr int place_bits = 36;
 
-/// Depths that differ by less count as equal: coordinates carry 1e-16 of the extent, and a plane 10^5 times
-/// as steep as wide multiplies that.
+/// Depths that differ by less count as equal: coordinates carry 1e-16 of the extent, and a plane that rises
+/// 10^5 times its width multiplies this error by 10^5.
 constexpr double same_depth_share = 1e-11;
 
 /// The object's points by their places in the view.

@@ -14,7 +14,7 @@ namespace {
 using Face = std::array<std::uint32_t, 3>;
 
 /// The other closed shells that contain all of a shell's probes, identified by their first triangles. Shells
-/// that cross it do not contain all probes.
+/// that cross this shell do not contain all of its probes.
 std::vector<std::uint32_t> shells_around(std::uint32_t first, const Shell& own,
                                          const std::map<std::uint32_t, Shell>& shells,
                                          const std::vector<std::uint32_t>& shell, const Triangles& wound,

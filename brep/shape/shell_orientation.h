@@ -30,8 +30,8 @@ Neighbours neighbours_of(const Triangles& surface);
 struct Shells {
   std::vector<std::uint32_t> of;     ///< of each triangle, the first triangle of its shell
   std::vector<std::uint8_t> turned;  ///< 1 for each triangle to reverse, so that each shell winds one way
-  std::size_t twisted_sides = 0;     ///< sides whose triangles still wind against each other, counted twice:
-                                     ///< a Moebius strip has some
+  std::size_t twisted_sides = 0;     ///< sides whose triangles still wind against each other, each counted
+                                     ///< twice: a Moebius strip has some
 };
 Shells wind_alike(const Neighbours& neighbours);
 

@@ -32,8 +32,8 @@ void check(const SmoothOptions& options) {
   if (!(options.max_volume_share > 0.0)) refuse("the share of volume that may change must be positive");
 }
 
-/// The volume to which `max_volume_share` refers: a closed mesh's own; for an open mesh, which has none, that of
-/// a ball of its area.
+/// The volume to which `max_volume_share` refers: a closed mesh's own volume; for an open mesh, which has
+/// none, the volume of a ball with the mesh's area.
 double volume_for_share_mm3(const Mesh& mesh, double volume_mm3) {
   bool is_open = false;
   for (const auto halfedge : mesh.halfedges()) is_open = is_open || mesh.is_boundary(halfedge);

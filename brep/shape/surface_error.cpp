@@ -47,8 +47,8 @@ std::vector<std::uint32_t> corners_of(const Triangles& surface) {
   return corners;
 }
 
-/// Points spread over a face, at most `spacing_mm` apart along its sides; corners left out, as they are
-/// points of the given surface.
+/// Points spread over a face, at most `spacing_mm` apart along its sides; the face's corners are left out,
+/// because they are points of the given surface.
 void spread(const Triangles& surface, std::uint32_t face, double spacing_mm, std::vector<glm::dvec3>& points,
             std::vector<std::uint32_t>& face_of) {
   constexpr int most = 256;

@@ -29,10 +29,12 @@ FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Tria
 /// Results of earlier measurements of one given surface: triangles, each by its corners as points of the
 /// given surface.
 struct NearFaces {
-  std::vector<std::array<std::uint32_t, 3>> coarse;     ///< sorted; all of their samples are near
-  std::vector<std::array<std::uint32_t, 3>> of_sample;  ///< near each sample of the given surface
-  /// Of the given surface, computed by the first call: its corners in ascending order, its sides, its triangles
-  /// sorted, and the mean length of its sides.
+  std::vector<std::array<std::uint32_t, 3>> coarse;     ///< triangles of the coarse surface whose samples are
+                                                        ///< all near; sorted
+  std::vector<std::array<std::uint32_t, 3>> of_sample;  ///< for each sample of the given surface, the coarse
+                                                        ///< triangle near it
+  /// Facts about the given surface, computed by the first call: its corners in ascending order, its sides,
+  /// its triangles sorted, and the mean length of its sides.
   std::vector<std::uint32_t> given_corners = {};
   std::vector<std::array<std::uint32_t, 2>> given_sides = {};
   std::vector<std::array<std::uint32_t, 3>> given_faces = {};

@@ -2,8 +2,9 @@
 #include "brep/shape/untangle.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-// Disables CGAL's assertions, so that a build with assertions does not abort where others continue: between
-// its steps CGAL's repair leaves vertices with two fans, which it repairs next but its own checks refuse.
+// Disables CGAL's assertions, so that a build with assertions does not abort where other builds continue:
+// between its steps, CGAL's repair leaves vertices with two fans. It repairs them next, but its own
+// assertions refuse them.
 #undef CGAL_assertion
 #undef CGAL_precondition
 #undef CGAL_postcondition

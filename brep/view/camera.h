@@ -24,7 +24,7 @@ struct Camera {
   double nearest_mm = 0.0;           ///< p . look of the points of depth 0
   std::optional<Observer> observer;  ///< none: orthographic
 
-  /// The inverse of the magnification at a depth; 0 and less at and behind the observer.
+  /// The inverse of the magnification at a depth: 0 at the observer, negative behind.
   double spread(double depth_mm) const {
     return observer ? (depth_mm - observer->depth_mm()) / observer->distance_mm : 1.0;
   }

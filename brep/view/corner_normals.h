@@ -12,8 +12,8 @@ namespace octotomy::brep {
 glm::dvec3 facet_normal(const Triangles& triangles, std::size_t facet);
 
 /// Unit normals at the points: the mean of the triangles around each, weighted by their angles there
-/// (Thürmer and Wüthrich, Computing vertex normals from polygonal facets, 1998). Zero where they cancel out or no
-/// triangle is.
+/// (Thürmer and Wüthrich, Computing vertex normals from polygonal facets, 1998). Zero where the normals
+/// cancel out, or at points of no triangle.
 std::vector<glm::dvec3> corner_normals(const Triangles& triangles);
 
 }  // namespace octotomy::brep

@@ -3,8 +3,8 @@
 //
 // Source: the polygon renderer of thesis 4.4.1.2.1 with its back surface cull and shadings; Gouraud, Continuous
 // shading of curved surfaces, 1971; Phong, Illumination for computer generated pictures, 1975. Departures: a depth
-// buffer in place of sorting back to front, which triangles that cross each other defeat; and each point's tone is
-// computed once, after the visible triangle is known.
+// buffer in place of sorting back to front, which fails for triangles that cross each other; and each point's
+// tone is computed once, after the visible triangle is known.
 //
 //   1 project(): triangles become facets of pixel positions; what lies behind the observer is cut off.
 //   2 Facets and pieces of lines are listed by bands of rows.
@@ -36,13 +36,13 @@ struct Corner {
   glm::dvec2 px{0.0};
   double depth_mm = 0.0;
   double scale = 1.0;      ///< magnification
-  glm::vec3 normal{0.0f};  ///< in (right, up, look); zero: the facet's
+  glm::vec3 normal{0.0f};  ///< in (right, up, look); zero: use the facet's normal
 };
 
 struct Facet {
   std::array<std::uint32_t, 3> corners{};
   glm::vec3 normal{0.0f};  ///< in (right, up, look), towards the observer
-  bool is_turned = false;  ///< faces away: corners' normals are turned, too
+  bool is_turned = false;  ///< the triangle faces away, so its corners' normals are turned, too
   std::uint32_t item = 0;
 };
 
@@ -127,7 +127,7 @@ class Painter {
     glm::dvec2 at(int column, int row) const {
       return (glm::dvec2(column, row + first_row) + 0.5) / static_cast<double>(points_per_px);
     }
-    /// The first point at or beyond a position along an axis.
+    /// The number of the first point at or beyond a position along an axis.
     int from(double px) const {
       return static_cast<int>(std::ceil(std::clamp(px * points_per_px - 0.5, -1e9, 1e9)));
     }
@@ -377,7 +377,7 @@ class Painter {
     const int y_end = std::min(grid.rows, grid.past(std::max(a.y, a.y + along.y) + radius) - grid.first_row);
     for (int y = std::max(0, grid.from(std::min(a.y, a.y + along.y) - radius) - grid.first_row); y < y_end;
          ++y) {
-      // The stretch of the piece within a radius of the row bounds the columns.
+      // The columns are bounded by the part of the piece that lies within a radius of the row.
       double t0 = 0.0, t1 = 1.0;
       if (along.y != 0.0) {
         const double at = grid.at(0, y).y;

@@ -114,7 +114,7 @@ void read_elements(std::ifstream& in, Line& line, Tetrahedra& tetrahedra) {
     for (std::size_t i = 0; i < count; ++i) {
       const long node = line.whole(node_at + i * node_width, node_width);
       if (node < 1 || static_cast<std::size_t>(node) > tetrahedra.nodes_mm.size())
-        refuse(line.path, line.number, "node " + std::to_string(node) + " is none of the file's");
+        refuse(line.path, line.number, "node " + std::to_string(node) + " is not in the file");
       nodes.at(i) = static_cast<std::uint32_t>(node - 1);
     }
     if (type == linear_tetrahedron) {
@@ -143,7 +143,8 @@ std::vector<std::optional<glm::dvec3>> displacements_from(std::ifstream& in, Lin
       const long node = line.whole(node_at, node_width);
       if (node < 1 || static_cast<std::size_t>(node) > node_count)
         refuse(line.path, line.number,
-               "node " + std::to_string(node) + " is none of the deck's " + std::to_string(node_count));
+               "node " + std::to_string(node) + " is not among the deck's nodes, 1 to " +
+                   std::to_string(node_count));
       result[static_cast<std::size_t>(node - 1)] = displacement;
     }
   } while (line.next(in));

@@ -32,7 +32,7 @@ struct DeckSurface {
   std::vector<ElementFace> faces;
 };
 
-/// Prescribed displacements: one for each node of a set. An empty list fixes the set.
+/// Prescribed displacements, one for each node of a set. An empty list holds all nodes of the set in place.
 struct Prescribed {
   std::string node_set;
   std::vector<glm::dvec3> displacement_mm;

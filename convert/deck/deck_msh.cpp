@@ -3,9 +3,9 @@
 
 #include "convert/deck/deck_format.h"
 
-// Gmsh's MSH text, versions 4.1 and 2.2. A region is a volume, a surface a face, each with a physical group
-// of its name. The format can hold node sets only as points, so they are left out. Source: Gmsh reference
-// manual, section "MSH file format".
+// Gmsh's MSH text, versions 4.1 and 2.2. A region is written as a volume and a surface as a face, each with a
+// physical group of that name. The format can hold node sets only as points, so they are left out. Source:
+// Gmsh reference manual, section "MSH file format".
 
 namespace octotomy::convert {
 namespace {

@@ -29,8 +29,8 @@ class Taken {
   std::map<std::string, std::string> holders_;
 };
 
-/// Names of node sets that every deck has: the set of all nodes is named N and the element set's name in
-/// .inp, and by the element set's name alone in FEBio.
+/// Names of node sets that every deck has: in .inp, the set of all nodes has the element set's name after an
+/// N; in FEBio, it has the element set's name.
 Taken own_node_sets(const DeckOptions& options) {
   Taken taken;
   taken.take("the surface's node set", options.surface_node_set);

@@ -12,9 +12,9 @@ namespace octotomy::convert {
 /// Whether Abaqus and CalculiX accept a name: a letter, then letters, digits, '_' and '-', at most 80.
 bool is_solver_name(const std::string& name);
 
-/// Whether a node set of the caller's may not have this name, because a deck's own sets have it: "SURFACE",
-/// "SOLID" and "NSOLID". Case does not distinguish names, because Abaqus and CalculiX convert them to
-/// capitals.
+/// Whether this name is reserved for a deck's own sets, so that the caller's node sets may not have it:
+/// "SURFACE", "SOLID" and "NSOLID". Case does not distinguish names, because Abaqus and CalculiX convert them
+/// to capitals.
 bool is_own_node_set_name(const std::string& name, const DeckOptions& options = {});
 
 /// Two names of a deck that a solver would not distinguish: "node sets 'Pin' and 'PIN'". Compares node sets

@@ -67,7 +67,7 @@ Marks marks_of(const std::vector<std::uint32_t>& nodes, const Tetrahedra& tetrah
   return marks;
 }
 
-/// For each element, a bit for each of its faces that is in the surface.
+/// For each element, a set bit for each of its faces that is in the surface.
 Marks marks_of(const DeckSurface& surface, const Tetrahedra& tetrahedra) {
   Marks marks(tetrahedra.tets.size(), 0);
   for (const ElementFace& face : surface.faces)

@@ -27,13 +27,13 @@ double least_fade_mm(double largest_displacement_mm);
 /// elements, the displacement of the nearest point of their surface. So the field is continuous across the
 /// surface, and parts that the elements surround (bone, mouth, airway) move with them. Beyond the elements'
 /// box along the patient's axes the displacement fades to zero, because the surrounding tissue holds the
-/// parts that the deck leaves out. The fading function is Wendland's (1-r)^4 (4r+1) of r = distance to the
-/// box / fade_mm, the one of compact support with which Fornefett, Rohr and Stiehl, Image and Vision
-/// Computing 19 (2001), bound local deformations of heads.
+/// parts that the deck leaves out. The fading function is Wendland's (1-r)^4 (4r+1) with r = distance to the
+/// box / fade_mm. It has compact support; Fornefett, Rohr and Stiehl, Image and Vision Computing 19 (2001),
+/// use it for local deformations of heads.
 class DisplacementField {
  public:
-  /// Throws std::invalid_argument if there are no elements, not one displacement for each node, or `fade_mm`
-  /// is not above least_fade_mm() of the largest displacement.
+  /// Throws std::invalid_argument if there are no elements, if displacements and nodes differ in number, or
+  /// `fade_mm` is not above least_fade_mm() of the largest displacement.
   DisplacementField(Tetrahedra tetrahedra, std::vector<glm::dvec3> displacement_mm, double fade_mm);
 
   /// The displacement of each point, both in LPS millimetres. Parallel. Cost a point: some elements inside,
@@ -74,7 +74,7 @@ class DisplacementField {
   brep::Triangles surface_;
   brep::SurfaceTree surface_tree_;
   double fade_mm_;
-  Box box_;  ///< of the nodes before any displacement
+  Box box_;  ///< box of the nodes before any displacement
   bool is_inverse_;
 };
 

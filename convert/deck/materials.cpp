@@ -45,8 +45,8 @@ class Depth {
   Depth(const Tetrahedra& tetrahedra, double depth_mm)
       : surface_(surface_of(tetrahedra)), tree_(surface_), depth_mm_(depth_mm) {}
 
-  /// Moves each point that is nearer to the surface than the depth away from its nearest surface point until
-  /// it is at the depth. Returns false if no point was nearer.
+  /// Moves each point that is nearer to the surface than the depth away from the nearest surface point to the
+  /// depth. Returns false if no point was nearer.
   bool sink(std::vector<glm::dvec3>& points_mm) const {
     // A point within this share of the depth from the surface moves along the surface's normal.
     constexpr double too_near = 1e-6;

@@ -28,14 +28,15 @@ namespace {
 /// The sheets about a corner by the pattern of its eight voxels, bit x + 2y + 4z.
 struct Sheets {
   std::uint8_t count = 0;
-  std::array<std::uint8_t, 12> of_edge{};  ///< by the marching cube's edge that a face crosses
+  std::array<std::uint8_t, 12> of_edge{};  ///< sheet of each face, by the marching cube's edge that it
+                                           ///< crosses
 };
 
 std::array<Sheets, 256> sheets_of(Touching touching) {
   std::array<Sheets, 256> sheets;
   for (int inside = 0; inside < 256; ++inside) {
     // A case of marching cubes has a loop for each part of its inside corners, which are joined by edges of
-    // the cube only. Taking the case of the outside corners instead joins the inside corners.
+    // the cube only. The case of the outside corners, if used instead, joins inside corners across a face.
     const MarchingCubesCase& mc = marching_cubes_case(touching == Touching::Apart ? inside : 255 - inside);
     Sheets& target = sheets[static_cast<std::size_t>(inside)];
     for (const std::vector<int>& loop : mc.loops) {
@@ -152,7 +153,8 @@ class Cuberille {
     });
   }
 
-  /// The points of the plane of corners below layer z, the faces in that plane, and the layer's upright ones.
+  /// Writes the points of the plane of corners below layer z, the faces in that plane, and the layer's
+  /// upright faces.
   void write_layer(int z) {
     voxel::SliceBits slice_below;
     voxel::SliceBits slice_here;
@@ -197,8 +199,8 @@ class Cuberille {
     }
   }
 
-  /// Adds the face between voxel `v` and the one before it along `axis`; `upper_inside`: `v` is the inside
-  /// one.
+  /// Adds the face between voxel `v` and the voxel before it along `axis`. `upper_inside`: `v` is the voxel
+  /// inside.
   void add_face(const std::array<CornerPlane*, 2>& planes, const glm::ivec3& v, int axis, bool upper_inside,
                 Layer& layer) const {
     // Order the corners so that the normal is along -axis if the upper voxel is inside.
@@ -223,7 +225,7 @@ class Cuberille {
     layer.faces.push_back({quad.points[0], quad.points[2], quad.points[3]});
   }
 
-  /// The marching cube's edge that the face crosses, in the cube of voxels about a corner of it.
+  /// The marching cube's edge that the face crosses, in the cube of voxels about one of the face's corners.
   static int edge_at(const glm::ivec3& v, const glm::ivec3& corner, int axis) {
     const int b = axis == 0 ? 1 : 0;
     const int c = axis == 2 ? 1 : 2;

@@ -204,8 +204,8 @@ class GreySamples {
     return brick.samples[at / 64][at % 64];
   }
 
-  /// The contribution of a coordinate x within a brick to the sample's index, as samples are stored in leaves
-  /// of 4^3.
+  /// The contribution of a coordinate x within a brick to a sample's index: bricks store their samples in
+  /// leaves of 4^3.
   static constexpr std::array<int, 16> spread = {0,   1,   2,   3,   64,  65,  66,  67,
                                                  128, 129, 130, 131, 192, 193, 194, 195};
 
@@ -261,8 +261,8 @@ bool any_beyond(const InsideBits& first, const InsideBits& second) {
   return false;
 }
 
-/// The bits of a window with samples on either side of it. None: one bound alone makes the surface, or the
-/// window is a single value, whose level sets have nothing between them.
+/// The bits of a window with samples on either side of it. Returns none if one bound alone makes the surface,
+/// or the window is a single value, whose level sets have nothing between them.
 template <typename Samples>
 std::optional<WindowBits> two_sided(Samples& samples, double low, double high) {
   constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -39,15 +39,15 @@ brep::Triangles isosurface(const voxel::Scene& scene, double low, double high,
 
 /// The isosurface of a grey octree's samples: the same bits as of a scene with these samples. Skips blocks
 /// that lie wholly in or out of the window. Samples beyond the scan are outside every window. If the window
-/// contains their value, or there are samples on either side of it, the surface closes half a voxel beyond the
-/// scan's outermost samples.
+/// contains the value of samples beyond the scan, or if there are samples on both sides of the window, the
+/// surface closes half a voxel beyond the scan's outermost samples.
 brep::Triangles isosurface(const voxel::GreyOctree& grey, double low, double high,
                            const voxel::Progress& progress = {});
 
-/// Whether rounding to doubles leaves isosurfaces on a lattice free of self-intersection: no part of it is
-/// farther from the origin than 2^16 times the least height of its cells. Rounding then moves points by less
-/// than 2^-34 of a cell, while they keep 2^-10 of an edge's distance from samples. Every scan of a patient
-/// fulfils this: one with voxels of 0.2 mm would have to lie 13 metres away to fail.
+/// Whether rounding to doubles leaves isosurfaces on a lattice free of self-intersection: no part of the
+/// lattice may be farther from the origin than 2^16 times the least height of its cells. Rounding then moves
+/// points by less than 2^-34 of a cell, while they keep 2^-10 of an edge's distance from samples. Every scan
+/// of a patient fulfils this: one with voxels of 0.2 mm would have to lie 13 metres away to fail.
 bool stays_apart(const voxel::Lattice& lattice);
 
 }  // namespace octotomy::convert

@@ -23,8 +23,8 @@
 // 1 The labels are copied with a border of no label, so that surfaces close there.
 // 2 Every cell whose corners differ is cut into six tetrahedra along its diagonal from the lowest to the
 //   highest corner. All cells are cut in the same way, so neighbours share whole triangles. A tetrahedron's
-//   triangles follow from which of its corners have equal labels. They name their points by keys: a point
-//   lies on an edge between two labels, on a face between three, or in a tetrahedron between four.
+//   triangles follow from which of its corners have equal labels. Triangles name their points by keys: a
+//   point lies on an edge between two labels, on a face between three, or in a tetrahedron between four.
 // 3 The keys of each plane of samples are sorted; the rank of a key is its point's number.
 // 4 The points are placed, and keys replaced by numbers.
 //
@@ -308,7 +308,8 @@ class Extraction {
             face.sides = {labels[piece.behind], labels[piece.front]};
             for (std::size_t i = 0; i < 3; ++i)
               face.points[i] = (cell + step_[piece.points[i].corner]) * code_count + piece.points[i].code;
-            // Wind outward from the part; between two parts, from the one of lower number.
+            // Triangles wind outward from their part; between two parts, outward from the part of lower
+            // number.
             const bool turn =
                 face.sides.behind == 0 || (face.sides.front != 0 && face.sides.front < face.sides.behind);
             if (turn) std::swap(face.sides.behind, face.sides.front);

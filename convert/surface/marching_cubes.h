@@ -32,7 +32,8 @@ std::vector<FaceSegment> segments_of_face(int face, int inside_corners);
 /// Triangles for one pattern of inside corners.
 struct MarchingCubesCase {
   std::uint16_t crossed = 0;  ///< bit e: edge e joins an inside corner to an outside one
-  /// Closed lines through the crossings, each edge in exactly one loop, counter-clockwise seen from outside.
+  /// Closed lines through the crossings, counter-clockwise seen from outside. Each crossed edge is in exactly
+  /// one loop.
   std::vector<std::vector<int>> loops;
   /// Edge numbers, counter-clockwise seen from the outside corners.
   std::vector<std::array<std::uint8_t, 3>> triangles;

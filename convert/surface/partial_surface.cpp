@@ -29,14 +29,14 @@ constexpr double closest_to_sample() {
 }
 
 /// The largest move, in the voxel's shortest edges: above the error of interpolation on a smooth surface
-/// (0.07 for a face 0.3 from a centre, and 0.3 / r of curvature), below a move that could make sheets cross
-/// that are a voxel apart.
+/// (0.07 for a face 0.3 from a centre, and 0.3 / r of curvature), and below a move that could make sheets a
+/// voxel apart cross.
 constexpr double largest_move_voxels() {
   return 0.1;
 }
 
 std::uint64_t key_of(const glm::ivec3& v) {
-  constexpr int bias = 1 << 16;  // a neighbour of the first voxel is not negative
+  constexpr int bias = 1 << 16;  // keeps the coordinates of the first voxel's neighbours from being negative
   assert(glm::all(glm::greaterThanEqual(v, glm::ivec3(-bias))) &&
          glm::all(glm::lessThan(v, glm::ivec3((1 << 20) - bias))));
   return (static_cast<std::uint64_t>(v.x + bias) << 40) | (static_cast<std::uint64_t>(v.y + bias) << 20) |

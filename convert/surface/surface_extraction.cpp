@@ -17,13 +17,14 @@
 
 // Source: Lorensen and Cline, "Marching cubes", SIGGRAPH 1987; cases from marching_cubes.h. The passes:
 //
-// 1 A bit a sample says whether it is inside. The lattice is padded by samples that are outside, so that the
-//   surface closes at its border. From here on corners are counted in the padded lattice.
+// 1 One bit for each sample states whether the sample is inside. The lattice is padded by samples that are
+//   outside, so that the surface closes at its border. From here on corners are counted in the padded
+//   lattice.
 // 2 Every row of cells counts its crossings and notes the cases of its cells. Word operations find both: an
 //   edge is crossed where two neighbouring bits differ.
 // 3 A running sum over the rows gives every row its first vertex and every plane its first triangle, so the
-//   numbers do not depend on who computes what.
-// 4 Every plane writes its vertices, then its triangles. A cell's vertices are numbered by running numbers of
+// numbers do not depend on which thread computes which row. 4 Every plane writes its vertices, then its
+// triangles. A cell's vertices are numbered by running numbers of
 //   the eight rows of edges about its row, which advance as the cell's case states: no table of vertices is
 //   kept.
 //
@@ -40,8 +41,8 @@ std::uint64_t crossed_x(const std::uint64_t* row, std::size_t word, std::size_t 
 
 // Rows of the whole lattice take many megabytes, so threads fill them and nothing initialises them before.
 
-/// The words of a row, or of neighbouring rows, that may hold a crossed edge: those with a bit, and the word
-/// before, whose last edge ends in the first of them.
+/// The words of a row, or of neighbouring rows, that may hold a crossed edge: the words with a bit, and the
+/// word before them, whose last edge ends in the first of these words.
 struct Words {
   std::uint32_t begin, end;
 };
@@ -50,7 +51,8 @@ Words both(const Words& a, const Words& b) {
   return {std::min(a.begin, b.begin), std::max(a.end, b.end)};
 }
 
-/// Crossed edges of a row by direction, and cells with any in the row of cells that begins at it.
+/// Numbers of a row: crossed edges by direction, and cells with a crossed edge in the row of cells that
+/// begins here.
 struct RowCount {
   std::array<std::uint32_t, 3> vertices;
   std::uint32_t cells;

@@ -44,7 +44,7 @@ struct InsideBits {
 /// The voxels of an octree.
 InsideBits inside_bits(const voxel::Octree& octree);
 
-/// The edge of a lattice from a voxel to the next one along an axis; one end is inside.
+/// The edge of a lattice from a voxel to the next one along an axis. Exactly one of its ends is inside.
 struct CrossedEdge {
   glm::ivec3 voxel;
   std::uint8_t axis;

@@ -25,12 +25,12 @@
 // 2 Both surfaces are disjoint on the faces of cells: marching_cubes.cpp parts the inside corners of a face, so
 //   what is outside A or B on a face is one convex polygon, and B's crossings lie inside A.
 // 3 In a cell that both cross, the table's triangles of A and of B may cross, because neither loop is planar.
-//   The cell keeps them if a plane of each pair of triangles separates the pair. Otherwise B's loops become
-//   the facets of a convex hull: that of each connected part of the cell's boundary that is outside B. (By 2
-//   a part meets each face in one convex polygon, or in nothing, so the hull meets the cell's boundary in that
-//   part alone. The rest of the hull's surface is one disc per loop. Two parts only occur around opposite
-//   corners of the cell, and their hulls are disjoint.) A's triangles have their corners in such a part, off
-//   B's loops, so they lie inside the hull and do not meet the discs.
+//   The cell keeps them if a plane of each pair of triangles separates the pair. Otherwise each connected part of the
+//   cell's boundary that is outside B gets a convex hull, and B's triangles are replaced by the facets of these hulls
+//   that span B's loops. (By 2 a part meets each face in one convex polygon, or in nothing, so the hull meets the
+//   cell's boundary in that part alone. The rest of the hull's surface is one disc per loop. Two parts only occur
+//   around opposite corners of the cell, and their hulls are disjoint.) A's triangles have their corners in such a
+//   part, off B's loops, so they lie inside the hull and do not meet the discs.
 // 4 A *plain* cell has a sample that was not measured. Its triangles are those of W alone, so that the caps of
 //   A and B, which coincide there, do not appear. On a face between a plain and another cell, W by itself and
 //   A - B may differ; the difference is closed by flat polygons in the face. Their corners lie around the face
@@ -45,8 +45,8 @@ namespace {
 
 using Face = std::array<std::uint32_t, 3>;
 
-/// How far apart a plane must keep two triangles, as a part of an edge between samples. Rounding to
-/// millimetres moves points by up to 2^-34 (stays_apart()).
+/// The least distance by which a plane must separate two triangles, as a part of an edge between samples.
+/// Rounding to millimetres moves points by up to 2^-34 (stays_apart()).
 constexpr double surely_apart = 0x1p-24;
 
 /// Numbers the cells of the padded lattice in the order of extract_surface().
@@ -153,8 +153,9 @@ void append_hull(const std::vector<int>& loop, const std::array<glm::dvec3, 12>&
   append_hull(loop, at, apex, last, triangles);
 }
 
-/// On a face of a plain cell, polygons around what is in A - B but not in W alone, clockwise seen from outside
-/// the cell. Numbers 0..11 are A's crossings on the edges of the cell, 12..23 B's.
+/// On a face of a plain cell, polygons around the part of the face that is in A - B but not in W alone,
+/// clockwise seen from outside the cell. Numbers 0..11 are A's crossings on the edges of the cell, 12..23
+/// B's.
 std::vector<std::vector<int>> polygons_between(int face, int from_low, int above_high) {
   constexpr int second = 12;
   std::vector<std::pair<int, int>> lines;

@@ -71,7 +71,8 @@ const LabelPlane* plane_of(const std::vector<LabelPlane>& planes, const Interfac
                        static_cast<std::uint8_t>(between.to + 1));
 }
 
-/// By node, 1 if elements of the plane's lower region have it, and 2 if elements of its higher region do.
+/// For each node, the sum of 1 if elements of the plane's lower region have it and 2 if elements of the
+/// higher region have it.
 std::vector<std::uint8_t> touched(const Tetrahedra& made, const LabelPlane& plane) {
   std::vector<std::uint8_t> touches(made.nodes_mm.size(), 0);
   for (std::size_t t = 0; t < made.tets.size(); ++t) {
@@ -82,7 +83,7 @@ std::vector<std::uint8_t> touched(const Tetrahedra& made, const LabelPlane& plan
   return touches;
 }
 
-/// The plane's elements that have a node of both regions.
+/// The elements of the plane's regions that have a node which both regions have.
 std::vector<std::uint32_t> elements_at(const Tetrahedra& made, const LabelPlane& plane) {
   const std::vector<std::uint8_t> touches = touched(made, plane);
   std::vector<std::uint32_t> at;

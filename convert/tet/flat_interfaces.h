@@ -12,15 +12,15 @@
 
 namespace octotomy::convert {
 
-/// The plane of least squares through the points within `near_mm` of it, found by iteration from a first
-/// plane.
+/// The plane of least squares through the points within `near_mm` of this plane. Found by iteration from a
+/// first plane.
 InterfacePlane fitted_plane(const std::vector<glm::dvec3>& points_mm, InterfacePlane plane, double near_mm);
 
 /// The plane between two labels; null if their interface is not flat.
 const LabelPlane* plane_between(const std::vector<LabelPlane>& planes, std::uint8_t one, std::uint8_t other);
 
 struct FlatInterfaceOptions {
-  std::vector<LabelPlane> planes{};  ///< in LPS millimetres, the labels are one above the regions
+  std::vector<LabelPlane> planes{};  ///< in LPS millimetres; a label is the region's number plus one
   double voxel_mm = 1.0;
   double size_mm = 3.0;  ///< size of elements
   /// No node moves to a position at which one of its elements has a smaller dihedral angle. Splits keep this

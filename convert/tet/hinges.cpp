@@ -12,7 +12,7 @@
 namespace octotomy::convert {
 namespace {
 
-/// Elements linked by faces, each with the number of one of them.
+/// Sets of elements that are linked by faces.
 brep::DisjointSets linked_by_faces(const Tetrahedra& tetrahedra) {
   std::vector<std::pair<std::array<std::uint32_t, 3>, std::uint32_t>> faces;
   faces.reserve(4 * tetrahedra.tets.size());

@@ -24,7 +24,7 @@ double flatness(const Corners& p) {
   const std::array<glm::dvec3, 4> normals{glm::cross(c - a, b - a), glm::cross(b, c), glm::cross(c, a),
                                           glm::cross(a, b)};
   if (!(glm::dot(normals[3], c) > 0.0)) return 2.0;
-  // The first three point inward as the last does, so that two of them enclose pi less the dihedral angle.
+  // All four normals point to the same side, inward, so two of them enclose pi less the dihedral angle.
   double largest = -1.0;
   std::array<double, 4> lengths{};
   for (std::size_t i = 0; i < 4; ++i) lengths.at(i) = glm::length(normals.at(i));
@@ -215,7 +215,7 @@ class Improving {
     return moved;
   }
 
-  /// The largest flatness about a node if it stood at `p_mm`, or the first value of at least `enough`.
+  /// The largest flatness about a node if the node were at `p_mm`, or the first value of at least `enough`.
   /// Begins with the element `worst`, because the element that is flattest at one position is mostly the
   /// flattest nearby. Sets `worst` to the flattest element.
   double flattest(std::uint32_t v, const glm::dvec3& p_mm, double enough, std::uint32_t& worst) const {
@@ -278,7 +278,7 @@ class Improving {
   Stars stars_;
   std::vector<glm::dvec3> given_mm_;
   std::vector<double> play_mm_;    ///< how far a node may move from its given place; infinite for inner nodes
-  std::vector<Freedom> freedoms_;  ///< of each node; empty where the surface stays
+  std::vector<Freedom> freedoms_;  ///< freedom of each node; empty if the surface stays
 };
 
 }  // namespace

@@ -48,7 +48,7 @@ double too_near(std::size_t w) {
 struct Lattice {
   glm::dvec3 origin_mm{0.0};
   double half_mm = 0.5;
-  glm::ivec3 points{0};  ///< along each axis, in halves
+  glm::ivec3 points{0};  ///< extent of the lattice along each axis, in halves of a cell
 
   glm::dvec3 at(const LatticePoint& p) const { return origin_mm + half_mm * glm::dvec3(p); }
   bool has(const LatticePoint& p) const {
@@ -221,7 +221,7 @@ class Stuffing {
   Tetrahedra result() && { return std::move(made_); }
 
  private:
-  /// A side by the end from which the direction leaves.
+  /// The key of a side: the end from which its direction leaves, and the direction.
   std::uint64_t key(const LatticePoint& from, std::size_t w) const { return lattice_.index(from) * 7 + w; }
   bool is_inside(const LatticePoint& p) const { return lattice_.has(p) && inside_[lattice_.index(p)] != 0; }
 
@@ -335,7 +335,8 @@ class Stuffing {
     }
   }
 
-  /// A prism between the triangles a and b: its first node, then the pyramid or tetrahedron that lies across.
+  /// Adds a prism between the triangles a and b: divides it from its first node, over the faces that do not
+  /// contain this node.
   void add_prism(std::array<Node, 3> a, std::array<Node, 3> b) {
     const auto before = [](const Node& p, const Node& q) { return p.order < q.order; };
     auto first = std::min_element(a.begin(), a.end(), before);
@@ -380,10 +381,10 @@ class Stuffing {
     }
   }
 
-  /// Adds the four tetrahedra about each long side that leaves a cube's corner. Their other two corners are
-  /// neighbours on the square of cubes' middles about the side. Each tetrahedron has two long sides, one
-  /// between corners and one between middles of cubes, so visiting only the former adds each tetrahedron
-  /// once.
+  /// Adds the four tetrahedra about each long side that leaves a cube's corner. The other two corners of such
+  /// a tetrahedron are neighbours on the square of cubes' middles about the side. Each tetrahedron has two
+  /// long sides, one between corners and one between middles of cubes, so visiting only the former adds each
+  /// tetrahedron once.
   void add_about(const LatticePoint& p) {
     if ((p.x & 1) != 0) return;
     for (int axis = 0; axis < 3; ++axis) {

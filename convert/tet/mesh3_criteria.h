@@ -31,7 +31,7 @@ class DownTo : public Base {
   }
 
  private:
-  /// A facet is a cell and the number of the corner across.
+  /// A facet is given by a cell and the number of its corner opposite the facet.
   template <typename Cell>
   bool is_small(const std::pair<Cell, int>& facet) const {
     return is_small(facet.first, facet.second);

@@ -33,7 +33,7 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 
-/// The samples about a place on a lattice, x fastest, and their trilinear shares of it.
+/// The eight samples about a place on a lattice, x fastest, and their trilinear weights there.
 struct Eight {
   std::array<std::size_t, 8> number{};
   std::array<double, 8> share{};
@@ -118,8 +118,8 @@ struct Labels {
         static_cast<std::size_t>(std::find(labels.begin(), labels.end(), label) - labels.begin()));
   }
 
-  /// The lowest label of a group for which the point lies on the label's side of every plane between it and
-  /// another label of the group. The group itself if there is none.
+  /// The lowest label of a group for which the point lies on the label's side of every plane between that
+  /// label and another label of the group. If no label fits, the group itself.
   int of_group(std::uint8_t group, const std::array<std::uint8_t, 8>& labels,
                const std::array<std::uint8_t, 8>& groups, const Point& p) const {
     const glm::dvec3 p_mm(p.x(), p.y(), p.z());
@@ -176,7 +176,7 @@ bool read(const MesherRequest& request, Labels& labels, LabelSizes& sizes) {
                   &sizes.cell_mm, &labels.share_step) != 4 ||
       request.triangles != 0 || labels.share_step < 1)
     return false;
-  // One plane a pair of labels.
+  // One plane for each pair of labels.
   constexpr std::uint64_t most_planes = 256 * 255 / 2;
   if (request.points > most_planes) return false;
   labels.planes.resize(request.points);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 
 // octotomy-mesh3: one run of CGAL's Mesh_3, fed and read by mesher_process.cpp. The request's switches are
-// Mesh3Sizes, its hole points are the points of the surface to start from, its sizes one a point. No step
-// ends by the clock, so the answer is the same on any machine. Source: Alliez, Jamin, Rineau, Tayeb,
+// Mesh3Sizes, its hole points are the points of the surface to start from, its sizes are one for each point.
+// No step ends by the clock, so the answer is the same on any machine. Source: Alliez, Jamin, Rineau, Tayeb,
 // Tournois, Yvinec, "3D mesh generation", CGAL user and reference manual 5.5; slivers are exuded as Cheng et
 // al. do, "Sliver exudation", JACM 47(5), 2000.
 
@@ -81,7 +81,7 @@ struct Sizes {
   }
 };
 
-/// A share of the field, under which nothing is refined.
+/// A share of the field. Nothing smaller is refined.
 struct Least {
   const SizeField& field;
   double share = 1.0;

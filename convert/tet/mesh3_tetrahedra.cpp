@@ -34,8 +34,8 @@ double radius_of_volume(double mm3) {
   return std::cbrt(before_moves * mm3 * 9.0 * std::sqrt(3.0) / 8.0);
 }
 
-/// The radius of the ball about a facet per side of the given triangles there: 1.5 times that of the ball
-/// about an equilateral triangle.
+/// The radius of a facet's ball for a side of 1 of the given triangles there: 1.5 times the radius for an
+/// equilateral triangle.
 double facet_radius_by_side() {
   return 1.5 / std::sqrt(3.0);
 }
@@ -183,8 +183,8 @@ std::vector<double> play_mm(const Given& given, const std::vector<brep::Foot>& f
   return play;
 }
 
-/// Shells whose triangles are all lost, smallest first, while their total volume stays within the volume's
-/// tolerance: films and specks too thin for an element of their triangles' size. Adds a finding.
+/// Selects shells whose triangles are all lost, smallest first, as long as their total volume stays within
+/// the tolerance: films and specks too thin for an element of their triangles' size. Adds a finding.
 std::vector<bool> lost_specks(Try& t, const Given& given, const std::vector<bool>& is_gone) {
   const Shells& shells = given.shells;
   std::vector<std::size_t> gone(shells.mm3.size(), 0);
@@ -212,8 +212,8 @@ std::vector<bool> lost_specks(Try& t, const Given& given, const std::vector<bool
   return is_speck;
 }
 
-/// Finds the points of the given surface that are further from the new one than a facet's size: they lie on a
-/// lost detail. Returns a reason if too much is lost: the tip of a spike and specks may be lost, other
+/// Finds the points of the given surface that are further from the new surface than a facet's size: they lie
+/// on a lost detail. Returns a reason if too much is lost: the tip of a spike and specks may be lost, other
 /// triangles may not.
 std::optional<std::string> lost_details(Try& t, const Given& given, const std::vector<double>& to_own_mm) {
   std::vector<bool> is_lost(to_own_mm.size(), false);
@@ -245,7 +245,8 @@ std::optional<std::string> lost_details(Try& t, const Given& given, const std::v
 /// this measures the volume outside the given solid, by four points of each element, and returns a reason if
 /// it is too large.
 std::optional<std::string> misplaced(const Tetrahedra& made, const Given& given) {
-  // The points of Hammer's formula for quadratic functions, by their weights of one corner and of the others.
+  // Each point of Hammer's formula for quadratic functions weighs one corner by `own` and the three others by
+  // `others`.
   constexpr double own = 0.5854101966249685, others = 0.1381966011250105;
   std::vector<glm::dvec3> points_mm;
   for (std::size_t t = 0; t < made.tets.size(); ++t) {
@@ -262,7 +263,7 @@ std::optional<std::string> misplaced(const Tetrahedra& made, const Given& given)
          " % of the volume outside of the given surface: walls are thinner than elements";
 }
 
-/// How far nodes may move, with 0 for nodes on flat faces, whose facets lose no volume.
+/// How far nodes may move: 0 for nodes on flat faces, because the facets there lose no volume.
 std::vector<double> play_off_flats_mm(const Tetrahedra& made, std::vector<double> play_mm) {
   constexpr double flat_cosine = 0.99985;  // a degree
   const brep::Triangles surface = surface_of(made);
@@ -300,7 +301,7 @@ std::optional<std::string> finish(Try& t, const Given& given, const TetOptions& 
         restore_volume(t.made, given.volume_mm3, play_off_flats_mm(t.made, improving.surface_play_mm));
     if (!(std::abs(moved) <= 1.0))
       return "misses the volume by " + rounded(std::abs(moved)) +
-             " times the amount that its facets' distances from the surface allow";
+             " times the largest amount that its facets may cut off";
     improve(t.made, improving);
     fault = fault_in_filling(t.made, given.volume_mm3, own_surface_volume_tolerance());
   }

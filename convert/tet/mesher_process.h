@@ -13,7 +13,7 @@
 
 namespace octotomy::convert {
 
-// The library talks to octotomy-tetgen, octotomy-mesh3 and octotomy-mesh3-labels, the executables beside it.
+// The library runs octotomy-tetgen, octotomy-mesh3 and octotomy-mesh3-labels, the executables beside it.
 // Standard input carries a MesherRequest, then points, triangles, hole points, sizes and labels. Standard
 // output carries a MesherAnswer, then points, tetrahedra and labels. Both sides are of one build, so the
 // bytes are the machine's own.

@@ -88,9 +88,9 @@ void OctreeCells::add_voxels_of(voxel::BlockRef block, int height, const glm::iv
   }
 }
 
-// A word of cells of side s lies in a cube of side 4 s. No neighbouring cube that a cell of the word touches
-// may lie in a cell of side 4 s or more. Runs from the smallest cells upward, because dividing makes no cell
-// smaller than those already visited.
+// A word of cells of side s lies in a cube of side 4 s. If a cell of the word touches a neighbouring cube,
+// that cube may not lie in a cell of side 4 s or more. Runs from the smallest cells upward, because dividing
+// makes no cell smaller than those already visited.
 void OctreeCells::balance(const voxel::Progress& progress) {
   std::array<std::uint64_t, 27> touching_beside{};
   for (int n = 0; n < 27; ++n)

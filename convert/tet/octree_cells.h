@@ -20,7 +20,8 @@ struct OctreeCell {
 };
 
 /// Cells that do not overlap, stored as one sparse grid of bits for each length of side. Memory: about a byte
-/// a cell at the boundary, 512 bytes a lone one, and 5 bytes for every 16 x 16 x 16 voxels of the universe.
+/// for each cell at the boundary, 512 bytes for a cell without others nearby, and 5 bytes for every 16 x 16 x
+/// 16 voxels of the universe.
 class OctreeCells {
  public:
   explicit OctreeCells(const voxel::Universe& universe);
@@ -37,8 +38,8 @@ class OctreeCells {
 
   std::uint64_t count() const;
 
-  /// Calls `visit(const OctreeCell&)` for every cell: smaller ones first; of one side in the order of z, y,
-  /// x.
+  /// Calls `visit(const OctreeCell&)` for every cell: smaller cells first; cells of one size in the order of
+  /// z, y, x.
   template <typename Visit>
   void for_each(const Visit& visit) const;
 

@@ -24,9 +24,9 @@
 //   An interface that is flat to within the voxels' resolution counts as a plane, and the side of the plane
 //   decides between its regions.
 // 2 Mesh_3 starts from the middles between voxels of different labels, a size apart, so that it misses no
-//   region and no part of one, and from rims, where three labels meet, because it would otherwise put these
-//   half a voxel off. Denser start points would lie on the voxels' steps, where refinement for good angles
-//   never ends.
+//   region and no part of one, and from rims, where three labels meet, because it would otherwise put the
+//   rims half a voxel off. Denser start points would lie on the voxels' steps, where refinement for good
+//   angles never ends.
 // 3 The nodes are moved to the patient's frame. Where regions meet in a plane, the nodes along its rim, where
 //   three labels meet, are put on it, because surfaces in contact that are not flat interlock. Then nodes
 //   move to mend flat elements. Where that leaves nodes off the plane, elements are split at it.
@@ -120,7 +120,8 @@ void add_shares(Labelled& labelled, const voxel::Lattice& lattice, const RegionM
         points_mm.push_back(
             lps_mm(labelled, lattice, static_cast<double>(image.share_step) * glm::dvec3(x, y, z) * edge_mm));
   image.shares = sizes.at_mm(points_mm);
-  // The bound is on a facet's ball; no side in it is longer than that of an equilateral facet.
+  // The bound is on a facet's ball; no side of a facet in this ball is longer than the side of an equilateral
+  // one.
   for (double& share : image.shares) share = std::min(1.0, share / (std::sqrt(3.0) * options.size_mm));
 }
 
@@ -133,9 +134,9 @@ struct Counted {
 using LabelPair = std::pair<std::uint8_t, std::uint8_t>;  // the lower first
 
 /// Planes of the interfaces that may be plane cuts. If a plane cuts two regions apart, the middle between two
-/// voxels on either side of it lies within half a voxel's edge of it; an interface all of whose middles do is
-/// flat to within the voxels' resolution. The fitted plane is not the cut itself, hence a tenth of an edge
-/// more.
+/// voxels on either side of it lies within half a voxel's edge of it; an interface is flat to within the
+/// voxels' resolution if this holds for all its middles. The fitted plane is not the cut itself, hence a
+/// tenth of an edge more.
 std::vector<LabelPlane> planes_between(const Labelled& labelled) {
   constexpr std::size_t fewest = 16;
   constexpr double most_edges = 0.6, near_share = 0.99;
@@ -242,8 +243,8 @@ std::optional<glm::dvec2> triple_point(const std::array<std::uint8_t, 4>& labels
   return glm::dvec2(0.5, is_low_y ? far : 1.0 - far);
 }
 
-/// Start points along the lines where three labels meet. Without them Mesh_3 puts the ends of an interface where
-/// a start point on one side of its rim happens to lie, half a voxel off.
+/// Start points along the lines where three labels meet. Without them, Mesh_3 ends an interface at a start
+/// point that happens to lie on one side of its rim, half a voxel off.
 void add_rim_starts(Labelled& labelled, double size_mm) {
   LabelImage& image = labelled.image;
   Starts starts(size_mm);

@@ -27,8 +27,8 @@ std::vector<Use> uses_of(const Tetrahedra& tetrahedra) {
   return uses;
 }
 
-/// For each region at a node, the first region that it shares the node with; itself if there is none before
-/// it.
+/// For each region at a node, the first region with which it shares the node; the region itself if there is
+/// no earlier one.
 std::vector<std::size_t> sharers(const Use* first, std::size_t count, const AreApart& are_apart) {
   std::vector<std::size_t> with(count);
   std::iota(with.begin(), with.end(), std::size_t{0});
@@ -43,7 +43,7 @@ std::vector<std::size_t> sharers(const Use* first, std::size_t count, const AreA
 
 Tetrahedra separated(const Tetrahedra& tetrahedra, const AreApart& are_apart) {
   if (!tetrahedra.mid_nodes.empty())
-    throw std::invalid_argument("separate_regions: nodes on sides come after");
+    throw std::invalid_argument("separate_regions: separate the regions before adding nodes on sides");
   if (tetrahedra.region_of_tet.empty()) return tetrahedra;
   const std::vector<Use> uses = uses_of(tetrahedra);
   Tetrahedra apart = tetrahedra;

@@ -61,8 +61,8 @@ void for_each_near(const std::map<Cell, std::vector<Entry>>& cells, const Cell& 
   }
 }
 
-/// The area of the flat part of the surface that each triangle belongs to: triangles are of one part where they
-/// share an edge and their normals agree to a degree.
+/// The area of the flat part of the surface that each triangle belongs to: triangles that share an edge
+/// belong to one part if their normals agree to a degree.
 std::vector<double> flat_areas_mm2(const brep::Triangles& surface, const std::vector<glm::dvec3>& normals) {
   constexpr double flat_cosine = 0.99985;
   std::vector<std::uint32_t> part(surface.faces.size());

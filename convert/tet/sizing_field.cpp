@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::size_t most_triangles = std::size_t{1} << 22;
 
-/// The longest side that is not halved, relative to the size: the side and its halves, 2/3, are then equally
-/// far from the size.
+/// The longest side that is not halved, in multiples of the size. This side of 4/3 and its halves of 2/3 are
+/// equally far from the size.
 constexpr double longest_share() {
   return 4.0 / 3.0;
 }
@@ -98,7 +98,7 @@ class Round {
       if (length_mm(sides[i]) > longest_share() * sizes_mm[i]) middle_.emplace(sides[i], 0);
   }
 
-  /// The side across which a triangle is halved: its longest; among equal ones the side that both of its
+  /// The side across which a triangle is halved: its longest; of equally long sides, one that both of its
   /// triangles choose.
   std::size_t longest(const Face& face) const {
     std::size_t best = 0;
@@ -125,8 +125,8 @@ class Round {
     }
   }
 
-  /// Halves a triangle whose longest side is marked; then halves each half whose other side of the triangle
-  /// is marked.
+  /// Halves a triangle whose longest side is marked; then halves each half that contains another marked side
+  /// of the triangle.
   void add(const Face& face, std::vector<Face>& faces) const {
     const std::size_t i = longest(face);
     const std::uint32_t a = face.at(i), b = face.at((i + 1) % 3), c = face.at((i + 2) % 3);
@@ -139,7 +139,7 @@ class Round {
     add_half({c, a, middle->second}, faces);
   }
 
-  /// Only the side that a half has from the triangle can be marked.
+  /// In a half, only the side that was a side of the triangle can be marked.
   void add_half(const Face& half, std::vector<Face>& faces) const {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t a = half.at(i), b = half.at((i + 1) % 3), c = half.at((i + 2) % 3);

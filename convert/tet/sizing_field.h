@@ -35,8 +35,9 @@ class SizingField {
   /// triangles.
   explicit SizingField(const std::vector<Refinement>& finer);
 
-  /// For each point the smallest size of all refinements, each grown with the distance from it; infinite if
-  /// there are none. Parallel. Cost a point: the landmarks, and log n of a surface's triangles.
+  /// For each point, the smallest size that a refinement allows there: its size plus the growth over the
+  /// distance from it. Infinite if there are no refinements. Parallel. Cost a point: the landmarks, and log n
+  /// of a surface's triangles.
   std::vector<double> at_mm(const std::vector<glm::dvec3>& points_mm) const;
   /// The smallest size of all refinements.
   double least_mm() const { return least_mm_; }

@@ -10,8 +10,9 @@
 
 namespace octotomy::convert {
 
-/// A value at each of side^3 places; a value that was never written is Value{}. Pages of 4 x 4 x 4 values are
-/// made where one is written. Memory: 4 bytes a page of the cube, and the pages that were made.
+/// A value at each of side^3 places; a value that was never written is Value{}. A page of 4 x 4 x 4 values is
+/// made when one of its values is first written. Memory: 4 bytes a page of the cube, and the pages that were
+/// made.
 template <typename Value>
 class SparseGrid {
  public:

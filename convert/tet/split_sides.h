@@ -11,7 +11,7 @@ namespace octotomy::convert {
 /// Whether the volume is positive and no dihedral angle is below `least_deg`.
 bool is_fit(const TetCorners& corners_mm, double least_deg);
 
-/// By node, the elements that have it, ascending.
+/// For each node, the elements that have it, ascending.
 std::vector<std::vector<std::uint32_t>> elements_about(const Tetrahedra& tetrahedra);
 
 /// Splits sides of elements one after the other. Elements and nodes keep their numbers; new ones come after

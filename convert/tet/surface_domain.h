@@ -96,8 +96,7 @@ class SurfaceDomain {
   }
   Ends ends_of(const Ray_3& ray) const { return ends_along(ray.source(), ray.to_vector(), 0.0); }
   Ends ends_of(const Line_3& line) const { return ends_along(line.point(), line.to_vector(), -1.0); }
-  /// The part of the line from `first` to 1, in units of its reach: a length that crosses the whole box
-  /// from `from`.
+  /// The part of the line from `first` to 1, in units of a length that crosses the whole box from `from`.
   Ends ends_along(const Point_3& from, const Vector_3& along, double first) const {
     const glm::dvec3 start = vector_of(from), way(along.x(), along.y(), along.z());
     const glm::dvec3 low(box_.xmin(), box_.ymin(), box_.zmin()), high(box_.xmax(), box_.ymax(), box_.zmax());

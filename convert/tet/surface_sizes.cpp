@@ -7,7 +7,8 @@
 #include <functional>
 #include <queue>
 
-// Grading is Dijkstra's algorithm: no other size can reduce the smallest one that is not settled.
+// Grading is Dijkstra's algorithm: of the sizes that are not final yet, the smallest cannot be reduced by any
+// other.
 
 namespace octotomy::convert {
 namespace {

@@ -12,7 +12,7 @@ namespace octotomy::convert {
 /// The side of an equilateral triangle of the surface's mean area.
 double mean_side_mm(const MesherInput& surface);
 
-/// Limits of sizes beside those of the triangles.
+/// Limits for sizes, in addition to those that follow from the triangles.
 struct SizeLimits {
   std::optional<double> mean_mm{};  ///< replaces mean_side_mm() of a surface with refinements
   std::vector<double> most_mm{};    ///< largest size at each point, or empty

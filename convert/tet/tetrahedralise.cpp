@@ -26,10 +26,11 @@
 // 2 A cavity is a connected part of the surface that is inside out. Half way from one of its triangles to
 //   the next surface in front of it lies a point in the cavity and in nothing else: the hole point.
 // 3 TetGen runs, with fewer and fewer demands. Its answer counts only if all volumes are positive and their
-//   sum is the volume that the surface encloses: that shows filled cavities and leaks.
+//   sum is the volume that the surface encloses: a wrong sum shows filled cavities and leaks.
 // 4 Nodes inside move to improve flat elements. If that is not enough and the surface need not be kept,
 //   Mesh_3 makes one of its own.
-// 5 Where that fails, too, or leaves elements that no solver takes, a lattice's cells are cut to the surface.
+// 5 Where Mesh_3 fails, too, or leaves elements too flat for a solver, a lattice's cells are cut to the
+// surface.
 
 namespace octotomy::convert {
 namespace {
@@ -216,7 +217,7 @@ constexpr double asked_volume_share() {
   return 0.85;
 }
 
-/// The switches to try, the most demanding first. The bound of volumes is given up last.
+/// The switches to try, the most demanding first. The bound of volumes is dropped last.
 std::vector<std::string> ladder(const TetOptions& options) {
   const std::string quality = "q" + switch_number(options.radius_edge);
   const std::string volume =
@@ -426,14 +427,14 @@ std::optional<Tetrahedra> by_stuffing(const MesherInput& surface, double surface
   put_on_sharp_edges(made, {triangles, brep::SurfaceTree(triangles)}, least_deg);
   std::vector<double> apart_mm = brep::SurfaceTree(surface_of(made)).distances_mm(surface.points_mm);
   std::sort(apart_mm.begin(), apart_mm.end());
-  made.findings.push_back("the elements are of isosurface stuffing, whose nodes on the surface lie on the " +
+  made.findings.push_back("isosurface stuffing made the elements; their nodes on the surface lie on the " +
                           std::string("given one, with cells of ") + rounded(cell_mm) + " mm: volume " +
                           switch_number(quality(made).volume_mm3) + " of " + switch_number(surface_mm3) +
                           " mm3; 95 % of the given points are within " +
                           rounded(apart_mm[apart_mm.size() * 95 / 100]) + " mm of it, all within " +
                           rounded(apart_mm.back()) + " mm");
   if (!options.finer.empty())
-    made.findings.push_back("elements are not finer where that was requested: stuffing has one size");
+    made.findings.push_back("elements are not finer where requested: stuffing makes elements of one size");
   return made;
 }
 

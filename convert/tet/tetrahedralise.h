@@ -54,8 +54,8 @@ std::optional<std::string> fault_in_shape(const Tetrahedra& tetrahedra);
 /// inside then move to improve flat elements (improve_tetrahedra.h). Short edges of an isosurface make
 /// quality expensive: run brep::decimate() first. Refinements divide the surface's triangles in their
 /// planes, and elements grow inward from there. Stuffing's cells are as large as the triangles' mean side,
-/// larger where that would be over two million elements; findings report how far its surface lies from the
-/// given one, and where refinements had no effect.
+/// or larger if these cells would make over two million elements; findings report how far its surface lies
+/// from the given one, and where refinements had no effect.
 ///
 /// Guaranteed: all volumes positive; the total volume is the surface's to 1e-9 by TetGen, to 1e-3 by
 /// Mesh_3, to 5e-2 by Stuffing. Throws voxel::Error: Geometry if the mesh is open, inside out, flat or

@@ -13,7 +13,7 @@
 namespace octotomy::convert {
 namespace {
 
-/// Index space of a universe from LPS millimetres.
+/// Converts LPS millimetres to a universe's index space.
 class VoxelFromLps {
  public:
   explicit VoxelFromLps(const voxel::Universe& universe)

@@ -25,8 +25,8 @@ using Corners = std::array<glm::dvec3, 3>;
 std::vector<Corners> triangles_in_index_space(const voxel::Universe& universe,
                                               const brep::Triangles& triangles);
 
-/// The numbers of the triangles that each slab needs, slab after slab, ascending within one: those of slab s
-/// stand at first[s] .. first[s + 1].
+/// The numbers of the triangles that each slab needs, slab after slab and ascending within a slab. Those of
+/// slab s are at first[s] .. first[s + 1] - 1.
 struct SlabLists {
   std::vector<std::size_t> first;
   std::vector<std::uint32_t> triangles;

@@ -102,7 +102,7 @@ class Slab {
  private:
   /// Rows of a block that exist: universes of fewer than 16 voxels a side have fewer.
   int row_count() const { return std::min(slab_layers, side_); }
-  /// The layers of one y follow each other.
+  /// The rows of one y in successive layers follow each other.
   std::size_t row_number(int y, int z_in_slab) const {
     return static_cast<std::size_t>(y) * slab_layers + static_cast<std::size_t>(z_in_slab);
   }

@@ -17,7 +17,8 @@
 // Shares by the divergence theorem, a row of voxels at a time. A line along x that enters the solid at e
 // fills x1 - e of the voxel x0 .. x1 that holds e, and all voxels behind it; a line that leaves subtracts the
 // same amounts. Integrated over the row's cross-section, a piece of surface in a voxel adds its area seen
-// along x to the voxels behind it, and that area less its moment about x0 to its own voxel. The passes:
+// along x, times the voxel's length, to each voxel behind it. To its own voxel it adds that amount less the
+// area's moment about x0. The passes:
 //
 // 1 voxelise() decides the voxels that no triangle touches by their centres.
 // 2 A slab's triangles are cut into layers, the layers' pieces into rows, the rows' pieces into voxels: a
@@ -29,8 +30,8 @@
 namespace octotomy::convert {
 namespace {
 
-/// A convex polygon. A triangle cut by six planes has at most nine corners. A sliver dented by rounding may
-/// gain one more in a cut.
+/// A convex polygon. A triangle cut by six planes has at most nine corners. A sliver that rounding has dented
+/// may gain one more corner in a cut.
 struct Polygon {
   int count = 0;
   std::array<glm::dvec3, 16> corners;

@@ -48,9 +48,9 @@ using BlockWinds = std::array<std::int32_t, std::size_t{row_count} * slab_layers
 struct Stretch {
   int end = 0;  ///< first block after the stretch
   std::optional<std::int32_t> winds;
-  voxel::Block block;  ///< if `winds` is empty: the voxels of each block of the stretch
+  voxel::Block block;  ///< the voxels of each block of the stretch, if `winds` is empty
 };
-/// Empty: the surface winds about none of its voxels.
+/// An empty row: the surface winds about none of its voxels.
 using BlockRow = std::vector<Stretch>;
 
 /// Pass 2 for sixteen layers: by row of blocks, ascending x.

@@ -67,7 +67,7 @@ bool is_parted(const Corners& triangle, const glm::dvec3& middle, double half_si
     const double along_z = glm::dot(normal, from_middle[2]);
     const auto [low, high] = std::minmax({along_x, along_y, along_z});
     const double length = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
-    // Five roundings a product, and the corners' own.
+    // The error of each product is five roundings, plus the rounding of the corners.
     const double unsure = 16.0 * std::numeric_limits<double>::epsilon() * length * (farthest + half_side);
     return low > half_side * length + unsure || high < -half_side * length - unsure;
   };
