@@ -35,7 +35,8 @@ struct TiledSections {
   Triangles surface;
   std::size_t strips = 0;  ///< pairs of contours joined by cost
   /// Of these, pairs whose best strip crossed itself or another surface, or would enclose a volume twice, and
-  /// which were joined by the best one by the cost whose spans are clear of contours (tile_clear()).
+  /// which were joined by the best one by the cost whose spans are clear of contours (tile_clear(),
+  /// tile_clear_aligned()).
   std::size_t clear_strips = 0;
   /// Of these, pairs whose clear strip crossed something, too. They were joined by the best strip near the
   /// strip of shortest spans (tile_near()), by the strip of shortest spans, or by the strip of least area.
