@@ -49,17 +49,24 @@ struct Pair {
   std::size_t n() const { return upper.size() - 1; }
 };
 
-/// The points moved and scaled so that their box is the unit square.
-std::vector<glm::dvec2> in_unit_square(const std::vector<glm::dvec2>& points) {
+struct PointBox {
+  glm::dvec2 low{0.0}, extent{1.0};
+};
+PointBox box_of(const std::vector<glm::dvec2>& points) {
   glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-low);
   for (const glm::dvec2& p : points) {
     low = glm::min(low, p);
     high = glm::max(high, p);
   }
-  const glm::dvec2 extent = glm::max(high - low, glm::dvec2(std::numeric_limits<double>::min()));
+  return {low, glm::max(high - low, glm::dvec2(std::numeric_limits<double>::min()))};
+}
+
+/// The points moved and scaled so that their box is another one, by default the unit square.
+std::vector<glm::dvec2> in_box(const std::vector<glm::dvec2>& points, const PointBox& box = {}) {
+  const PointBox own = box_of(points);
   std::vector<glm::dvec2> scaled;
   scaled.reserve(points.size());
-  for (const glm::dvec2& p : points) scaled.push_back((p - low) / extent);
+  for (const glm::dvec2& p : points) scaled.push_back((p - own.low) / own.extent * box.extent + box.low);
   return scaled;
 }
 
@@ -188,7 +195,7 @@ class Blame {
 /// Among the pairs of points with the lowest score, the pair that is nearest after both rings are scaled to
 /// the unit square.
 std::array<std::size_t, 2> start_of(const Ring& lower, const Ring& upper, const Blame* blame = nullptr) {
-  const auto a = in_unit_square(lower.points_mm), b = in_unit_square(upper.points_mm);
+  const auto a = in_box(lower.points_mm), b = in_box(upper.points_mm);
   std::array<std::size_t, 2> start{};
   std::pair least{std::numeric_limits<int>::max(), std::numeric_limits<double>::infinity()};
   for (std::size_t i = 0; i < a.size(); ++i)
@@ -214,8 +221,8 @@ std::vector<glm::dvec3> turned(const Ring& ring, std::size_t start) {
 
 std::vector<Step> greedy_steps(const Ring& lower, const Ring& upper, std::array<std::size_t, 2> start,
                                const Blame* blame = nullptr) {
-  const auto a = turned({in_unit_square(lower.points_mm), 0.0}, start[0]);
-  const auto b = turned({in_unit_square(upper.points_mm), 0.0}, start[1]);
+  const auto a = turned({in_box(lower.points_mm), 0.0}, start[0]);
+  const auto b = turned({in_box(upper.points_mm), 0.0}, start[1]);
   std::vector<Step> steps;
   for (std::size_t i = 0, j = 0; i + 1 < a.size() || j + 1 < b.size();) {
     const bool lower_left = i + 1 < a.size(), upper_left = j + 1 < b.size();
@@ -392,6 +399,9 @@ class LeastPath {
   }
 
  private:
+  /// The pairs of points up to which the least costs to the last row are kept: 128 MB.
+  static constexpr std::size_t most_tabled = std::size_t{1} << 25;
+
   /// A node within the limit and the best path to it for each last step: the angle at the next step depends
   /// on the last triangle.
   struct Node {
@@ -443,13 +453,20 @@ class LeastPath {
       for (std::size_t j = 0; j < n_; ++j) least[1][j].blame = of_upper[(start_[1] + j + 1) % n_];
     }
     const bool is_bounded = cost_ == TileCost::least_area || cost_ == TileCost::shortest_span;
-    for (std::size_t i = 0; i < m_ && is_bounded; ++i)
+    const bool is_tabled = is_bounded && m_ * n_ <= most_tabled;
+    if (is_tabled) to_end_.resize(m_ * n_);
+    std::array own{std::vector<double>(n_), std::vector<double>(n_)};
+    std::vector<double> below(n_, 0.0);
+    for (std::size_t i = m_; i-- > 0 && is_bounded;) {
       for (std::size_t j = 0; j < n_; ++j)
         for (const Step step : {along_lower, along_upper}) {
           const Triangle triangle = pair_.triangle(i, j, step);
+          own[step][j] = own_cost(triangle, step, triangle.normal());
           double& cost = least[step][step == along_lower ? i : j].cost;
-          cost = std::min(cost, own_cost(triangle, step, triangle.normal()));
+          cost = std::min(cost, own[step][j]);
         }
+      if (is_tabled) table_row(i, own, below);
+    }
     const auto summed = [&](const std::vector<Sum>& steps, std::size_t count) {
       std::vector<Sum> sums(count + 1);
       for (std::size_t k = 0; k < count; ++k) {
@@ -463,14 +480,30 @@ class LeastPath {
     to_column_ = summed(least[1], 2 * n_);
   }
 
+  /// Computes the least cost from each node of a row to the last row, at any column, from those of the row below.
+  /// Steps along the row lead around the ring, so two rounds settle it: no cost is below zero.
+  void table_row(std::size_t i, const std::array<std::vector<double>, 2>& own, std::vector<double>& below) {
+    std::vector<double>& here = below;
+    for (std::size_t j = 0; j < n_; ++j) here[j] += own[along_lower][j];
+    for (std::size_t k = 2 * n_; k-- > 0;) {
+      const std::size_t j = k % n_;
+      here[j] = std::min(here[j], own[along_upper][j] + here[(j + 1) % n_]);
+    }
+    // A float's rounding, and that of the sum, must not raise the bound.
+    constexpr double rounding = 1.0 - 0x1p-20;
+    for (std::size_t j = 0; j < n_; ++j) to_end_[i * n_ + j] = static_cast<float>(rounding * here[j]);
+  }
+
   /// A lower bound of the sum of the steps from a node to the end of a path from a start: one step leads to each
-  /// row and one to each column.
+  /// row and one to each column; and no way to the last row costs less than the least.
   Sum least_rest(std::size_t i, std::size_t j, std::size_t start) const {
     if (to_row_.empty()) return {};
     const Sum &row = to_row_[i], &column = to_column_[j], &last_row = to_row_[m_];
     const Sum& last_column = to_column_[start + n_];
+    const double cost = last_row.cost - row.cost + last_column.cost - column.cost;
+    const bool is_tabled = !to_end_.empty() && i < m_;
     return {last_row.blame - row.blame + last_column.blame - column.blame,
-            last_row.cost - row.cost + last_column.cost - column.cost};
+            is_tabled ? std::max(cost, static_cast<double>(to_end_[i * n_ + j % n_])) : cost};
   }
 
   int blame_of(std::size_t i, std::size_t j, Step step) const {
@@ -593,9 +626,9 @@ class LeastPath {
     if (before - after < 2) return;
     const std::size_t middle = (after + before) / 2;
     auto found = from(middle, between, limit(best.sum));
-    // A failed search does not narrow the bands of later ones. Once failed searches have reached a quarter of all
-    // nodes, the start's own best path is found without a limit, because it narrows them.
-    if (!found && (failed_count_ += reached_count_) > m_ * n_ / 4) {
+    // A failed search does not narrow the bands of later ones. Once failed searches have reached as many nodes as
+    // there are, which is the cost of one without a limit, the start's own best path is found so: it narrows them.
+    if (!found && (failed_count_ += reached_count_) > m_ * n_) {
       failed_count_ = 0;
       found = from(middle, between, no_limit);
     }
@@ -619,6 +652,7 @@ class LeastPath {
   std::size_t failed_count_ = 0;         ///< nodes of failed searches since the last search without a limit
   std::vector<Sum> to_row_, to_column_;  ///< least sums of steps from the first row and column to each;
                                          ///< empty: not used
+  std::vector<float> to_end_;            ///< least cost from each node to the last row; empty: not used
 };
 
 /// The number of pairs of points whose tables take about 1 GB. least_angle takes two bytes per pair: one for
@@ -692,16 +726,36 @@ std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& up
   return best_strip(lower, upper, cost, start, nullptr);
 }
 
+namespace {
+
+/// The best strip with the blame of the rings, which may be scaled ones.
+std::vector<std::array<std::uint32_t, 3>> blamed_strip(const Ring& lower, const Ring& upper, TileCost cost,
+                                                       const Blame& blame, bool has_avoided) {
+  const std::array<std::size_t, 2> start = start_of(lower, upper, &blame);
+  const bool has_room = lower.points_mm.size() * upper.points_mm.size() <= most_pairs(TileCost::least_area);
+  if (cost == TileCost::shortest_span && (!has_avoided || !has_room))
+    return faces_of(lower, upper, start, greedy_steps(lower, upper, start, &blame));
+  return best_strip(lower, upper, cost, start, &blame);
+}
+
+}  // namespace
+
 std::vector<std::array<std::uint32_t, 3>> tile_clear(
     const Ring& lower, const Ring& upper, TileCost cost, const SpanClearance& sides,
     std::vector<std::uint8_t>& scores, const std::vector<std::array<std::uint32_t, 3>>& avoided) {
   check(lower, upper, cost);
   const Blame blame(lower, upper, sides, avoided, scores);
-  const std::array<std::size_t, 2> start = start_of(lower, upper, &blame);
-  const bool has_room = lower.points_mm.size() * upper.points_mm.size() <= most_pairs(TileCost::least_area);
-  if (cost == TileCost::shortest_span && (avoided.empty() || !has_room))
-    return faces_of(lower, upper, start, greedy_steps(lower, upper, start, &blame));
-  return best_strip(lower, upper, cost, start, &blame);
+  return blamed_strip(lower, upper, cost, blame, !avoided.empty());
+}
+
+std::vector<std::array<std::uint32_t, 3>> tile_clear_aligned(
+    const Ring& lower, const Ring& upper, TileCost cost, std::vector<std::uint8_t>& scores,
+    const std::vector<std::array<std::uint32_t, 3>>& avoided) {
+  check(lower, upper, cost);
+  const Ring above{in_box(upper.points_mm, box_of(lower.points_mm)), upper.z_mm};
+  const SpanClearance sides({{lower.points_mm}}, {{above.points_mm}});
+  const Blame blame(lower, above, sides, avoided, scores);
+  return blamed_strip(lower, upper, cost, blame, !avoided.empty());
 }
 
 std::vector<std::array<std::uint32_t, 3>> tile_near(const Ring& lower, const Ring& upper, TileCost cost,

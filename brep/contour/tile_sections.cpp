@@ -11,6 +11,7 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <stdexcept>
 #include <string>
@@ -122,7 +123,11 @@ class Strips {
         sides_(slab.lower, slab.upper),
         attempts_(surface.groups.size(), first_attempt(cost)),
         avoided_(surface.groups.size()),
-        scores_(surface.groups.size()) {
+        known_avoided_(surface.groups.size(), 0),
+        fewest_(surface.groups.size(), std::numeric_limits<std::size_t>::max()),
+        stale_(surface.groups.size(), 0),
+        scores_{std::vector<std::vector<std::uint8_t>>(surface.groups.size()),
+                std::vector<std::vector<std::uint8_t>>(surface.groups.size())} {
     for (std::size_t g = 0; g < strips_.size(); ++g) {
       if (!is_pair(surface.groups[g])) continue;
       strips_[g] = strip_of(g);
@@ -166,7 +171,10 @@ class Strips {
       crossing.erase(std::unique(crossing.begin(), crossing.end()), crossing.end());
       std::erase_if(crossing, [&](std::uint32_t g) { return strips_[g].empty(); });
       if (crossing.empty()) break;
-      for (const std::uint32_t g : crossing) retry(g);
+      for (const std::uint32_t g : crossing) {
+        give_up_stale(g);
+        retry(g);
+      }
     }
     std::vector<std::uint32_t> group;
     surface_.faces = with_strips(group).faces;
@@ -174,11 +182,11 @@ class Strips {
   }
 
  private:
-  /// Attempts after the best strip, in order. 1: the best strip whose spans cross no contour. Up to 12: the
-  /// same, while avoiding triangles of earlier attempts that crossed something. Then the best strips near the
-  /// shortest spans: within an eighth and a thirty-second of the rings' points, and within two points. Then
-  /// the shortest spans themselves. Last the least area, which crosses itself least, near the shortest spans
-  /// and anywhere.
+  /// Attempts after the best strip, in order. 1: the best strip whose spans cross no contour. 2: the same, with
+  /// both contours scaled to one box. Up to 12: both in turn, while avoiding triangles of earlier attempts that
+  /// crossed something. Then the best strips near the shortest spans: within an eighth and a thirty-second of
+  /// the rings' points, and within two points. Then the shortest spans themselves. Last the least area, which
+  /// crosses itself least, near the shortest spans and anywhere.
   static constexpr int clear_attempt = 1, last_clear_attempt = 12, shortest_attempt = 16, most_attempts = 18;
   /// The strip of greatest volume may cross itself and enclose a region twice, so it is not tried first.
   static int first_attempt(TileCost cost) { return cost == TileCost::greatest_volume ? clear_attempt : 0; }
@@ -198,6 +206,21 @@ class Strips {
     return narrowing == 1 ? eighth(points) : narrowing == 2 ? std::max<std::size_t>(2, points / 32) : 2;
   }
 
+  /// Ends the clear attempts of a group once three in a row have crossed no less than the best before. Contours
+  /// without a strip would otherwise take most of the time.
+  void give_up_stale(std::size_t g) {
+    constexpr int most_stale = 3;
+    if (attempts_[g] < clear_attempt || attempts_[g] > last_clear_attempt) return;
+    const std::size_t crossing = avoided_[g].size() - known_avoided_[g];
+    known_avoided_[g] = avoided_[g].size();
+    if (crossing < fewest_[g]) {
+      fewest_[g] = crossing;
+      stale_[g] = 0;
+    } else if (++stale_[g] == most_stale) {
+      attempts_[g] = last_clear_attempt;
+    }
+  }
+
   /// Whether an attempt would repeat an earlier one.
   bool is_repeated(int attempt) const {
     if (cost_ == TileCost::shortest_span) return attempt > last_clear_attempt && attempt <= shortest_attempt;
@@ -208,9 +231,13 @@ class Strips {
     const int attempt = attempts_[g];
     const std::size_t points = std::max(below.points_mm.size(), above.points_mm.size());
     if (attempt == 0) return tile(below, above, cost_);
-    if (attempt <= last_clear_attempt)
-      return tile_clear(below, above, cost_, sides_, scores_[g], avoided_[g]);
-    scores_[g] = {};
+    if (attempt <= last_clear_attempt) {
+      const bool is_aligned = attempt % 2 == 0;
+      std::vector<std::uint8_t>& scores = scores_[is_aligned][g];
+      return is_aligned ? tile_clear_aligned(below, above, cost_, scores, avoided_[g])
+                        : tile_clear(below, above, cost_, sides_, scores, avoided_[g]);
+    }
+    for (auto& scores : scores_) scores[g] = {};
     if (attempt <= shortest_attempt) return tile_near(below, above, cost_, band(points, attempt));
     return attempt < most_attempts ? tile_near(below, above, TileCost::least_area, eighth(points))
                                    : tile(below, above, TileCost::least_area);
@@ -319,11 +346,14 @@ class Strips {
   std::optional<double> most_span_mm_;
   std::vector<FaceList> strips_;  ///< strip of each group; empty where the surface is that of overlay()
   SpanClearance sides_;
-  std::vector<int> attempts_;                      ///< number of each group's present attempt
-  std::vector<FaceList> avoided_;                  ///< triangles that each group avoids, numbered by its
-                                                   ///< rings
-  std::vector<std::vector<std::uint8_t>> scores_;  ///< scores of each group's spans, for further clear
-                                                   ///< attempts
+  std::vector<int> attempts_;      ///< number of each group's present attempt
+  std::vector<FaceList> avoided_;  ///< triangles that each group avoids, numbered by its rings
+  /// For each group: the number of avoided triangles known before the last attempt, the fewest that a clear attempt
+  /// has added, and the number of attempts in a row that have not added fewer.
+  std::vector<std::size_t> known_avoided_, fewest_;
+  std::vector<int> stale_;
+  /// Scores of each group's spans, for further clear attempts; second those of aligned contours.
+  std::array<std::vector<std::vector<std::uint8_t>>, 2> scores_;
 };
 
 Tiled tile_slab(const Slab& slab, const TileSectionsOptions& options) {

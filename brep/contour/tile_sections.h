@@ -34,8 +34,8 @@ struct TileSectionsOptions {
 struct TiledSections {
   Triangles surface;
   std::size_t strips = 0;  ///< pairs of contours joined by cost
-  /// Of `strips`: pairs joined by tile_clear(), by the best strip whose spans cross no contour, because the
-  /// best of all strips crossed itself or another surface, or would enclose a volume twice.
+  /// Of `strips`: pairs whose best strip crossed itself or another surface, or would enclose a volume twice. They
+  /// were joined by the best strip whose spans cross no contour (tile_clear(), tile_clear_aligned()).
   std::size_t clear_strips = 0;
   /// Of `strips`: pairs whose clear strip crossed something, too. They were joined by the best strip near the
   /// strip of shortest spans (tile_near()), by the strip of shortest spans, or by the strip of least area.

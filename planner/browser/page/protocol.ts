@@ -224,6 +224,7 @@ export interface PaneRequest {
   cut_planes?: [number, number, number, number][];
   cut_face?: "plain"|"grey";
   shading?: string;
+  stereo_deg?: number;  // for red and cyan glasses: the angle between the eyes
   background?: string;
   dragging: boolean;
 }

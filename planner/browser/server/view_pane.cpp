@@ -2,6 +2,7 @@
 #include "planner/browser/server/view_pane.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -115,6 +116,21 @@ void set_frame(Json& header, bool is_moving, const glm::ivec2& size_px, const vo
   header["view_frame"] = view_frame_json(view, centre_mm, pixel_mm);
 }
 
+/// One grey picture in red for the left eye and one in cyan for the right eye.
+std::vector<std::uint8_t> red_and_cyan(const std::vector<std::uint8_t>& left,
+                                       const std::vector<std::uint8_t>& right) {
+  // Luma of ITU-R BT.601 in 256ths; the weights add up to 256.
+  const auto grey = [](const std::uint8_t* rgb) {
+    return static_cast<std::uint8_t>((77 * rgb[0] + 150 * rgb[1] + 29 * rgb[2] + 128) >> 8);
+  };
+  std::vector<std::uint8_t> rgb(left.size());
+  for (std::size_t i = 0; i + 2 < rgb.size(); i += 3) {
+    rgb[i] = grey(&left[i]);
+    rgb[i + 1] = rgb[i + 2] = grey(&right[i]);
+  }
+  return rgb;
+}
+
 /// A position in a view's plane, as the point of the plane through the origin.
 glm::dvec3 on_plane(const voxel::View& view, const glm::dvec2& p_mm) {
   return view.right * p_mm.x + view.up * p_mm.y;
@@ -128,7 +144,8 @@ struct ViewPane::Drawing {
   Render render;
   glm::vec3 background{1.0f};
   bool is_moving = false;
-  bool is_of_plan = true;  ///< a plan's `render` step can draw the same picture
+  bool is_of_plan = true;            ///< a plan's `render` step can draw the same picture
+  std::optional<double> stereo_deg;  ///< angle between the eyes of a picture for red and cyan glasses
   std::vector<voxel::DrawnObject> objects;
   std::vector<const Object*> of_plan;      ///< those that are drawn
   const Object* last = nullptr;            ///< the last of them
@@ -192,8 +209,24 @@ struct ViewPane::Drawing {
     return made;
   }
 
+  /// The picture for red and cyan glasses. `eye` draws the picture of one eye. Depths and objects stay those of
+  /// the view between the eyes, in which the pointer picks.
+  template <typename Eye>
+  std::vector<std::uint8_t> in_stereo(voxel::RenderOptions made, const Eye& eye) const {
+    std::array<std::vector<std::uint8_t>, 2> rgb;
+    const std::array<voxel::View, 2> views = voxel::stereo_pair(made.view, *stereo_deg);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      made.view = views[i];
+      if (render.centre_mm) made.centre_mm = made.view.project(*render.centre_mm);
+      rgb[i] = eye(made);
+    }
+    return red_and_cyan(rgb[0], rgb[1]);
+  }
+
   Message at_rest() {
-    const voxel::Picture picture = voxel::render(objects, options());
+    voxel::Picture picture = voxel::render(objects, options());
+    if (stereo_deg)
+      picture.rgb = in_stereo(options(), [&](const auto& made) { return voxel::render(objects, made).rgb; });
     const voxel::View& view = picture.view;
     set_frame(header, false, picture.size_px, view,
               on_plane(view, picture.centre_mm) +
@@ -340,6 +373,13 @@ Message ViewPane::draw(Session& session, const Request& request, double most_ms,
   drawing.render = render_of(said);
   if (!drawing.snapshot.evaluation) throw std::runtime_error("no plan is open");
   drawing.is_moving = said.value("dragging", false);
+  drawing.stereo_deg = number_of(said, "stereo_deg");
+  if (drawing.stereo_deg) {
+    if (!(*drawing.stereo_deg >= 0.1 && *drawing.stereo_deg <= 30.0))
+      throw std::runtime_error("stereo_deg: must be from 0.1 to 30");
+    if (is_ray_picture(drawing.render)) throw std::runtime_error("stereo_deg: needs a shading of surfaces");
+    drawing.is_of_plan = false;
+  }
   drawing.header = {{"id", request.id}, {"pane", said.value("pane", 0)}, {"objects", Json::array()}};
   if (const auto background = said.find("background"); background != said.end() && background->is_string()) {
     drawing.background = need_colour(*background);
@@ -384,7 +424,10 @@ Message ViewPane::moving(Drawing& drawing, double most_ms) {
   const double scale = scale_within(most_ms);
   options.size_px = glm::max(glm::ivec2(1), glm::ivec2(glm::round(scale * glm::dvec2(options.size_px))));
   const Clock::time_point start = Clock::now();
-  const voxel::Picture picture = renderer_.frame(drawing.objects, options);
+  voxel::Picture picture = renderer_.frame(drawing.objects, options);
+  if (drawing.stereo_deg)
+    picture.rgb = drawing.in_stereo(
+        options, [&](const auto& made) { return renderer_.frame(drawing.objects, made).rgb; });
   const Part jpeg = flat_part(true, picture.size_px, picture.rgb);
   learn_frame_time(start, scale);
   set_frame(drawing.header, true, picture.size_px, picture.view, on_plane(picture.view, picture.centre_mm),

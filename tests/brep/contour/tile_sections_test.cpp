@@ -204,6 +204,27 @@ TEST(TileSections, ContoursThatCrossOrHaveFoldsThatTheOtherDoesNotSeeAreJoinedBy
   expect_no_fall_back({{0.0, {comb}}, {1.0, {shifted}}, {2.0, {end}}}, 2, "comb");
 }
 
+TEST(TileSections, AThinUnevenWallThatLeansByMoreThanItsThicknessIsJoinedByEachCost) {
+  // As the vault of a skull in thick slices, open at one place: spans of the outer side cross the inner side in
+  // projection, and nothing in space.
+  constexpr int steps = 200;
+  std::vector<Section> sections;
+  for (int s = 0; s < 3; ++s) {
+    const double shift = 1.5 * s, radius = 20.0 - shift;
+    Contour wall;
+    const auto add = [&](int k, bool is_inner) {
+      const double t = (100.0 + 340.0 * k / steps) * pi / 180.0;
+      const double depth = 1.0 + 0.4 * std::sin(17.0 * t + 2.0 * s) * std::sin(5.0 * t + s);
+      const double r = is_inner ? radius - depth : radius;
+      wall.points_mm.emplace_back(shift + r * std::cos(t), r * std::sin(t));
+    };
+    for (int k = 0; k <= steps; ++k) add(k, false);
+    for (int k = steps; k >= 0; --k) add(k, true);
+    sections.push_back({5.0 * s, {wall}});
+  }
+  expect_no_fall_back(sections, 2, "wall");
+}
+
 TEST(TileSections, ContoursOfASmoothFieldWithHolesAndIslandsFallBackOnLessThanTwoInAHundred) {
   constexpr int n = 26;
   std::array<std::size_t, 4> pairs{}, fallen{};

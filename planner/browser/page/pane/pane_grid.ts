@@ -173,7 +173,7 @@ function head_of(pane: Pane): Child {
       el("select", {
         class: "pane-choice faint",
         "aria-label": "Shading",
-        "data-tip": "How surfaces are drawn: shaded, as a radiograph, or the largest sample.",
+        "data-tip": "How surfaces are drawn: shaded, as a radiograph, the largest sample, or for red and cyan glasses.",
         hidden: setting.mode !== "view",
         onchange: (event: Event) => {
           change_pane(pane.index, {shading: (event.target as HTMLSelectElement).value});
@@ -182,7 +182,7 @@ function head_of(pane: Pane): Child {
       },
          ([
            ["partial_volume", "Surface"], ["radiograph", "Radiograph"], ["mip", "Largest sample"],
-           ["context", "Context"]
+           ["context", "Context"], ["stereo", "Stereo, red and cyan"]
          ] as const)
              .map(([name, label]) => el("option", {value: name, selected: name === setting.shading}, label)));
   return [

@@ -10,6 +10,8 @@ import {directions_of} from "../base/view_frame";
 
 const sheet_height_mm = 70;
 const most_sample = 32767;
+/// Eyes 65 mm apart that look at a head 0.6 m away.
+const between_eyes_deg = 6;
 
 export function request_of(pane: Pane, dragging: boolean): PaneRequest {
   const setting = pane.setting;
@@ -64,7 +66,10 @@ const hatched_where_interfering = (object: DrawnObject): DrawnObject =>
 function add_view(request: PaneRequest, setting: PaneSetting): void {
   request.view = setting.view;
   if (is_dark()) request.background = dark_ground;
-  if (setting.shading !== "partial_volume") request.shading = setting.shading;
+  if (setting.shading === "stereo")
+    request.stereo_deg = between_eyes_deg;
+  else if (setting.shading !== "partial_volume")
+    request.shading = setting.shading;
   const cut = state.cut_plane;
   if (cut) {
     const normal: [number, number, number] = [0, 0, 0];

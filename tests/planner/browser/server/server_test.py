@@ -163,8 +163,8 @@ class Wire(Served):
         fields = ["steps", "add", "replace", "remove", "scans", "landmarks", "what", "name", "values", "kind", "points",
                   "object", "objects", "with", "move", "path", "folder", "where", "a", "b", "point", "snap", "step",
                   "pane", "view", "plane", "at_mm", "size", "pixel_mm", "centre_mm", "window", "threshold", "preview",
-                  "difference", "overlap", "colour_by", "cut_planes", "cut_face", "shading", "background", "dragging",
-                  "frame"]
+                  "difference", "overlap", "colour_by", "cut_planes", "cut_face", "shading", "stereo_deg", "background",
+                  "dragging", "frame"]
         values = [None, 0, -1, 1e308, 2**63, True, "", "bone", "le_fort_i", "slice", "distance", "axial", "../..", [],
                   [[]], [0, 0, 0], [64, 48], ["bone", "bone"], [{"id": "bone"}], {}, {"id": "bone"}, {"a": None},
                   {"object": "bone", "move": {"translate_mm": [1, 0, 0]}}, {"translate_mm": [1, 0, 0]},

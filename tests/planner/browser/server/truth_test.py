@@ -2,10 +2,33 @@
 """What the server of the planner shows of a plan: whole objects, their findings, what is tried, and in which order it answers."""
 import json
 import pathlib
+import struct
 import unittest
+import zlib
 
 import server_test
 from server_test import BOX, MOVED, PIECE, REST
+
+
+def rgb_of(png):
+    """The bytes of a PNG of 8-bit red, green and blue that is not interlaced."""
+    at, packed, width = 8, b"", 0
+    while at < len(png):
+        length, kind = struct.unpack(">I4s", png[at:at + 8])
+        body = png[at + 8:at + 8 + length]
+        width = struct.unpack(">I", body[:4])[0] if kind == b"IHDR" else width
+        packed += body if kind == b"IDAT" else b""
+        at += 12 + length
+    lines, row, made, before = zlib.decompress(packed), 3 * width, bytearray(), bytes(3 * width)
+    for start in range(0, len(lines), row + 1):
+        line = bytearray(lines[start + 1:start + 1 + row])
+        for i in range(row):
+            left, above, corner = (line[i - 3], before[i], before[i - 3]) if i >= 3 else (0, before[i], 0)
+            near = min((left, above, corner), key=lambda each: abs(left + above - corner - each))
+            line[i] = line[i] + (0, left, above, (left + above) // 2, near)[lines[start]] & 255
+        made += line
+        before = line
+    return made
 
 
 class Truth(server_test.Served):
@@ -118,6 +141,33 @@ class Truth(server_test.Served):
                 answered.append(message["id"])
         self.assertNotIn(long[-1], answered)
         self.window.ask("cancel", target=long[-1])
+
+    def test_a_stereo_picture_has_the_left_eye_in_red_and_the_right_one_in_cyan(self):
+        self.plan_of()
+        bone = [{"id": "bone", "colour": "#e0a060", "opacity": 1}]
+        where = {"kind": "view", "objects": bone, "centre_mm": [0, -60, -20], "pixel_mm": 0.8}
+        header, parts = self.rest(view="anterior", stereo_deg=6, **where)
+        middle, of_middle = self.rest(view="anterior", **where)
+        stereo = rgb_of(parts["png"])
+
+        def grey(azimuth):
+            rgb = rgb_of(self.rest(view={"azimuth": azimuth, "elevation": 0}, **where)[1]["png"])
+            return [(77 * rgb[i] + 150 * rgb[i + 1] + 29 * rgb[i + 2] + 128) >> 8 for i in range(0, len(rgb), 3)]
+
+        left, right = grey(-3), grey(3)
+        self.assertNotEqual(left, right)
+        self.assertEqual(stereo[1::3], stereo[2::3])
+        for eye, channel in ((left, stereo[::3]), (right, stereo[1::3])):
+            off = sum(abs(a - b) > 2 for a, b in zip(eye, channel))
+            self.assertLess(off, 0.002 * len(eye))
+        # The pointer picks in the view between the eyes.
+        self.assertEqual(parts["depth"], of_middle["depth"])
+        self.assertEqual(header["view_frame"], middle["view_frame"])
+        moving, _ = self.window.ask("pane", pane=0, size=[300, 200], dragging=True, stereo_deg=6, view="left", **where)
+        self.assertEqual(moving["quality"], "moving")
+        for wrong in ({"stereo_deg": 90}, {"stereo_deg": "x"}, {"stereo_deg": 6, "shading": "mip"}):
+            with self.assertRaisesRegex(RuntimeError, "stereo_deg"):
+                self.rest(view="left", **where, **wrong)
 
     def test_a_radiograph_holds_up_no_other_pane(self):
         self.plan_of()

@@ -65,6 +65,27 @@ TEST(Cephalometry, ValuesAreThoseOfTheFaceThatWasMade) {
   EXPECT_FALSE(of(found, "SNA").after);
 }
 
+TEST(Cephalometry, LipsAreMeasuredFromTheLineOfNoseAndChinAndForwardIsPositive) {
+  std::vector<MovedLandmark> skin = face();
+  const auto add = [&](const char* name, const glm::dvec3& p_mm) {
+    skin.push_back({{name, p_mm}, glm::dmat4(1.0)});
+  };
+  // The line from nose to chin falls 4 in 3; the lips lie 4 mm behind it and 1 mm before it, square to the line.
+  add("pronasale", {0, -30, -40});
+  add("soft_pogonion", {0, 15, -100});
+  add("upper_lip", {1, -30 + 0.4 * 45 + 4 * 0.8, -40 - 0.4 * 60 + 4 * 0.6});
+  add("lower_lip", {0, -30 + 0.7 * 45 - 0.8, -40 - 0.7 * 60 - 0.6});
+  // The septum's skin points forward.
+  add("subnasale", {0, -10, -50});
+  add("columella", {0, -20, -50});
+  const CephalometricResults found = measure(skin);
+  EXPECT_NEAR(of(found, "upper lip to E-line").before.value, -4.0, 1e-9);
+  EXPECT_NEAR(of(found, "lower lip to E-line").before.value, 1.0, 1e-9);
+  const glm::dvec2 lip(-30 + 0.4 * 45 + 4 * 0.8 + 10, -40 - 0.4 * 60 + 4 * 0.6 + 50);
+  EXPECT_NEAR(of(found, "nasolabial angle").before.value, glm::degrees(std::acos(-lip.x / glm::length(lip))),
+              1e-9);
+}
+
 TEST(Cephalometry, AHeadThatLiesAskewHasTheSameValues) {
   const glm::dmat3 turn(glm::rotate(glm::dmat4(1.0), 0.4, glm::normalize(glm::dvec3(1, 2, -1))));
   std::vector<MovedLandmark> askew = face();
