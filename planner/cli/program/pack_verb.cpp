@@ -14,7 +14,8 @@ namespace {
 struct PackText : PlanIn {
   std::filesystem::path out;
   bool anonymous = false;
-  std::string identity = "keep", dicom = "series";
+  bool no_dicom = false;
+  std::string identity = "keep";
 };
 
 int pack(Program& program, const PackText& text) {
@@ -29,8 +30,7 @@ int pack(Program& program, const PackText& text) {
   result.evaluation = evaluated(program, result.plan, options);
   result.pictures = plan_pictures(result.plan, result.evaluation);
   PackOptions packing{{program.stop.get_token(), program.progress()}, std::nullopt};
-  if (text.dicom != "never") packing.objects_of = series_of(result);
-  if (text.dicom == "always" && !packing.objects_of) packing.objects_of = SeriesOfPlan{};
+  if (!text.no_dicom) packing.objects_of = series_of(result);
   std::vector<std::string> changes;
   if (text.identity == "remove") changes = leave_out_names(result);
   Timings timings = result.evaluation.timings;
@@ -72,13 +72,11 @@ void add_pack(Program& program) {
   verb.add_option("-o,--out", text->out, "The .zip to write")->required();
   add_anonymous(verb, text->anonymous);
   add_result_identity(verb, text->identity);
-  verb.add_option(
-          "--dicom", text->dicom,
-          "Objects, contours, exported surfaces, plan and views also as DICOM objects. series: if a scan of "
-          "the plan is a DICOM series, whose patient and study they name (not with --anonymous or --identity "
-          "remove); always: otherwise in a study of its own; never. Default: series")
-      ->check(CLI::IsMember({"series", "always", "never"}))
-      ->type_name("WHEN");
+  verb.add_flag(
+      "--no-dicom", text->no_dicom,
+      "Leaves out the DICOM objects: objects, contours, exported surfaces, plan and views. Default: they are "
+      "in the pack if a scan of the plan is a DICOM series, whose patient and study they name (not with "
+      "--anonymous or --identity remove)");
 }
 
 }  // namespace octotomy::planner::cli

@@ -1174,9 +1174,8 @@ class Checker:
                             and len(of(0x00080018)) == len(read),
                             f"dicom/: its {len(read)} objects are of one patient and one study, each with an identifier")
         if self.archive.manifest.get("identity") is not None or stated["identity"]["choice"] == "remove":
-            # Without a series there is no patient: a study of a phantom.
-            removed = of(0x00120062) == {"YES"} and of(0x00100010) == {""} and of(0x00100020) == {""}
-            self.findings.claim(removed or stated["scan"] is None, "dicom/: its objects name no patient")
+            self.findings.claim(of(0x00120062) == {"YES"} and of(0x00100010) == {""} and of(0x00100020) == {""},
+                                "dicom/: its objects name no patient")
 
     def check_segmentation(self, row, dicom):
         """Each frame shows a slice of an object in the universe."""

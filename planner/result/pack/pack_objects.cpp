@@ -50,14 +50,14 @@ class ObjectsWriter {
 
   Json write(const SeriesOfPlan& of, const fs::path& results) {
     const auto choice = result_.anonymous ? voxel::IdentityChoice::Remove : voxel::IdentityChoice::Keep;
-    if (result_.anonymous && of.series)
-      need_unnamed(parse_json<Json>(result_.plan.text), *of.series, result_.plan.file.string());
+    if (result_.anonymous)
+      need_unnamed(parse_json<Json>(result_.plan.text), of.series, result_.plan.file.string());
     const voxel::DecidedIdentity decided = voxel::decide_identity(of.series, choice);
     source_ = decided.source;
     write_voxels();
     write_models();
     write_plan(results);
-    return {{"scan", of.scan.empty() ? Json(nullptr) : Json(of.scan)},
+    return {{"scan", of.scan},
             {"identity", {{"choice", voxel::word_of(choice)}, {"changes", decided.changes}}},
             {"objects", std::move(rows_)},
             {"findings", std::move(findings_)}};

@@ -13,8 +13,8 @@ namespace octotomy::planner {
 
 /// The series to which a result's DICOM objects refer.
 struct SeriesOfPlan {
-  std::string scan;  ///< its name in the plan; empty: none
-  std::optional<voxel::DicomSource> series = std::nullopt;
+  std::string scan;  ///< its name in the plan
+  voxel::DicomSource series;
 };
 
 /// The series of the plan's first scan that was read from one; none if no scan was. Call it before
@@ -31,10 +31,10 @@ void need_unnamed(const nlohmann::ordered_json& plan, const voxel::DicomSource& 
 /// - structures.dcm: the same objects as contours on the series' images;
 /// - model_NNN.dcm: the surface of each object that the plan exports, as an encapsulated STL;
 /// - plan.dcm and picture_NNN.dcm: the plan's text, and the views/*.png of `results`.
-/// Patient and study are those of the series; without one, a study of its own. An anonymous result's objects
-/// have the identity that decide_identity() makes of IdentityChoice::Remove, and need_unnamed() holds. Equal
-/// results make equal files. Returns {"scan", "identity": {"choice", "changes"}, "objects": [{"path", "kind",
-/// ...}], "findings"}. Throws as the writers do, and Stopped.
+/// Patient and study are those of the series. An anonymous result's objects have the identity that
+/// decide_identity() makes of IdentityChoice::Remove, and need_unnamed() holds. Equal results make equal files. Returns
+/// {"scan", "identity": {"choice", "changes"}, "objects": [{"path", "kind", ...}], "findings"}. Throws as the writers
+/// do, and Stopped.
 nlohmann::ordered_json write_result_objects(const Result& result, const SeriesOfPlan& of,
                                             const std::filesystem::path& results,
                                             const std::filesystem::path& folder,
