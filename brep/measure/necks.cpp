@@ -28,6 +28,9 @@ struct Sides {
 /// parallel: a wave of a rim is no neck.
 constexpr std::array<Sides, 2> kinds_of_sides{Sides{30.0, 120.0}, Sides{90.0, 150.0}};
 
+/// Shorter edges, as shares of the spacing, are of slivers, whose normals may point anywhere.
+constexpr double least_edge_share = 0.1;
+
 double rad(double deg) {
   return deg * std::numbers::pi / 180.0;
 }
@@ -58,6 +61,7 @@ std::vector<OnEdge> places_of(const Linked& surface, const NecksOptions& options
     const glm::dvec3 &from_mm = triangles.points_mm[surface.from(side)],
                      &to_mm = triangles.points_mm[surface.to(side)];
     const double length_mm = glm::distance(from_mm, to_mm);
+    if (length_mm < least_edge_share * options.spacing_mm) continue;
     // Along a side its own face lies to the left. On a reentrant edge the normals turn to the right.
     if (!(glm::dot(glm::cross(*here, *beside), to_mm - from_mm) < 0.0)) continue;
     const glm::dvec3 sum = *here + *beside;

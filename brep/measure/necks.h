@@ -12,9 +12,10 @@ namespace octotomy::brep {
 struct NecksOptions {
   double below_mm = 0.6;  ///< the width from which a neck is wide enough; above 0
   /// Largest distance of the places that are measured on an edge; above 0.
-  double spacing_mm = 0.1;
-  /// Edges count whose faces meet at an angle inside of at least 180 degrees and this; 1..170.
-  double reentrant_deg = 20.0;
+  double spacing_mm = 0.2;
+  /// Edges count whose faces meet inside at an angle of at least 180 degrees and this; 1..170. Waves of a rim, as
+  /// level sets have them, turn by up to 30 degrees.
+  double reentrant_deg = 30.0;
   std::stop_token stop = {};
 };
 

@@ -58,7 +58,8 @@ voxel::Expression balls_within(const voxel::Expression& solid, double radius_mm,
 }
 
 /// Necks are walls thinner than this share of the least wall. Other walls are thinner than the least wall by at most
-/// twice the tolerance of triangles.
+/// twice the tolerance of triangles. Where balls as wide as the least wall meet in a neck, the surface turns by at
+/// least 74 degrees, or by half of that at two edges next to each other: above the least angle of NecksOptions.
 constexpr double neck_share = 0.8;
 /// Half the width of the cleft that parts the two sides of a neck. Printers keep clefts from 0.5 mm on open.
 constexpr double half_cleft_mm = 0.3;
