@@ -34,7 +34,7 @@ TEST(Deform, AScaledAndShearedBoxIsTheParallelepipedOfItsColumns) {
 }
 
 TEST(Deform, TheInverseMapBringsEveryPointBack) {
-  const Mesh ball = mesh_of(shapes::sphere(10.0, 3));
+  const Mesh ball = mesh_of(shapes::sphere({0, 0, 0}, 10.0, 3));
   glm::dmat4 map = glm::rotate(glm::dmat4(1.0), 0.7, glm::dvec3(1, 2, 3));
   map = glm::scale(map, glm::dvec3(0.5, 1.25, 2.0));
   map[3] = {3, -4, 5, 1};

@@ -150,7 +150,7 @@ TEST(Affine, AnObjectMadeOfAScaledOneHasTheIntervalOfItsOwnSurface) {
 TEST(Affine, LandmarksAndDecksFollowAndMovementsStateThatItIsNotRigid) {
   const ScratchFolder folder;
   const Plan plan = ball_plan(folder, ball_caps(R"(
-      {"id": "marks", "do": "landmarks", "points_mm": {"top": [0, 0, 20]}},
+      {"id": "marks", "do": "landmarks", "points": [{"name": "top", "point_mm": [0, 0, 20]}]},
       {"id": "taller", "do": "affine", "object": "upper", "scale": [1, 1, 1.2], "about_mm": [0, 0, 5]},
       {"id": "then", "do": "move", "object": "taller", "translate_mm": [0, 0, 1]},
       {"id": "to_top", "do": "move", "object": "lower", "from": [0, 0, 0], "to": "top@then"})"));
