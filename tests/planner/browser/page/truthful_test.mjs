@@ -140,6 +140,8 @@ test('a pane that was out of sight shows what the plan became meanwhile', async 
   await one.at_rest();
   await one.click(one.page.locator('.pane').nth(1).getByRole('button', { name: /Enlarge this pane/ }));
   await one.at_rest();
+  await one.tab('Steps');
+  await one.select('bone');
   await one.press('w');
   await one.type('low', 500);
   await one.click(one.page.locator('[data-key="apply-window"]'));
