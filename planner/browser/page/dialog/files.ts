@@ -134,10 +134,7 @@ interface Given {
 
 /// Takes files and folders that are dropped anywhere on the page.
 export function take_drops(): void {
-  // Steps of the plan are dragged, too.
-  const has_files = (event: DragEvent): boolean => event.dataTransfer?.types.includes("Files") ?? false;
   addEventListener("dragover", (event) => {
-    if (!has_files(event)) return;
     event.preventDefault();
     document.body.classList.add("dropping");
   });
@@ -145,7 +142,6 @@ export function take_drops(): void {
     if (!event.relatedTarget) document.body.classList.remove("dropping");
   });
   addEventListener("drop", (event) => {
-    if (!has_files(event)) return;
     event.preventDefault();
     document.body.classList.remove("dropping");
     // Both lists are empty once the event has ended.

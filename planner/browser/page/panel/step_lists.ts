@@ -143,9 +143,6 @@ export function step_words(step: Step): string {
   }
 }
 
-// The kind of what a drag carries between rows.
-const dragged_step = "text/x-octotomy-step";
-
 /// Why a step has no result. That of a scan is told beside the measurements.
 function error_of(step: Step): string|null|undefined {
   if (!makes_scan(step)) return object_of(step.id)?.error;
@@ -159,16 +156,7 @@ function step_rows(): Child {
       return el(
           "div", {
             class: `item step${state.selected === step.id ? " selected" : ""}`,
-            draggable: true,
-            onclick: () => set({selected: step.id, right_tab: "inspector"}),
-            ondragstart: (event: DragEvent) => event.dataTransfer?.setData(dragged_step, step.id),
-            ondragover: (event: DragEvent) => {
-              if (event.dataTransfer?.types.includes(dragged_step)) event.preventDefault();
-            },
-            ondrop: (event: DragEvent) => {
-              const dropped = event.dataTransfer?.getData(dragged_step);
-              if (dropped) put_step_at(dropped, index);
-            }
+            onclick: () => set({selected: step.id, right_tab: "inspector"})
           },
           el("div", {class: "item-line"},
              makes_shape(step) ? el("span", {class: "chip", style: `background:${look_of(step.id).colour}`}) :
@@ -205,10 +193,10 @@ function step_menu(step: Step): Child {
              "Copy as Python", "Copies a line of Python that adds this step",
              () => void copy_command(step, "python"), {role: "menuitem"}),
          button(
-             "Put earlier", "Puts the step one place earlier. Dragging its row does it, too",
+             "Put earlier", "Puts the step one place earlier; not before what it uses",
              () => put_step_at(step.id, steps().indexOf(step) - 1), {role: "menuitem"}),
          button(
-             "Put later", "Puts the step one place later. Dragging its row does it, too",
+             "Put later", "Puts the step one place later; not behind what uses it",
              () => put_step_at(step.id, steps().indexOf(step) + 1), {role: "menuitem"}),
          button(
              "Remove", "Removes the step from the plan; undo restores it", () => remove_step(step),
