@@ -133,8 +133,11 @@ class Archive(unittest.TestCase):
         run(PROGRAM, "octree", scan, "--window", "300:", "-o", cls.folder / "skull.octree")
         run(PROGRAM, "mesh", scan, "--window", "300:", "-o", cls.folder / "skull.stl")
         source = ["--source", cls.folder / "series"]
+        # An odd number of bytes, which DICOM has to pad.
+        (cls.folder / "report.pdf").write_bytes(b"%PDF-1.4\n1 0 obj<</Type/Catalog>>endobj\ntrailer<</Root 1 0 R>>\n%%EOF\n")
         for name, words in {"rt": ["skull.octree", "--as", "structures"], "share": ["skull.stl", "--as", "fractions"],
-                            "numbers": ["skull.octree", "--as", "labelmap"], "model": ["skull.stl"]}.items():
+                            "numbers": ["skull.octree", "--as", "labelmap"], "model": ["skull.stl"],
+                            "report": ["report.pdf"]}.items():
             run(PROGRAM, "convert", cls.folder / words[0], *words[1:], "-o", cls.folder / f"{name}.dcm", *source)
         (cls.folder / "a.plan.json").write_text(json.dumps({
             "octotomy_plan": 1, "name": "A plan", "scans": {"ct": {"path": "series"}}, "universe": {"voxel_mm": 12.0},
