@@ -172,9 +172,10 @@ brep::Solid thick_part(const brep::LevelBody& body, const ThickPart& asked, cons
   if (!necks_mm.empty()) {
     made.details["necks_mm"] = nlohmann::ordered_json::array();
     for (const glm::dvec3& at_mm : necks_mm) made.details["necks_mm"].push_back(to_json(at_mm));
+    const std::string places =
+        necks_mm.size() == 1 ? "" : std::to_string(necks_mm.size()) + " places, the first at ";
     made.findings.push_back("necks thinner than " + three_figures(neck_share * asked.least_wall_mm) +
-                            " mm are cut through at " + std::to_string(necks_mm.size()) +
-                            " places, the first at " + place_in_words(necks_mm.front()));
+                            " mm are cut through at " + places + place_in_words(necks_mm.front()));
   }
   {
     const Stopwatch watch(bench.timings, part + "_thin");
