@@ -9,6 +9,7 @@
 #include "brep/shape/offset.h"
 #include "brep/shape/untangle.h"
 #include "planner/operation/measure/result_json.h"
+#include "planner/operation/part/print_checks.h"
 #include "planner/operation/table/number_format.h"
 #include "voxel/filter/components.h"
 #include "voxel/filter/offset.h"
@@ -57,10 +58,14 @@ voxel::Expression balls_within(const voxel::Expression& solid, double radius_mm,
                                                  bench.progress));
 }
 
-/// Necks are walls thinner than this share of the least wall. Other walls are thinner than the least wall by at most
-/// twice the tolerance of triangles. Where balls as wide as the least wall meet in a neck, the surface turns by at
-/// least 74 degrees, or by half of that at two edges next to each other: above the least angle of NecksOptions.
+/// The width below which a neck is cut through: the least wall that printers make, and at most this share of the part's
+/// own least wall. Other walls are thinner than the least wall by at most twice the tolerance of triangles. Where balls
+/// as wide as the least wall meet in a neck, the surface turns by at least 74 degrees, or by half of that at two edges
+/// next to each other: above the least angle of NecksOptions.
 constexpr double neck_share = 0.8;
+double neck_mm(double least_wall_mm) {
+  return std::min(neck_share * least_wall_mm, PrintLimits{}.least_wall_mm);
+}
 /// Half the width of the cleft that parts the two sides of a neck. Printers keep clefts from 0.5 mm on open.
 constexpr double half_cleft_mm = 0.3;
 
@@ -160,7 +165,7 @@ brep::Solid thick_part(const brep::LevelBody& body, const ThickPart& asked, cons
     }
     const Stopwatch watch(bench.timings, part + "_necks");
     const std::vector<brep::Neck> necks =
-        brep::necks(whole, {.below_mm = neck_share * asked.least_wall_mm, .stop = progress.stop});
+        brep::necks(whole, {.below_mm = neck_mm(asked.least_wall_mm), .stop = progress.stop});
     if (necks.empty() || round == most_rounds) break;
     const double cut_mm = radius_mm + half_cleft_mm;
     record_necks(necks, 2.0 * cut_mm, necks_mm);
@@ -174,7 +179,7 @@ brep::Solid thick_part(const brep::LevelBody& body, const ThickPart& asked, cons
     for (const glm::dvec3& at_mm : necks_mm) made.details["necks_mm"].push_back(to_json(at_mm));
     const std::string places =
         necks_mm.size() == 1 ? "" : std::to_string(necks_mm.size()) + " places, the first at ";
-    made.findings.push_back("necks thinner than " + three_figures(neck_share * asked.least_wall_mm) +
+    made.findings.push_back("necks thinner than " + three_figures(neck_mm(asked.least_wall_mm)) +
                             " mm are cut through at " + places + place_in_words(necks_mm.front()));
   }
   {

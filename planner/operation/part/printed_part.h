@@ -37,8 +37,8 @@ struct ThickPart {
   std::vector<brep::Level> holes = {};
 };
 /// The mesh of a body without walls and necks thinner than the least wall: the union of balls of that width within the
-/// body whose middles hang together, so edges are rounded. Where two sides overlap in a neck thinner than 0.8 of
-/// the least wall, a ball that leaves a cleft of 0.6 mm is cut out between them. Keeps the largest piece, as
+/// body whose middles hang together, so edges are rounded. Where two sides overlap in a neck thinner than 0.6 mm or
+/// 0.8 of the least wall, a ball that leaves a cleft of 0.6 mm is cut out between them. Keeps the largest piece, as
 /// printed(). `made` lists the volume that is cut off with thin walls, and the necks. Throws as brep::core_of() and
 /// brep::boolean().
 brep::Solid thick_part(const brep::LevelBody& body, const ThickPart& asked, const std::string& part,
