@@ -28,7 +28,8 @@ struct Neck {
 /// The necks of a solid at its reentrant edges, in the order of the edges: the narrow places of a union of wide
 /// balls, where two that overlap little meet. Balls touch an edge square to the bisector of its faces, and the other
 /// side at least 120 degrees from it, seen from their centres. Throws std::invalid_argument if the solid is empty
-/// or an option is out of its range; Stopped. The same bits on any number of threads. Cost: n log n for the tree, about log n a place; parallel.
+/// or an option is out of its range; Stopped. The same bits on any number of threads. Cost: n log n for the tree,
+/// about log n a place; parallel.
 std::vector<Neck> necks(const Solid& solid, const NecksOptions& options);
 
 }  // namespace octotomy::brep
