@@ -185,7 +185,7 @@ export function close_menu(): void {
 
 function step_menu(step: Step): Child {
   const menu =
-      el("div", {class: "menu", role: "menu", hidden: step.id !== step_of_menu},
+      el("div", {class: "menu", role: "menu", hidden: step.id !== step_of_menu, onclick: close_menu},
          button(
              "Copy as command", "Copies a command for the terminal that runs this step",
              () => void copy_command(step, "shell"), {role: "menuitem"}),
