@@ -132,6 +132,7 @@ test('pieces that only meet in an overlap stay in sight, also where they are joi
   await one.at_rest();
   assert.ok((await red_pixels(0)) > 20, 'the overlap in red');
   await one.press('Control+z');
+  await one.until(() => !one.plan(other_path).steps.some(({ id }) => id === 'overlap'), 'the procedure taken back');
   await open('one');
 });
 
