@@ -47,7 +47,8 @@ TEST(Representation, MaskedNodesWithOtherFacesThanTheirNeighboursCoverAreRefused
   content[full + 2] = before == '0' ? '1' : '0';
   const std::string why =
       tests::refusal([&] { octree_of_representation(octree.universe(), "masked", content); });
-  EXPECT_NE(why.find("masked octree, character " + std::to_string(full + 1) + ": the covered faces of this node are"),
+  EXPECT_NE(why.find("masked octree, character " + std::to_string(full + 1) +
+                     ": the covered faces of this node are"),
             std::string::npos)
       << why;
   const auto refused = [&](const char* text) {
