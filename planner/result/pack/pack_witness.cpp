@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -47,7 +48,8 @@ struct CellSamples {
   std::array<double, 8> samples{};
 };
 
-/// None if the cell is not completely within the scan.
+/// None if the cell is not completely within the scan, or has a sample that was not measured: no kernel interpolates
+/// there.
 std::optional<CellSamples> cell_at(const voxel::Scene& scene, const glm::dvec3& centre_mm) {
   const glm::dvec3 at = scene.lattice.voxel(centre_mm);
   const glm::ivec3 dims = scene.lattice.dims;
@@ -66,6 +68,8 @@ std::optional<CellSamples> cell_at(const voxel::Scene& scene, const glm::dvec3& 
         }
       },
       scene.samples);
+  for (const double sample : found.samples)
+    if (!std::isfinite(sample) || sample == scene.padding) return std::nullopt;
   return found;
 }
 

@@ -17,7 +17,7 @@ namespace octotomy::planner {
 /// - samples, for a window alone (`window_of` is its scan, else nullptr): rows of 14 numbers, up to
 ///   `most_samples` of them: a voxel of the universe (x, y, z), the scan's cell that holds its centre (x, y, z),
 ///   and the cell's eight samples, x fastest. Half of the voxels lie on either side of the surface along x, the
-///   others anywhere; their choice is fixed.
+///   others anywhere; their choice is fixed. Cells with a sample that was not measured are left out.
 std::map<std::string, std::string> witness_arrays(const Object& object, const voxel::Universe& universe,
                                                   const voxel::Scene* window_of);
 
