@@ -4,12 +4,24 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "brep/mesh/error.h"
 #include "brep/mesh/mesh_point.h"
+#include "brep/mesh/solid.h"
 
 namespace octotomy::brep {
 namespace {
+
+/// Why a matrix is no affine map: an entry that is not finite, or another last row. Null if it is one.
+const char* why_not_affine(const glm::dmat4& m) {
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row)
+      if (!std::isfinite(m[column][row])) return "an entry is not finite";
+  for (int column = 0; column < 4; ++column)
+    if (m[column][3] != (column == 3 ? 1.0 : 0.0)) return "its last row is not 0 0 0 1";
+  return nullptr;
+}
 
 /// Tolerance of orthonormality, for the products of the columns. In a matrix printed with ten digits each
 /// product errs by less than 2e-10. With an error t, a moved volume changes by less than the share 3 t, far
@@ -23,11 +35,7 @@ void check_rigid(const glm::dmat4& m) {
     throw InvalidInput("the motion is not rigid: " + why +
                        "; give a rotation without scale or mirror, then a translation");
   };
-  for (int column = 0; column < 4; ++column)
-    for (int row = 0; row < 4; ++row)
-      if (!std::isfinite(m[column][row])) refuse("an entry is not finite");
-  for (int column = 0; column < 4; ++column)
-    if (m[column][3] != (column == 3 ? 1.0 : 0.0)) refuse("its last row is not 0 0 0 1");
+  if (const char* why = why_not_affine(m)) refuse(why);
   const glm::dmat3 r(m);
   const glm::dmat3 products = glm::transpose(r) * r;
   for (int i = 0; i < 3; ++i)
@@ -71,6 +79,22 @@ Triangles moved(const Triangles& triangles, const glm::dmat4& moved_from_still) 
   Triangles result = triangles;
   for (glm::dvec3& p : result.points_mm) p = motion(p);
   return result;
+}
+
+Solid deformed(const Solid& solid, const glm::dmat4& deformed_from_still) {
+  const glm::dmat4& m = deformed_from_still;
+  if (const char* why = why_not_affine(m))
+    throw InvalidInput(std::string("deformed: the map is not affine: ") + why);
+  const double volume = glm::determinant(glm::dmat3(m));
+  if (!(volume > 0.0))
+    throw InvalidInput(volume < 0.0 ? "deformed: the map mirrors; mirror the surface about a plane instead"
+                                    : "deformed: the map is singular: it flattens the surface");
+  Triangles triangles = solid.triangles();
+  for (glm::dvec3& p : triangles.points_mm) {
+    p = glm::dvec3(m * glm::dvec4(p, 1.0));
+    if (!std::isfinite(p.x + p.y + p.z)) throw InvalidInput("deformed: a point leaves the range of numbers");
+  }
+  return trusted_solid(std::move(triangles), proof_of_image(solid.proof()));
 }
 
 }  // namespace octotomy::brep
