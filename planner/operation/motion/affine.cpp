@@ -7,11 +7,11 @@
 // The voxel kernel reads its windows and masks at each voxel's origin under the map; the mesh kernel maps points.
 #include <cmath>
 
-#include "brep/mesh/deform.h"
+#include "brep/mesh/move.h"
 #include "planner/operation/file/itk_transform.h"
 #include "planner/operation/object/provenance.h"
 #include "planner/operation/table/deformation.h"
-#include "planner/operation/table/fault.h"
+#include "planner/operation/table/field_file.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "voxel/solid/expression.h"
@@ -114,13 +114,7 @@ void check(const Affine& affine, const FieldLocation& place) {
       place.at(affine.scale ? "scale" : "shear").refuse(*why);
     return;
   }
-  // If the file is missing, the step fails when it is evaluated, as an import of a missing mesh does.
-  if (place.scope == nullptr || !std::filesystem::exists(place.scope->folder() / affine.file)) return;
-  try {
-    map_in(place.scope->folder() / affine.file);
-  } catch (const std::exception& error) {
-    rethrow_at(place.at("file").where + ": ", error);
-  }
+  check_field_file(place.at("file"), affine.file, map_in);
 }
 
 std::string definition(const Affine& affine, const Objects&) {

@@ -4,7 +4,7 @@
 #include "planner/operation/motion/move.h"
 #include "planner/operation/object/provenance.h"
 #include "planner/operation/table/deformation.h"
-#include "planner/operation/table/fault.h"
+#include "planner/operation/table/field_file.h"
 #include "planner/operation/table/operation.h"
 
 namespace octotomy::planner {
@@ -26,13 +26,7 @@ TransformFile motion_in(const std::filesystem::path& path) {
 }
 
 void check(const Transform& transform, const FieldLocation& place) {
-  // If the file is missing, the step fails when it is evaluated, as an import of a missing mesh does.
-  if (place.scope == nullptr || !std::filesystem::exists(place.scope->folder() / transform.file)) return;
-  try {
-    motion_in(place.scope->folder() / transform.file);
-  } catch (const std::exception& error) {
-    rethrow_at(place.at("file").where + ": ", error);
-  }
+  check_field_file(place.at("file"), transform.file, motion_in);
 }
 
 std::string definition(const Transform& transform, const Objects&) {

@@ -8,7 +8,7 @@
 #include "brep/shape/saw.h"
 #include "planner/operation/file/slicer_markup.h"
 #include "planner/operation/object/provenance.h"
-#include "planner/operation/table/fault.h"
+#include "planner/operation/table/field_file.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "verify/witness/witness.h"
@@ -39,12 +39,9 @@ void check(const Saw& saw, const FieldLocation& place) {
     }
     return;
   }
-  if (place.scope == nullptr || !std::filesystem::exists(place.scope->folder() / saw.plane)) return;
-  try {
+  check_field_file(place.at("plane"), saw.plane, [&](const std::filesystem::path&) {
     brep::saw_blade(cut_of(with_plane_read(saw, place.scope->folder())));
-  } catch (const std::exception& error) {
-    rethrow_at(place.at("plane").where + ": ", error);
-  }
+  });
 }
 
 std::string definition(const Saw& saw, const Objects&) {

@@ -1,39 +1,22 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/operation/table/deformation.h"
 
+#include <Eigen/SVD>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <glm/gtc/type_ptr.hpp>
 
 #include "planner/operation/table/number_format.h"
 
 namespace octotomy::planner {
 namespace {
 
-/// Singular values, the largest first, by Jacobi rotations of the columns (Hestenes 1958): each rotation makes
-/// two columns orthogonal, and at the end the columns' lengths are the values. Small values keep their relative
-/// accuracy, which they would lose in the squares of the Gram matrix.
-std::array<double, 3> singular_values(glm::dmat3 map) {
-  // Three columns are orthogonal to rounding after four sweeps; the rest is a margin.
-  constexpr int most_sweeps = 30;
-  constexpr double rounding = 1e-15;
-  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-    bool is_done = true;
-    for (const auto& [p, q] : {std::pair(0, 1), std::pair(0, 2), std::pair(1, 2)}) {
-      const double pp = glm::dot(map[p], map[p]), qq = glm::dot(map[q], map[q]),
-                   pq = glm::dot(map[p], map[q]);
-      if (!(std::abs(pq) > rounding * std::sqrt(pp) * std::sqrt(qq))) continue;
-      is_done = false;
-      const double angle = 0.5 * std::atan2(2.0 * pq, pp - qq);
-      const glm::dvec3 first = std::cos(angle) * map[p] + std::sin(angle) * map[q];
-      map[q] = std::cos(angle) * map[q] - std::sin(angle) * map[p];
-      map[p] = first;
-    }
-    if (is_done) break;
-  }
-  std::array<double, 3> values{glm::length(map[0]), glm::length(map[1]), glm::length(map[2])};
-  std::sort(values.rbegin(), values.rend());
-  return values;
+using Svd = Eigen::JacobiSVD<Eigen::Matrix3d>;
+
+/// The singular values are in descending order.
+Svd svd_of(const glm::dmat3& map) {
+  return Svd(Eigen::Map<const Eigen::Matrix3d>(glm::value_ptr(map)),
+             Eigen::ComputeFullU | Eigen::ComputeFullV);
 }
 
 }  // namespace
@@ -54,7 +37,8 @@ bool is_rigid(const glm::dmat4& matrix) {
 }
 
 Deformation deformation_of(const glm::dmat3& map) {
-  const auto [a, b, c] = singular_values(map);
+  const Eigen::Vector3d values = svd_of(map).singularValues();
+  const double a = values[0], b = values[1], c = values[2];
   Deformation made;
   made.volume_factor = glm::determinant(map);
   made.least_length = c;
@@ -78,19 +62,9 @@ std::string in_words(const Deformation& deformation) {
 
 glm::dmat3 nearest_rotation(const glm::dmat4& map) {
   if (is_rigid(map)) return glm::dmat3(map);
-  // The mean of a matrix and its inverse transpose moves each singular value s to (s + 1 / s) / 2, which converges
-  // to 1 quadratically. From 0.01 or 100 eleven steps suffice.
-  constexpr int most_steps = 40;
-  glm::dmat3 turn(map);
-  for (int step = 0; step < most_steps; ++step) {
-    const glm::dmat3 next = 0.5 * (turn + glm::inverse(glm::transpose(turn)));
-    double change = 0.0;
-    for (int column = 0; column < 3; ++column)
-      change = std::max(change, glm::distance(next[column], turn[column]));
-    turn = next;
-    if (!(change > 1e-15)) break;
-  }
-  return turn;
+  const Svd svd = svd_of(glm::dmat3(map));
+  const Eigen::Matrix3d turn = svd.matrixU() * svd.matrixV().transpose();
+  return glm::make_mat3(turn.data());
 }
 
 }  // namespace octotomy::planner

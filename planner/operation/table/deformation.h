@@ -33,8 +33,7 @@ double stretch_of(const glm::dmat4& map);
 std::string in_words(const Deformation& deformation);
 
 /// The rotation that is nearest to a map's linear part: that part itself, to the bit, if the map is rigid.
-/// Precondition: the determinant is positive. Source: Higham, "Computing the polar decomposition", SIAM J.
-/// Sci. Stat. Comput. 7 (1986).
+/// Precondition: the determinant is positive.
 glm::dmat3 nearest_rotation(const glm::dmat4& map);
 
 }  // namespace octotomy::planner
