@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The corners of a rotated box lie off the planes of its faces by last places. Flush faces of two such boxes then
 // cross at angles of rounding, and the space between them is thinner than the rounding of points, so results
-// intersect themselves. No rounding of the points makes the faces coplanar in that pose. 1 find pairs of triangles of
-// both solids that lie on one plane; 2 choose the direction with the largest common area, and one square to
-// it: another common direction, or else that of the largest triangle; 3 turn the solids so that these are
-// axes; 4 put points that lie beside a plane square to an axis by rounding onto it.
+// intersect themselves. No rounding of the points makes the faces coplanar in that pose.
+// 1 find pairs of triangles of both solids that lie on one plane; 2 choose the direction with the largest common
+// area, and one square to it: another common direction, or else that of the largest triangle; 3 turn the solids so
+// that these are axes; 4 put points that lie beside a plane square to an axis by rounding onto it.
 #include "brep/boolean/common_frame.h"
 
 #include <algorithm>

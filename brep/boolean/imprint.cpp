@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Points made by a cut are rounded. The triangles of a piece therefore deviate by last places from the bone's
-// triangles that they were cut from, and the two surfaces cross there many times. 1 find pairs of triangles on one
-// plane; 2 merge points of both that differ only by rounding; 3 list the points of either that lie in the other's
-// triangles or on their sides, and where sides cross; 4 divide the first solid's triangles by these points and by the
-// other's sides; 5 divide the second solid's triangles by the sides that the first solid then has.
+// triangles that they were cut from, and the two surfaces cross there many times.
+// 1 find pairs of triangles on one plane; 2 merge points of both that differ only by rounding; 3 list the points of
+// either that lie in the other's triangles or on their sides, and where sides cross; 4 divide the first solid's
+// triangles by these points and by the other's sides; 5 divide the second solid's triangles by the sides that the
+// first solid then has.
 #include "brep/boolean/imprint.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>

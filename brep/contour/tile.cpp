@@ -6,10 +6,10 @@
 // at any node, so 4 find the path with the least sum over nodes whose sums do not exceed that limit, after trials
 // with smaller limits of the blame. If costs depend on single triangles, the strip may start elsewhere: every strip
 // has a span at the lower ring's first point. Therefore 5 find the path that starts half way between two known ones,
-// which it need not cross, and so on; 6 write the triangles of the best. Over 600 lines, because all passes share the
-// rings' scores, costs and bounds. Departure from Fuchs, Kedem and Uselton: nodes whose sums exceed that of a known
-// path are left out, which changes no result, because steps have no cost below zero; of greatest_volume only the
-// blame is limited.
+// which it need not cross, and so on; 6 write the triangles of the best.
+// Over 600 lines, because all passes share the rings' scores, costs and bounds.
+// Departure from Fuchs, Kedem and Uselton: nodes whose sums exceed that of a known path are left out, which changes no
+// result, because steps have no cost below zero; of greatest_volume only the blame is limited.
 #include "brep/contour/tile.h"
 
 #include <algorithm>

@@ -25,7 +25,8 @@ struct ThesisGap {
 
 /// Recomputes the tables and worked examples whose inputs are printed: figure 3.1's object in every
 /// representation, the sphere of table 3.1, the octal codes of figure 4.6, the children of table 4.3, the shading
-/// cases of table 5.1, the Boolean rules of table 7.1, and the motions of marked points of section 8.3. Cost: about a second, most of it for the sphere's fractions.
+/// cases of table 5.1, the Boolean rules of table 7.1, and the motions of marked points of section 8.3. Cost: about a
+/// second, most of it for the sphere's fractions.
 std::vector<ThesisEntry> thesis_tables();
 const std::vector<ThesisGap>& thesis_gaps();
 

@@ -1,7 +1,7 @@
 // Repeated polygons: 1 measure every polygon; 2 sort them by a number that differs between equal lines by no
-// more than the rounding allows; 3 compare points with edges for polygons with nearby numbers. Crossing
-// polygons: 1 find edges that touch, by boxes; 2 for two polygons that touch, check whether each lies on both
-// sides of the other by more than the rounding, at its corners and between its touches; 3 where a polygon
+// more than the rounding allows; 3 compare points with edges for polygons with nearby numbers.
+// Crossing polygons: 1 find edges that touch, by boxes; 2 for two polygons that touch, check whether each lies on
+// both sides of the other by more than the rounding, at its corners and between its touches; 3 where a polygon
 // crosses itself, check by areas whether the two loops overlap or lie side by side.
 #include "voxel/solid/polygon_overlaps.h"
 

@@ -22,7 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t most_plan_bytes = 256 << 20;
-constexpr const char* plan_key = "octotomy_plan";  ///< which every plan has
 
 Json plan_json(const std::string& text, const std::string& where) {
   Json plan;
@@ -31,7 +30,7 @@ Json plan_json(const std::string& text, const std::string& where) {
   } catch (const std::runtime_error& error) {
     refuse(where, error.what());
   }
-  if (!plan.is_object() || !plan.contains(plan_key))
+  if (!plan.is_object() || !plan.contains("octotomy_plan"))
     refuse(where, "is no plan: it lacks \"octotomy_plan\"; only plans (.plan.json) are written as documents");
   return plan;
 }
