@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A scan of teeth laid onto an object, and the object's crowns replaced by the scan's.
+// A scan of teeth aligned with an object, and the object's crowns replaced by the scan's.
 //
-// settle() reads the scan and lays it: by points, then by the crowns' surfaces. Patches that the fit did not use
-// state how far the scan is off. Only the mesh kernel blends surfaces: its answer is voxelised, so that later steps
-// find it in both kernels. The certificate reads the scan's triangles and the object's own samples by other code.
+// settle() reads the scan and aligns it by points, then by the crowns' surfaces. Patches that the fit did not
+// use measure the error. Only the mesh kernel blends surfaces: its result is voxelised, so that later steps
+// have it in both kernels. The certificate reads the scan's triangles and the object's own samples by other
+// code.
 #include "brep/align/tooth_scan.h"
 
 #include <algorithm>
