@@ -23,7 +23,7 @@ constexpr double most_frame_ms = 14.0;
 /// The least time between reports of progress.
 constexpr std::chrono::milliseconds tell_every{100};
 
-/// Whether a view shows what lies along rays, see ray_pictures.h.
+/// Whether a view's shading is computed along rays (ray_pictures.h).
 bool is_ray_shading(const Json& said) {
   const std::vector<std::string> names = ray_picture_names();
   const Json shading = said.value("shading", Json());

@@ -131,7 +131,7 @@ std::vector<std::uint8_t> red_and_cyan(const std::vector<std::uint8_t>& left,
   return rgb;
 }
 
-/// A position in a view's plane, as the point of the plane through the origin.
+/// The point at a position of a view, on the plane through the origin.
 glm::dvec3 on_plane(const voxel::View& view, const glm::dvec2& p_mm) {
   return view.right * p_mm.x + view.up * p_mm.y;
 }
@@ -209,8 +209,8 @@ struct ViewPane::Drawing {
     return made;
   }
 
-  /// The picture for red and cyan glasses. `eye` draws the picture of one eye. Depths and objects stay those of
-  /// the view between the eyes, in which the pointer picks.
+  /// The picture for red and cyan glasses. `eye` draws the picture of one eye. Depths and objects stay those
+  /// of the view between the eyes, in which the pointer picks.
   template <typename Eye>
   std::vector<std::uint8_t> in_stereo(voxel::RenderOptions made, const Eye& eye) const {
     std::array<std::vector<std::uint8_t>, 2> rgb;
@@ -286,7 +286,7 @@ void ViewPane::add_objects(Session& session, const Json& said, Drawing& drawing,
   }
   const Object* moved = preview.evaluation ? find(*preview.evaluation, Session::Preview::moved) : nullptr;
   const Json difference = difference_json(asked, preview);
-  // Three parts stand in the place of the piece and the other object.
+  // Three parts are drawn in place of the piece and the other object.
   if (!difference.is_null()) moved = nullptr;
   const auto is_in_parts = [&](const std::string& id) {
     return !difference.is_null() && (id == dragged || id == difference["to"]);
