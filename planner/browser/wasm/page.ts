@@ -18,7 +18,7 @@ function say(text: string, is_refusal = false): void {
   by_id("said").className = is_refusal ? "refusal" : "";
 }
 
-/// Runs what may be refused. A refusal ends the kernel's instance: the scan is opened in a new one.
+/// Runs work and shows its error. An error ends the kernel's instance, so the scan is opened in a new one.
 async function attempt(work: () => void|Promise<void>): Promise<void> {
   try {
     await work();
@@ -35,7 +35,7 @@ async function attempt(work: () => void|Promise<void>): Promise<void> {
 /// The directions as in the program's views: the observer's azimuth from the front towards the patient's
 /// left, then the elevation.
 function directions(): [number[], number[]] {
-  // Along the axes exactly, so that the kernel traces nodes.
+  // Values along the axes are exact, so that the kernel traces nodes.
   const exact = (value: number) => Math.abs(value - Math.round(value)) < 1e-12 ? Math.round(value) : value;
   const a = azimuth_deg * Math.PI / 180, e = elevation_deg * Math.PI / 180;
   const sa = exact(Math.sin(a)), ca = exact(Math.cos(a)), se = exact(Math.sin(e)), ce = exact(Math.cos(e));

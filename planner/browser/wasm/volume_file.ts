@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// NIfTI-1 (.nii, .nii.gz) and NRRD (.nrrd, samples raw or gzip within the file), read where the file is opened.
-// Offsets and meanings of NIfTI's header are from nifti1.h by R. Cox and others; NRRD's fields are from the format's
-// definition by G. Kindlmann. What is not read is refused with its name.
+// NIfTI-1 (.nii, .nii.gz) and NRRD (.nrrd, samples raw or gzip within the file), read where the file is
+// opened. Offsets and meanings of NIfTI's header are from nifti1.h by R. Cox and others; NRRD's fields are
+// from the format's definition by G. Kindlmann. Other features are refused by name.
 
 /// Samples x fastest, and the matrix from voxels to LPS millimetres, by columns.
 export interface Volume {
@@ -95,8 +95,8 @@ export function read_nifti(bytes: Uint8Array): Volume {
   const dims = checked(Array.from({length: Math.max(0, axes)}, (_, i) => int16(42 + 2 * i)), axes);
   const type = nifti_types[int16(70)];
   if (type === undefined) throw new Error(`its samples are of type ${int16(70)}, which is no real number`);
-  // The sform, else the qform, else spacings alone, which name no frame: as Analyze's then, left, front, head and
-  // centred. RAS becomes LPS.
+  // The sform, else the qform. Without both, only spacings are known: axes are then left, front and head,
+  // with the volume's centre at the origin, as in Analyze. RAS becomes LPS.
   let rows: number[][];
   const remarks: string[] = [];
   if (int16(254) > 0)
@@ -115,7 +115,7 @@ export function read_nifti(bytes: Uint8Array): Volume {
   if (unit === undefined) remarks.push("the file states no unit of length: millimetres are assumed");
   const lps_from_voxel = [0, 1, 2, 3].flatMap(
       column => [...[0, 1, 2].map(row => rows[row][column] * (row < 2 ? -1 : 1) * (unit ?? 1)), column === 3 ? 1 : 0]);
-  // A slope of zero, or one that is no number, means that nothing is scaled.
+  // If the slope is zero or not finite, samples are not scaled.
   const is_scaled = Number.isFinite(float(112)) && float(112) !== 0;
   const slope = is_scaled ? float(112) : 1, intercept = is_scaled ? float(116) : 0;
   if (!Number.isFinite(intercept)) throw new Error("its intercept is no finite number, though its slope is one");
@@ -196,7 +196,7 @@ export async function read_nrrd(bytes: Uint8Array): Promise<Volume> {
   return {dims, lps_from_voxel, samples: to_int16(stored, 1, 0, remarks), remarks};
 }
 
-/// Reads by what the file holds, not by its name. Throws Error with the reason.
+/// Determines the format from the file's content, not from its name. Throws Error with the reason.
 export async function read_volume(bytes: Uint8Array): Promise<Volume> {
   if (bytes[0] === 0x1f && bytes[1] === 0x8b) bytes = await inflated(bytes);
   return new TextDecoder().decode(bytes.subarray(0, 7)) === "NRRD000" ? read_nrrd(bytes) : read_nifti(bytes);

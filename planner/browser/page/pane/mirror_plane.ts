@@ -40,7 +40,7 @@ let held: {id: string, plane: Plane}|null = null;
 const shown_plane = (step: Step): Plane|null => held?.id === step.id ? held.plane : plane_of(step);
 
 interface Trace {
-  middle: Vec3;  // the point of the mirror's plane and the picture's that is nearest to the cross-hair
+  middle: Vec3;  // the point of both planes, the mirror's and the picture's, nearest to the cross-hair
   along: Vec3;   // unit vector
 }
 

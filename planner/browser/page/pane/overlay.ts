@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What is drawn over a pane's picture: edge letters, scale, cross-hair, regions, landmarks, measured lines,
-// marks and the handles of the tool that is in hand.
+// marks and the handles of the chosen tool.
 import {begin_ink, dot_at, ink, keep_words_off, label, line, sentence, text, TextLook} from "../base/ink";
 import {draw_mirror_plane} from "./mirror_plane";
 import {draw_trace} from "./oblique";
@@ -123,7 +123,7 @@ const near_slice_mm = 6;
 const is_near = (pane: Pane, p_mm: Vec3): boolean => !pane.is_slice ||
     Math.abs(dot(p_mm, pane.frame.look) - dot(state.cross_mm, pane.frame.look)) <= near_slice_mm;
 
-// The handles of a moving piece occupy the place of names and numbers.
+// While a piece moves, its handles take the place of names and numbers.
 const is_handled = (): boolean => state.tool === "move";
 
 const measured_words = (found: Measurement): string =>

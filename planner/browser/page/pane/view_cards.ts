@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Temporary settings of the views, which are no steps: the cut plane, colours by distance, contacts.
+// Temporary settings of the views, which are not steps of the plan: the cut plane, colours by distance,
+// contacts.
 import {add_step, free_id} from "../actions";
 import {clear_compare} from "../commands";
 import {object_ids} from "../drawn_objects";

@@ -162,15 +162,14 @@ export async function guess_landmarks(): Promise<void> {
     next_guess();
 }
 
-/// Continues with the next guess, and shows its place in all panes. `placed` may still be open in the plan's
-/// state.
+/// Continues with the next guess and moves the cross-hair to it. `placed` may not be in the plan's state yet.
 function next_guess(placed = ""): void {
   const next = open_guesses().find((guess) => guess.name !== placed);
   landmark_name = next?.name ?? "";
   show_guess();
 }
 
-/// Selects the guess's landmark in the panel, and shows its place in all panes.
+/// Shows the guess of the next landmark in the panel, and moves the cross-hair to it.
 function show_guess(): void {
   const guess = current_guess();
   set(guess ? {tool: state.tool, cross_mm: hundredths(guess.point_mm)} : {tool: state.tool});

@@ -42,7 +42,7 @@ export function take_tool(name: string): void {
   if (name === state.tool) return;
   active_tool()?.left?.();
   set({tool: name});
-  // Its rows are in the inspector.
+  // The tool's rows are in the inspector.
   if (name !== "navigate") set({right_tab: "inspector"});
   active_tool()?.taken?.();
 }
