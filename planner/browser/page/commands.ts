@@ -170,7 +170,7 @@ export function all_commands(): Command[] {
     },
     {
       name: "Procedure from landmarks",
-      says: "Le Fort I, sagittal split, genioplasty: placed by landmarks.",
+      says: "Plans a Le Fort I, a sagittal split or a genioplasty by landmarks.",
       run: () => dialogs.procedure()
     },
     {

@@ -149,7 +149,7 @@ Json list(Session& session, const Json& said, const Watched&) {
   return {{"folder", folder.string()}, {"entries", entries}};
 }
 
-/// The plans of the opened folders, the one that was changed last first.
+/// The plans of the opened folders; the most recently changed one is first.
 Json recent(Session& session, const Json&, const Watched&) {
   constexpr std::size_t most_plans = 8;
   struct Found {

@@ -182,8 +182,8 @@ struct ViewPane::Drawing {
     return packed(header, {flat_part(is_moving, size_px, rgb)});
   }
 
-  /// A picture of values along rays through the first object's samples, of a share of the pixels along each
-  /// side.
+  /// A picture of values along rays through the samples of the first object that has some. It is drawn with
+  /// `scale` times the pane's pixels along each side.
   Message along_rays(double scale, const std::stop_token& stop) {
     Timings timings;
     const auto first = std::find_if(objects.begin(), objects.end(),

@@ -102,7 +102,7 @@ async function open(file: File): Promise<void> {
     kernel = await Kernel.open(module, read);
     volume = read;
     const [least, most] = range(volume.samples);
-    // Bone of a CT; the upper half of anything else.
+    // The first window: bone of a CT, or the upper half of other samples.
     low.value = String(least < 0 && most > 300 ? 300 : Math.round((least + most) / 2));
     high.value = String(most);
     say([`${file.name}: ${volume.dims.join(" x ")} samples, ${least} to ${most}`, ...volume.remarks].join("; "));

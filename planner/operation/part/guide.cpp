@@ -399,9 +399,9 @@ Operation guide_operation() {
       .takes(
           field(
               "cuts", &Guide::cuts,
-              "Saw steps, masks and flaps' spaces of this plan whose cuts get slots. A mask's slots are the "
-              "walls that cut bone in the region, a flap segment's both cuts, a resection's those in the "
-              "region.")
+              "Saw steps, masks and flaps' spaces of this plan whose cuts get slots. A mask gets "
+              "slots at its walls that cut bone in the region, a flap's segment at both cuts, a resection at "
+              "its cuts in the region.")
               .in_plans_only())
       .takes(field("kerf_mm", &Guide::kerf_mm,
                    "The width of the saw's cut for masks, which state none; saw steps have their own.")

@@ -22,7 +22,7 @@ constexpr double hidden_mm = 3.0;
 /// normal of the bone on which the guide sits.
 constexpr double most_turned_deg = 60.0;
 constexpr double grid_mm = 1.0;
-/// The least share of the region from which a second bone counts.
+/// The region is refused if this share of it, or more, lies on a second bone.
 constexpr double second_share = 0.05;
 
 voxel::View head_view(const std::string& text, const SettleBench& bench) {

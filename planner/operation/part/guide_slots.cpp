@@ -29,8 +29,8 @@ namespace octotomy::planner {
 namespace {
 
 constexpr double step_mm = 0.5;
-/// A region is drawn from the guide's side if its view and the guide's direction differ by at most this, and
-/// from another side otherwise.
+/// A region's polygon is swept along the guide's direction if its line of sight is within this angle of that
+/// direction or of the opposite one, and across it otherwise.
 constexpr double most_apart_deg = 45.0;
 /// The largest angle between a saw's direction and the direction in which the guide is put on.
 constexpr double most_oblique_deg = 60.0;

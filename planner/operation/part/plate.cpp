@@ -239,10 +239,10 @@ double through_mm(const Plate& plate) {
   return plate.clearance_mm + plate.thickness_mm + plate.bend_radius_mm + plate_room_mm;
 }
 
-/// Everything behind the bone, grown by bending radius and clearance and shrunk by the radius. Correct only
-/// within the plate's thickness about its band, where it is read. Shrinking needs the grown body within the
-/// radius about that region; beyond, all points count as grown, so that distances are measured only to the
-/// surface before the band.
+/// Everything behind the bone, grown by bending radius and clearance and then shrunk by the radius. It is
+/// correct only where it is used: up to the plate's thickness away from its band. Shrinking needs the grown
+/// body only up to the radius beyond that region. Farther away every point is taken as grown, so distances
+/// are measured only to the surface before the band.
 voxel::Expression closed_about(const Plate& plate, const voxel::Expression& behind, const VoxelBench& bench) {
   const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
   const double voxel_mm = std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
@@ -254,7 +254,7 @@ voxel::Expression closed_about(const Plate& plate, const voxel::Expression& behi
     about.high_mm += by_mm;
     return about.expression();
   };
-  // Voxels between a region's border and its next neighbours are interpolated.
+  // Two voxels more, because distances next to a region's border are interpolated.
   const double wanted_mm = plate.thickness_mm + 2.0 * voxel_mm, reach_mm = wanted_mm + plate.bend_radius_mm;
   const voxel::Octree wanted = bench.combined(about_band(wanted_mm + 2.0 * voxel_mm)),
                       reached = bench.combined(about_band(reach_mm + 2.0 * voxel_mm));

@@ -304,7 +304,7 @@ PrintCheck cavity_check(const brep::Solid& solid, const voxel::Octree* voxels, d
   return made;
 }
 
-/// The least thickness that both kernels measure, below `up_to_mm`.
+/// The least thickness below `up_to_mm`, as each kernel measures it.
 struct Thinnest {
   std::optional<double> mesh_mm, voxel_mm;
   std::optional<glm::dvec3> at_mm;
@@ -379,7 +379,7 @@ std::vector<PrintCheck> build_checks(const brep::Linked& surface, const PrintLim
 
 std::vector<PrintCheck> solid_checks(const brep::Solid& solid, const voxel::Octree* voxels,
                                      const PrintLimits& limits, const voxel::Progress& progress) {
-  // The box extends beyond the part by more than the width of any gap that counts.
+  // The box extends beyond the part by more than the widest gap that is reported.
   const double margin_mm = std::max(4.0 * limits.least_gap_mm, 2.0), up_to_mm = 0.9 * margin_mm;
   std::vector<PrintCheck> made{pieces_check(solid, voxels), cavity_check(solid, voxels, margin_mm)};
   made.push_back(thinnest_check(thinnest_of(solid, voxels, std::numeric_limits<double>::infinity(), progress),

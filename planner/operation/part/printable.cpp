@@ -151,7 +151,7 @@ Operation printable_operation() {
                  .to(10.0))
       .takes(field(
           "bed_mm", &Printable::bed_mm,
-          "Width, depth and height of your printer's space; the default is that of a desktop printer for "
+          "Width, depth and height that your printer can build; the default is that of a desktop printer for "
           "dental resin."))
       .verb_takes(field("voxel_mm", &Printable::voxel_mm,
                         "Edge of the voxels of the second answer. Default: half of the smallest wall or "

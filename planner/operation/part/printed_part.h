@@ -19,7 +19,7 @@ namespace octotomy::planner {
 /// returned unchanged.
 voxel::Expression rounded(const voxel::Expression& solid, double radius_mm, const VoxelBench& bench);
 /// rounded() with balls as wide as the least wall, about the largest connected piece of their middles: pieces
-/// that hang on by a neck thinner than the least wall are cut off, too.
+/// that are connected only by a neck thinner than the least wall are cut off, too.
 voxel::Expression thick_part(const voxel::Expression& solid, double least_wall_mm, const VoxelBench& bench);
 
 /// Keeps the largest piece. The voxels of the other pieces are subtracted.
@@ -39,7 +39,7 @@ struct ThickPart {
   std::vector<brep::Level> holes = {};
 };
 /// The mesh of a body without walls and necks thinner than the least wall: the union of balls of that width
-/// within the body whose middles hang together, so edges are rounded. Where two sides overlap in a neck
+/// within the body whose middles are connected, so edges are rounded. Where two sides overlap in a neck
 /// thinner than 0.6 mm and than 0.8 of the least wall, a ball that leaves a cleft of 0.6 mm is cut out
 /// between them. Keeps the largest piece, as printed(). `made` lists the volume that is cut off with thin
 /// walls, and the necks. Throws as brep::core_of() and brep::boolean().

@@ -171,7 +171,7 @@ glm::dvec3 entry_mm(const std::string& name, const brep::Solid& bone, const glm:
   if (first == inside.begin())
     throw std::runtime_error(
         "bone of '" + name + "' reaches farther than " + three_figures(glm::distance(from_mm, to_mm)) +
-        " mm from the flap's axis on the side of the screw: give its flap_space more reach");
+        " mm from the flap's axis on the side of the screw: raise 'reach_mm' of its flap_space step");
   const auto at = static_cast<std::size_t>(first - inside.begin());
   glm::dvec3 outer_mm = places_mm[at - 1], inner_mm = places_mm[at];
   constexpr int halvings = 20;  // to a millionth of the step

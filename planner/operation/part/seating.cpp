@@ -138,7 +138,7 @@ Json measure(const Seating& asked, const AnswerBench& bench) {
 
 Operation seating_operation() {
   return Describe<Seating>("seating",
-                           "Tests whether a part can be put on: how deep objects reach into its path.",
+                           "Tests whether a part can be put on, by how deep objects reach into its path.",
                            Makes::Measurement)
       .takes(field("object", &Seating::part, "The part at its place.").required())
       .takes(field("against", &Seating::against, "The bone or teeth on which it sits.").required().from(1))

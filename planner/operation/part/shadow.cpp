@@ -94,7 +94,7 @@ brep::BooleanResult cut_at_universe(const brep::Solid& shadow, bool has_voxels, 
 }
 
 void voxels(const Shadow& shadow, const VoxelBench& bench, VoxelSide& made) {
-  made.lineage = "columns of the octree filled from their first crossing of its surface";
+  made.lineage = "columns of the octree, filled from where they first cross its surface";
   const VoxelSide& object = bench.object(shadow.object.name);
   if (object.octree.is_empty()) {
     made.symbol = voxel::Expression(made.octree);

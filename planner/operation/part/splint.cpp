@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A splint between two jaws: a slab along the arch less what the teeth need.
+// A splint between two jaws: a slab along the arch, without the space that the teeth take up.
 //
 // 1 The arch's plane and a band about the curve through its points; the slab reaches `depth_mm` over the tips
 //   of both rows of teeth. Only the jaws near the band are used.
@@ -7,8 +7,8 @@
 // 3 From the slab are taken the teeth grown by the offset, and the shadow of the teeth grown by the offset
 //   less the tolerated undercut. That shadow lies within the grown teeth where there is no undercut, so that
 //   there the fitting surface is that of the grown teeth.
-// 4 Walls thinner than asked are cut off: only the part that is covered by balls of that diameter within the
-//   splint stays.
+// 4 Walls thinner than the least wall are cut off: only the part that is covered by balls of that diameter
+//   within the splint stays.
 // 5 The largest piece, with points that files for printers can hold.
 //
 // The mesh kernel does 3 and 4 without Booleans, on distances to the surfaces (brep/shape/level_body.h). The

@@ -173,7 +173,7 @@ void triangles(const ToothScan& asked, const MeshBench& bench, MeshSide& made) {
   made.findings.push_back(made.lineage);
   if (of.scan_mm2 == 0.0)
     made.findings.push_back(
-        "WARN none of the crowns is the scan's alone: take a smaller 'blend_mm', or a larger "
+        "WARN no crown's surface comes from the scan alone: take a smaller 'blend_mm', or a larger "
         "'depth_mm' or 'radius_mm'");
 }
 

@@ -4,10 +4,10 @@
 
     check_pack.py ARCHIVE.zip [--json] [--all]
 
-Computes numbers of result.json again from the surfaces, voxels and samples that the archive carries, and states for
-each number of its objects, certificates, measurements, movements and exports whether it is confirmed, contradicted or
-not checked. Exits with 0; with 1 if anything is contradicted; with 2 if the file is no such archive. All lengths are
-in mm, coordinates in DICOM's patient frame, LPS.
+Computes numbers of result.json again from the surfaces, voxels and samples that the archive carries, and
+states for each number of its objects, certificates, measurements, movements and exports whether it is
+confirmed, contradicted or not checked. Exits with 0; with 1 if anything is contradicted; with 2 if the file
+is no such archive. All lengths are in mm, coordinates in DICOM's patient frame, LPS.
 """
 import base64
 import csv

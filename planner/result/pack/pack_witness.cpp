@@ -16,7 +16,7 @@ namespace {
 
 using Rows = std::vector<std::int32_t>;
 
-/// For each run of voxels a row: z, y and x of its first voxel, and x behind its last.
+/// For each run of voxels a row: z, y and x of its first voxel, and x of the voxel after its last.
 Rows runs_of(const voxel::Octree& octree) {
   Rows runs;
   voxel::SliceBits slice;

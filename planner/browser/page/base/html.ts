@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Elements of the page, made in one expression, and a host that is filled anew without losing the control
-// that has the focus.
+// Functions that make an element in one expression, and fill(), which replaces an element's children and
+// gives the focus back to the control that had it.
 
 export type Child = Node|string|number|null|undefined|false|Child[];
 type Attribute = string|number|boolean|null|undefined|((event: never) => void);

@@ -9,7 +9,7 @@ function fixed(value: number, digits: number): string {
   return is_tie && /[13579]$/.test(text) ? (value - 0.5 * 10 ** -digits).toFixed(digits) : text;
 }
 
-/// "−12 345.6": a dash for no number; groups of three digits where there are five or more.
+/// The number as "−12 345.6", or a dash if there is none. From five digits on they are in groups of three.
 export function grouped(value: number|null|undefined, digits = 0): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   const [whole = "", part] = fixed(Math.abs(value), digits).split(".");

@@ -118,7 +118,7 @@ export async function write_report(): Promise<void> {
       el("div", {class: "row end"}, el("small", {class: "path"}, answer.folder),
          el("span", {class: "spring"}),
          button(
-             [icon("export", 15), "Download"], "Downloads the report, one file that needs nothing else",
+             [icon("export", 15), "Download"], "Downloads the report: one file that needs no other",
              () => download(answer.file)),
          el("a", {class: "button primary", href: file_url(answer.file), target: "_blank", rel: "noopener"},
             "Open in a tab to print")));

@@ -38,7 +38,7 @@ const stops: Stop[] = [
   },
   {
     title: "Set bone",
-    says: "Choose “bone” among the tissues and set it. Views show the window at once.",
+    says: "Choose “bone” among the tissues and set it. The views show it at once.",
     is_done: () => has((step) => step.do === "window") && state.tool !== "window" && state.plan !== null &&
         state.plan.plan.steps.length > 0 && window_seen,
     show: () => take_tool("window"),

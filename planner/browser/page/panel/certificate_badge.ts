@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A certificate as a badge on every number: both kernels agree, there is a doubt, they disagree, or nothing
-// is certified yet.
+// The badge that shows a number's certificate: both kernels agree, they agree with a warning, they disagree,
+// or nothing is certified yet.
 import {Child, el} from "../base/html";
 import {grouped, unit_text} from "../base/numbers";
 import {show_place} from "../pane/pane_grid";
@@ -9,7 +9,7 @@ import {set} from "../state";
 
 const words = {
   PASS: "both kernels agree",
-  WARN: "the kernels agree, with a doubt",
+  WARN: "the kernels agree, with a warning",
   FAIL: "the kernels disagree"
 } as const;
 const signs = {

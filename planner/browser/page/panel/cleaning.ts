@@ -103,7 +103,7 @@ async function tried(step: Step, whole_mm3: number, operation: string, stem: str
     const mm3 = object.mm3 - whole_mm3;
     return {made, lost: changed_by(mm3, whole_mm3), details: scan.details, findings: scan.findings, mm3};
   } catch (error) {
-    if (error instanceof Refusal && error.code !== "lost") return null;  // the operation is not applicable to this scan
+    if (error instanceof Refusal && error.code !== "lost") return null;  // not applicable to this scan
     throw error;
   }
 }
@@ -175,7 +175,7 @@ export function cleaning_rows(step: Step): Child {
       el("h4", {}, "Cleaning"),
       el("p", {class: "says", role: "status"},
          cleaning.is_looking     ? "Looking for other parts, a headrest and metal streaks …" :
-             open.length         ? "Proposals. None is done before you choose it, and each can be undone." :
+             open.length         ? "Proposals. Nothing is done before you choose one, and each can be undone." :
              cleaning.dismissed.length ? "No other proposal." :
                                    "Nothing to clean was found."),
       open.map((proposal) => proposal_card(step, proposal)));
