@@ -80,7 +80,7 @@ function has_other_scan(plan: PlanState): boolean {
   return Object.entries(before).some(([name, scan]) => plan.plan.scans?.[name]?.path !== scan.path);
 }
 
-// A kept pane of an earlier page may lack a field.
+// A pane that an earlier version of the page stored may lack a field.
 const with_usual = (panes: PaneSetting[]|undefined): PaneSetting[] =>
     usual_panes().map((usual, index) => ({...usual, ...panes?.[index]}));
 

@@ -163,7 +163,7 @@ export function make_lost(host: HTMLElement): void {
     if (!host.hidden)
       fill(
           host, el("span", {class: "spinner"}),
-          "The connection to the planner's program is lost. Nothing is lost: the plan is on disk. Trying again …");
+          "The connection to the planner's program is lost. No work is lost: the plan is on disk. Trying again …");
   };
   watch(["link"], again);
   again();

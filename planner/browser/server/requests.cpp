@@ -296,7 +296,7 @@ bool names_others(const Procedure& procedure, const Json& own, const Json& plann
   });
 }
 
-/// Whether a plan has all steps of a procedure, unchained.
+/// Whether a plan has all steps of a procedure, under the names of its file.
 bool has_own_steps(const Procedure& procedure, const Json& plan) {
   const Json& steps = plan.at("steps");
   return std::all_of(procedure.steps.begin(), procedure.steps.end(), [&](const Json& own) {
@@ -307,8 +307,8 @@ bool has_own_steps(const Procedure& procedure, const Json& plan) {
 }
 
 /// The object on which the procedure would act after others, in the plan without its own steps. None if it
-/// would be the plan's first procedure, or if the plan contains its own steps unchained; these are then
-/// replaced.
+/// would be the plan's first procedure, or if the plan contains its own steps under the names of its file;
+/// these are then replaced.
 std::optional<std::string> acted_on(const Procedure& procedure, const Json& whole, const Plan& before) {
   return has_own_steps(procedure, whole) ? std::nullopt : outcome_of(before);
 }

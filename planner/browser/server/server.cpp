@@ -353,7 +353,7 @@ struct Server::Port {
 Server::Server(ServerOptions options) : options_(std::move(options)), port_(std::make_unique<Port>()) {
   beast::error_code failed;
   const auto address = net::ip::make_address(options_.address, failed);
-  if (failed) throw std::runtime_error("--listen: '" + options_.address + "' is no address of an interface");
+  if (failed) throw std::runtime_error("--listen: '" + options_.address + "' is not an IP address");
   Tcp::acceptor& acceptor = port_->acceptor;
   try {
     const Tcp::endpoint endpoint(address, static_cast<unsigned short>(options_.port));

@@ -111,7 +111,7 @@ class Session {
   Document& need_document() const;
   Json objects_json(const Plan& plan) const;
   /// bone_low() of each scan that was read, computed again where the scan was read anew. Calls wait for each
-  /// other; the session's own lock is free meanwhile.
+  /// other; the session's own lock is not held meanwhile.
   std::map<std::string, double> bone_lows_of(const Evaluation& evaluation);
   /// Keeps the certificates, sizes and measurements of what was evaluated in both kernels, by the keys of the
   /// steps.

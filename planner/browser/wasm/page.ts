@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The page: a file of this machine, its window, its numbers and its picture. Nothing is sent or fetched.
+// The page: opens a file of this machine, and shows its window, numbers and picture. Nothing is sent or
+// fetched.
 import kernel_bytes from "page_kernel.gz";
 import {Kernel, Measured} from "./kernel";
 import {inflated, read_volume, Volume} from "./volume_file";

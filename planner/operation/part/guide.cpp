@@ -7,8 +7,8 @@
 // 2 The bone near the region, grown by the clearance, and all that lies behind it along that way: no part of
 //   the guide may lie there. Where there is no undercut, the fitting surface is that of the grown bone.
 // 3 The region's bone grown by clearance and thickness, so that the guide's rim is round. Walls about each
-//   slot, which extend as far before the bone as the slot is deep: the shadow of 2, moved back along the saw.
-//   A rod for each sleeve. Edges of the walls are rounded.
+//   slot extend as far before the bone as the slot is deep: to the shadow of 2, moved back along the saw. A
+//   rod for each sleeve. Edges of the walls are rounded.
 // 4 3 minus 2, minus slots and holes. Only the part that is covered by balls within it as wide as the least
 //   wall: slots and holes leave slivers at the edges of the bone, which no printer makes.
 // 5 The largest piece, with points that files for printers can hold.
@@ -423,19 +423,22 @@ Operation guide_operation() {
                    "The thickness of the walls beside a slot; 2 is twice the least that leads a saw.")
                  .from(1.0)
                  .to(10.0))
-      .takes(field("slot_end_mm", &Guide::slot_end_mm,
-                   "The wall of the guide beyond a slot's closed ends; 4 is twice the 2 of 'slot_wall_mm'.")
-                 .from(1.0)
-                 .to(30.0))
+      .takes(
+          field(
+              "slot_end_mm", &Guide::slot_end_mm,
+              "The wall of the guide beyond a slot's closed ends; 4 is twice the default of 'slot_wall_mm'.")
+              .from(1.0)
+              .to(30.0))
       .takes(field("slot_form", &Guide::slot_form,
                    "closed: both ends of slots are closed; three_sided: the end of the line's last point is "
                    "open.")
                  .one_of({"closed", "three_sided"}))
-      .takes(field("rounding_mm", &Guide::rounding_mm,
-                   "The radius of the edges of slots' walls, which are thicker than twice this; 1 is half of "
-                   "the 2 of 'slot_wall_mm'. The base's rim needs no rounding.")
-                 .from(0.3)
-                 .to(5.0))
+      .takes(
+          field("rounding_mm", &Guide::rounding_mm,
+                "The radius of the edges of slots' walls, which are thicker than twice this; 1 is half the "
+                "default of 'slot_wall_mm'. The base's rim needs no rounding.")
+              .from(0.3)
+              .to(5.0))
       .takes(field("screws", &Guide::screws, "Screws of this plan whose holes the guide drills.")
                  .in_plans_only())
       .takes(field("drill_mm", &Guide::drill_mm, "The drill's diameter; 1.5 is usual for screws of 2 mm.")

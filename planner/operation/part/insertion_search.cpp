@@ -72,8 +72,8 @@ Json measure(const InsertionSearch& asked, const AnswerBench& bench) {
                                       : Json(by_mesh_mm3(*object.mesh.within, directions[best], bench));
   if (json["mesh_filled_mm3"].get<double>() > json["first"]["mesh_filled_mm3"].get<double>())
     json["findings"].push_back(
-        "in the mesh the undercut along the first direction is smaller than along the best one of the "
-        "voxels: use the first");
+        "in the mesh, the first direction has a smaller undercut than the best direction of the voxels: use "
+        "the first");
   return json;
 }
 

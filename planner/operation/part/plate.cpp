@@ -550,7 +550,7 @@ Operation plate_operation() {
                  .to(1.0))
       .takes(field("hole_wall_mm", &Plate::hole_wall_mm,
                    "The least wall between a hole and the plate's side or another hole; 1 is above the "
-                   "0.8 of 'least_wall_mm'.")
+                   "default of 'least_wall_mm'.")
                  .from(0.5)
                  .to(5.0))
       .takes(field("away_from", &Plate::away_from,

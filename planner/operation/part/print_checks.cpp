@@ -199,7 +199,7 @@ PrintCheck overhang_check(const brep::Linked& surface, const PrintLimits& limits
   const std::vector<brep::Overhang> found =
       brep::overhangs(surface, {limits.up, limits.overhang_deg, brep::OverhangOptions().resting_mm});
   for (const brep::Overhang& patch : found) {
-    // The layer below carries patches whose area is less than the square of the least wall.
+    // Patches smaller than the square of the least wall need no support: the layer below carries them.
     if (patch.area_mm2 < least_mm2) break;
     all_mm2 += patch.area_mm2;
     ++patches;

@@ -66,7 +66,7 @@ void check(const Screw& screw, const FieldLocation& place) {
       place.at("away_from").refuse("names '" + object.name + "', in which the screw sits");
 }
 
-/// The gap by voxels; none if the screw or the other object has no voxels.
+/// The gap measured in voxels; none if the screw or the other object has no voxels.
 std::optional<double> voxel_gap_mm(const voxel::Octree& screw, const voxel::Octree& other) {
   if (screw.is_empty() || other.is_empty()) return std::nullopt;
   return gap_between(screw, other, std::nullopt, std::nullopt).voxel_mm;

@@ -173,7 +173,7 @@ void bound(const Shadow& shadow, const BoundBench& bench, Object& made) {
         made.mesh.whole->measures().area_mm2);
     made.bound.reshaped = {shadow.object.name};
   }
-  // The outline of whole voxels is too wide by up to half an edge.
+  // The outline of whole voxels is too wide by up to half a voxel's edge.
   const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
   if (is_whole_voxels(object.voxel))
     made.bound.measured_apart_mm += 0.5 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
@@ -189,7 +189,7 @@ void bound(const Shadow& shadow, const BoundBench& bench, Object& made) {
 
 Operation shadow_operation() {
   return Describe<Shadow>("shadow",
-                          "Blocks out an object's undercuts: the object and everything behind it along an "
+                          "Blocks out an object's undercuts: fills everything behind it along an "
                           "insertion direction.",
                           Makes::Object)
       .takes(field("object", &Shadow::object, "The object.").required().positional("solid"))

@@ -113,7 +113,7 @@ double tip_of(const brep::Solid& jaw, const Slab& column, double sign, const std
   if (!(std::abs(sign * tip_mm - column.frame.height_mm) < reach_mm - cut_mm))
     throw std::runtime_error("'" + name + "' has no tips of teeth within " + three_figures(reach_mm) +
                              " mm above or below the arch's points: give points on its biting surfaces, and "
-                             "jaws that end there");
+                             "let the object hold this jaw alone");
   return sign * tip_mm;
 }
 
@@ -341,11 +341,11 @@ Operation splint_operation() {
                    "The gap between splint and teeth; 0.05 to 0.2 are published.")
                  .from(0.05)
                  .to(0.5))
-      .takes(
-          field("depth_mm", &Splint::depth_mm,
-                "How far the splint reaches over the tips of both rows; published splints of 5 seat badly.")
-              .from(0.5)
-              .to(6.0))
+      .takes(field("depth_mm", &Splint::depth_mm,
+                   "How far the splint reaches over the tips of both rows; published splints that reach 5 "
+                   "fit badly.")
+                 .from(0.5)
+                 .to(6.0))
       .takes(field("thickness_mm", &Splint::thickness_mm,
                    "Thinner walls are cut off; 0.6 is the least thickness published for splints.")
                  .from(0.6)
@@ -354,11 +354,13 @@ Operation splint_operation() {
                    "The splint's width across the arch; molars are about 10 wide.")
                  .from(4.0)
                  .to(40.0))
-      .takes(field("tolerance_mm", &Splint::tolerance_mm,
-                   "How far the splint may reach into undercuts of the gap's surface, so that it snaps on; "
-                   "the default is the one published for splints.")
-                 .from(0.0)
-                 .to(0.5))
+      .takes(
+          field(
+              "tolerance_mm", &Splint::tolerance_mm,
+              "How far the splint may reach into undercuts of the teeth with their gap, so that it snaps on; "
+              "the default is the one published for splints.")
+              .from(0.0)
+              .to(0.5))
       .takes(field("upper_direction", &Splint::upper_direction,
                    "The direction in which the splint moves onto the upper teeth, LPS. Default: the one of "
                    "least undercut within 20 degrees of the arch's normal.")

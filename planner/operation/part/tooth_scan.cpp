@@ -115,7 +115,7 @@ void report(const ToothScan& made, const SettleBench& bench) {
                                        {"is_left_out", patch.is_left_out}});
   }
   details["definition"] =
-      "error is the root mean square distance of the scan's points, as laid, from where they truly are; held "
+      "error is the root mean square distance of the scan's points, as laid, from their true places; held "
       "patches are those that the fit did not use, and their distances are to the object's surface";
   bench.findings.push_back(file_name(made) + " lies " + three_figures(laid.error_mm) + " \u00b1 " +
                            three_figures(laid.half_width_mm) + " mm off its true place in 99 of 100 cases");

@@ -48,8 +48,8 @@ const Step& step_of(const Plan& plan, const std::string& id) {
   return *std::find_if(plan.steps.begin(), plan.steps.end(), [&](const Step& step) { return step.id == id; });
 }
 
-/// Squared distances in mm² from a point to the nearest voxel of a piece, and to that of the rest of the
-/// objects from which the piece was cut.
+/// Squared distances in mm² from a point to the nearest voxel of a piece, and to the nearest other voxel of
+/// the objects from which the piece was cut.
 struct Nearest {
   double piece = std::numeric_limits<double>::infinity();
   double other = std::numeric_limits<double>::infinity();

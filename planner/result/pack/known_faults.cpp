@@ -71,7 +71,7 @@ const std::vector<KnownFault>& all_faults() {
        Place::NotCalled, "names of entries are paths, which have at most 4096 bytes"},
       {"libcurl", "CVE-2023-38545", "a slow SOCKS5 proxy makes a long host name overflow its buffer", "8.4",
        Place::InProgram, "if the environment names such a proxy"},
-      {"libcurl", "CVE-2023-38039", "header lines without end fill the memory", "8.3", Place::NotCalled,
+      {"libcurl", "CVE-2023-38039", "endless header lines fill the memory", "8.3", Place::NotCalled,
        "this program ends a request at 256 KB of header lines"},
       {"libcurl", "CVE-2024-2398", "pushed header lines leak memory", "8.7", Place::NotCalled,
        "server push is not enabled"},

@@ -23,7 +23,8 @@ struct SeriesOfPlan {
 std::optional<SeriesOfPlan> series_of(const Result& result);
 
 /// Refuses a plan with a text, such as a step's name, that contains a word of the source's patient or study,
-/// because no writer can change a step. `where` is the plan's path. Throws std::runtime_error with the word.
+/// because writing a result cannot change a step. `where` is the plan's path. Throws std::runtime_error with
+/// the word.
 void need_unnamed(const nlohmann::ordered_json& plan, const voxel::DicomSource& source,
                   const std::string& where);
 

@@ -63,7 +63,8 @@ const mark_of = (control: HTMLElement): string => control.dataset.key ??
 const alike = (host: Element, {tagName, mark}: {tagName: string; mark: string}): HTMLElement[] =>
     [...host.querySelectorAll<HTMLElement>(tagName)].filter((control) => mark_of(control) === mark);
 
-// The control in a host that shows the focus and has a mark.
+// Describes the control in a host that has the focus, to find it again after a refill. Null if there is none,
+// or if it has neither a `data-key` nor words and a visible focus.
 function focused_in(host: Element):
     {tagName: string; mark: string; place: number; typed: string|null}|null {
   const active = document.activeElement;

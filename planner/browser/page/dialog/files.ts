@@ -54,7 +54,7 @@ export function open_picker(
                    entry.kind, entry.name, entry.size ? size_words(entry.size) : "",
                    () => (entry.kind === "folder" ? void show(join(entry.name)) : choose(join(entry.name))),
                    entry.kind === "folder" ? () => choose(join(entry.name)) : undefined)),
-           entries.length ? null : el("p", {class: "says"}, "No scan or plan lies here.")));
+           entries.length ? null : el("p", {class: "says"}, "This folder has no scan or plan.")));
   };
   void first_greeting().then(() => show(state.hello?.folders[0] ?? "."));
 }

@@ -42,7 +42,7 @@ function start(): Child {
              "play", "Guided tour", "A Le Fort I on the head phantom, in seven steps and five minutes.",
              () => void start_tour(), "primary"),
          offer(
-             "head", "Head phantom", "A CT of a head made of closed forms: every number has a known truth.",
+             "head", "Head phantom", "A CT of a head made of geometric solids, so every number is known.",
              () => void open_plan({phantom: "head"})),
          offer(
              "folder", "Scan or plan",

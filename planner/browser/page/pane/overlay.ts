@@ -90,8 +90,8 @@ interface Region {
   view: string;
   polygons_mm: Vec2[][];
 }
-/// Whether a mask's regions are drawn and edited in the panes. Not if they are in files, or if the head is
-/// repositioned and the mask belongs to the scan's own views.
+/// Whether a mask's regions are drawn and edited in the panes. They are not if they are in files, or if the
+/// head is repositioned and the mask belongs to the scan's own views.
 export const is_of_panes = (step: Step|undefined): boolean =>
     step?.do === "mask" && Array.isArray(step.regions) &&
     (step.regions as unknown as Region[]).every((region) => Array.isArray(region.polygons_mm)) &&

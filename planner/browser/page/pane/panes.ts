@@ -61,8 +61,8 @@ export class Pane {
   get is_busy(): boolean {
     return this.is_wanted || this.in_flight > 0 || this.lacks_planes;
   }
-  /// Whether positions have known points. Not so in a view whose picture is moving or whose planes have not
-  /// arrived yet.
+  /// Whether the points of positions are known. They are not in a view whose picture is moving or whose
+  /// planes have not arrived yet.
   get has_places(): boolean {
     return this.is_slice || !this.picture || (this.picture.header.quality === "rest" && !this.lacks_planes);
   }

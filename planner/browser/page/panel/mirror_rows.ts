@@ -19,7 +19,7 @@ export function mirror_rows(step: Step): Child {
       `Fitted: the two halves lie ${fit.rms_mm.toFixed(2)} mm apart (root mean square) over ${
           Math.round(100 * (fit.kept_share ?? 1))} % of the surface.${
           fit.converged === false ? " The fit did not converge: look at the plane." : ""}` :
-      "As given, not fitted: no residual.";
+      "The plane was given, not fitted, so it has no residual.";
   const move = (event: Event): void => {
     const by_mm = Number((event.target as HTMLInputElement).value);
     if (!by_mm) return;

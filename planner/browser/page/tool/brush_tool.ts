@@ -128,7 +128,7 @@ function begin(pane: Pane, at: Vec2, by_keys: boolean): boolean {
   return true;
 }
 
-/// Extends the stroke. Beside the surfaces of a view there is no depth, so the stroke pauses there.
+/// Extends the stroke. Where a view shows no surface there is no depth, so the stroke pauses there.
 function go_on(pane: Pane, at: Vec2): void {
   if (!draft || draft.pane !== pane || pane.is_beside(at)) return;
   const part = draft.parts[draft.parts.length - 1]!;

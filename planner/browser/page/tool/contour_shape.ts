@@ -73,7 +73,7 @@ export function tidy(line: Polygon): Polygon {
 /// Replaces a part of the line by a stroke that begins and ends on it. The longer part of the line stays.
 export function spliced(line: Polygon, stroke: Polygon, within_mm: number): Polygon|null {
   const from = nearest_on(line, stroke[0]!), to = nearest_on(line, stroke[stroke.length - 1]!);
-  // The points along the line from one place on to another.
+  // The points of the line after one place, up to another.
   const onward = (start: {piece: number}, end: {piece: number}): Polygon => {
     const part: Polygon = [];
     for (let i = (start.piece + 1) % line.length, left = line.length; left > 0; i = (i + 1) % line.length, --left) {

@@ -110,7 +110,7 @@ export const grow_tool: Tool = {
       return true;
     }
     if (is_elsewhere()) {
-      notify("Objects are made of the patient's scan: show it first.", "warning");
+      notify("Objects are made from the patient's scan: show it first.", "warning");
       return true;
     }
     const seed = seed_at(pane, at);

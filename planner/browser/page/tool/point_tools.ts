@@ -38,7 +38,7 @@ function landmark_at(pane: Pane, at: Vec2): {name: string; point: Vec3}|undefine
     return Math.hypot(p[0] - at[0], p[1] - at[1]) < near_px * pane.ratio;
   });
 }
-/// The point under the pointer. Beside the surfaces of a view there is no depth: the page shows a message and
+/// The point under the pointer. Where a view shows no surface there is no depth: the page shows a message and
 /// nothing is placed.
 export function place_at(pane: Pane, at: Vec2): Vec3|null {
   if (!pane.has_places) {
