@@ -28,8 +28,8 @@ std::vector<glm::dvec2> thinned(const std::vector<glm::dvec2>& polygon, double t
   return brep::first_crossing(thin) ? polygon : thin.points_mm;
 }
 
-/// Rounded to a hundredth of a millimetre, without points that then equal the one before and without contours
-/// that then enclose no area.
+/// Contours rounded to a hundredth of a millimetre. Points that then equal the one before are left out, and
+/// so are contours that then enclose no area.
 Json polygons_json(const PlaneContours& polygons, double thin_mm) {
   constexpr double least_mm2 = 0.01 * 0.01;
   Json all = Json::array();

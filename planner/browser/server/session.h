@@ -124,7 +124,7 @@ class Session {
   std::unique_ptr<Document> document_;
   std::uint64_t opened_ = 0;  ///< number of documents opened so far; results of an earlier one are discarded
   Snapshot snapshot_;
-  /// The key of a step's answer, and its certified results.
+  /// The certified results of a step, and the key by which they are recognised as those of the current plan.
   struct Certified {
     std::string key;
     Json said;  ///< of an object "certificate", "necks", "volume", "area"; of another step its measurement

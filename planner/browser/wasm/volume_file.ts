@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// NIfTI-1 (.nii, .nii.gz) and NRRD (.nrrd, samples raw or gzip within the file), read where the file is
-// opened. Offsets and meanings of NIfTI's header are from nifti1.h by R. Cox and others; NRRD's fields are
-// from the format's definition by G. Kindlmann. Other features are refused by name.
+// NIfTI-1 (.nii, .nii.gz) and NRRD (.nrrd, samples raw or gzip within the file), read in the browser. Offsets
+// and meanings of NIfTI's header are from nifti1.h by R. Cox and others; NRRD's fields are from the format's
+// definition by G. Kindlmann. Other features are refused by name.
 
 /// Samples x fastest, and the matrix from voxels to LPS millimetres, column by column.
 export interface Volume {

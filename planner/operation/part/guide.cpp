@@ -7,8 +7,8 @@
 // 2 The bone near the region, grown by the clearance, and all that lies behind it along that way: no part of
 //   the guide may lie there. Where there is no undercut, the fitting surface is that of the grown bone.
 // 3 The region's bone grown by clearance and thickness, so that the guide's rim is round. Walls about each
-//   slot extend as far before the bone as the slot is deep: to the shadow of 2, moved back along the saw. A
-//   rod for each sleeve. Edges of the walls are rounded.
+//   slot extend as far before the bone as the slot is deep: they lie within the shadow of 2 after it is moved
+//   back along the saw. A rod for each sleeve. Edges of the walls are rounded.
 // 4 3 minus 2, minus slots and holes. Only the part that is covered by balls within it as wide as the least
 //   wall: slots and holes leave slivers at the edges of the bone, which no printer makes.
 // 5 The largest piece, with points that files for printers can hold.
@@ -360,7 +360,7 @@ Operation guide_operation() {
                    "Points on the bone, in their order along it, about which the guide lies: [x, y, z] or "
                    "landmarks. Default, without a region: the heads of the screws."))
       .takes(field("radius_mm", &Guide::radius_mm,
-                   "How far the guide reaches about the line through the points, as it is put on.")
+                   "How far the guide reaches to either side of the line through the points.")
                  .from(3.0)
                  .to(60.0)
                  .read_if<Guide>([](const Guide& guide) { return !guide.region; },
@@ -448,13 +448,12 @@ Operation guide_operation() {
                    "The wall of a drill's sleeve; 1.5 is the diameter of a usual drill.")
                  .from(1.0)
                  .to(5.0))
-      .takes(
-          field(
-              "sleeve_height_mm", &Guide::sleeve_height_mm,
-              "How far before the bone's surface a sleeve reaches along its axis; over 6 a drill tilts by at "
-              "most 2 degrees in its play.")
-              .from(1.0)
-              .to(40.0))
+      .takes(field("sleeve_height_mm", &Guide::sleeve_height_mm,
+                   "How far before the bone's surface a sleeve reaches along its axis; over a length of 6 a "
+                   "drill tilts by at "
+                   "most 2 degrees in its play.")
+                 .from(1.0)
+                 .to(40.0))
       .takes(least_wall(&Guide::least_wall_mm))
       .example(R"({"id": "saw_guide", "do": "guide", "object": "skull", "side": "anterior",
         "points": [[-24, -70, -30], [-14, -80, -34], [14, -80, -34], [24, -70, -30]], "radius_mm": 9,

@@ -38,7 +38,7 @@ struct SiteAsked {
 };
 
 struct GuideSite {
-  Slab base;                  ///< the region, from `before_mm` before the bone to `reach_mm`
+  Slab base;                  ///< the region, from `before_mm` before to `reach_mm` behind the foremost bone
   Slab near;                  ///< the space whose bone shapes the part
   glm::dvec3 along{0, 1, 0};  ///< unit, LPS: the direction in which the guide is put on
   double end_mm = 0.0;        ///< p . along of a plane behind `base` and `near`

@@ -60,7 +60,7 @@ struct Plate {
   double least_wall_mm = 0.8;
   // The values that settle() computes.
   GuideSite site;
-  Slab ridge;  ///< the band that the rounding makes as wide as the plate
+  Slab ridge;  ///< narrower than the plate by the rounding on each side
   std::vector<ScrewAxis> axes;
 
   double hole_radius_mm(const ScrewAxis& axis) const { return 0.5 * (axis.diameter_mm + play_mm); }

@@ -189,7 +189,7 @@ Splint settle(const Splint& asked, const SettleBench& bench) {
     } else {
       of.along = found_direction(bench.objects.at(name_of(asked, jaw).name), slab, sign, bench, details);
     }
-    // The jaw is used to slightly beyond the slab, so that its cut stays away from the splint.
+    // The jaw is used up to slightly beyond the slab, so that its cut stays away from the splint.
     (jaw == 0 ? of.near.high_mm : of.near.low_mm) =
         jaw == 0 ? slab.high_mm + margin_mm : slab.low_mm - margin_mm;
     of.end_mm = std::max(of.near.far_end_mm(of.along), slab.far_end_mm(of.along)) + margin_mm;

@@ -81,7 +81,7 @@ function piece_table(piece: Outcome["pieces"][number]): Child {
 }
 
 type Word = Parameters<typeof word_of>[0];
-/// A direction's row; amber if the interval does not contain the planned value.
+/// The row of one direction, amber if the interval does not contain the planned value.
 function result_row(
     name: string, word: Word, unit: string, planned: number, achieved: number, half_width: number): Child {
   const is_met = Math.abs(planned - achieved) <= half_width;

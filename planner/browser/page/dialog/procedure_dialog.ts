@@ -12,8 +12,8 @@ import {PlanState, ProcedureSays, ProcedureValue} from "../protocol";
 import {on_leaving_plan, set, state} from "../state";
 import {Vec3} from "../base/vector";
 
-// Values and ticks that a person has changed in the forms since the procedure was planned, by
-// "fibula_flap.start_mm". All others follow from the plan's steps.
+// Values and ticks that a person has changed in the forms since the procedure was planned, under names such
+// as "fibula_flap.start_mm". All others follow from the plan's steps.
 const typed = new Map<string, number>();
 const ticks = new Map<string, boolean>();
 // The values and ticks that were planned last. The form shows them again if the planning was undone.

@@ -197,7 +197,7 @@ function draw_letters(pane: Pane, context: CanvasRenderingContext2D): void {
   text(context, letters.bottom, [width / 2, height - inset], pane.ratio, look);
 }
 
-// Draws a bar of 1, 2 or 5 times a power of ten, about a fifth of the pane's width.
+// Draws a scale bar of 1, 2 or 5 times a power of ten millimetres, about a fifth of the pane's width.
 function draw_scale(pane: Pane, context: CanvasRenderingContext2D): void {
   const frame = pane.frame;
   const [width, height] = pane.size;

@@ -31,7 +31,7 @@ export function make_inspector(host: HTMLElement): void {
     fill_tabs(
         tabs, state.right_tab,
         [
-          ["inspector", "Inspector", "Inspector: the tool in hand and the selected step"],
+          ["inspector", "Inspector", "Inspector: the tool in use and the selected step"],
           ["numbers", "Numbers", "Numbers: volumes and measurements with their certificates"],
           ["movement", "Movement", "Movement: how far each piece and landmark moves"]
         ],

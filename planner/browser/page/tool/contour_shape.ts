@@ -89,7 +89,7 @@ export function spliced(line: Polygon, stroke: Polygon, within_mm: number): Poly
   return made.length > 2 && Math.abs(area_mm2(made)) >= 0.5 ? made : null;
 }
 
-/// The line with segments of at most `most_mm` near a position, but at most 200 for each segment of before.
+/// The line with segments of at most `most_mm` near a position, but at most 200 for each original segment.
 export function refined(line: Polygon, at: Vec2, reach_mm: number, most_mm: number): Polygon {
   return line.flatMap((a, i) => {
     const b = line[(i + 1) % line.length]!;
