@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a person does to the plan: each is a request to the server, whose answer is the plan's new state.
+// What a person does to the plan: each action is a request to the server, whose answer is the plan's new
+// state.
 import {objects_of_plan} from "./drawn_objects";
 import {makes_measurement, makes_scan} from "./operations";
 import {Hello, Measured, Measurement, PlanState, Step} from "./protocol";
@@ -73,13 +74,13 @@ export function take_plan(plan: PlanState|null): void {
   void evaluate();
 }
 
-// Whether a scan's file was replaced by another one. A further scan replaces none.
+// Whether a scan's file was replaced by another one. An added scan replaces none.
 function has_other_scan(plan: PlanState): boolean {
   const before = state.plan?.plan.scans ?? {};
   return Object.entries(before).some(([name, scan]) => plan.plan.scans?.[name]?.path !== scan.path);
 }
 
-// A kept pane of an earlier page may lack a field.
+// A pane that an earlier version of the page stored may lack a field.
 const with_usual = (panes: PaneSetting[]|undefined): PaneSetting[] =>
     usual_panes().map((usual, index) => ({...usual, ...panes?.[index]}));
 
@@ -173,7 +174,8 @@ export async function change_history(
   if (await change_plan(word, fields)) void evaluate();
 }
 
-/// Evaluates the objects that are shown, measurements and scans that steps make. Their results arrive as the event `objects`.
+/// Evaluates the shown objects, and the measurements and scans that steps make; with `certify`, the whole
+/// plan in both kernels. The results arrive as the event `objects`.
 export async function evaluate(certify = false): Promise<void> {
   if (!steps().length) return;
   const objects = objects_of_plan().flatMap((object) => (object.id ? [object.id] : []));

@@ -105,7 +105,7 @@ export function map_contacts(): void {
   const object = step && shown.includes(step.id) ? step.id : shown[shown.length - 1];
   const reference = shown.find((id) => id !== object);
   if (!object || !reference)
-    return notify("Contacts take two objects that are shown, as the two jaws.", "warning");
+    return notify("A contact map needs two objects that are shown, such as the two jaws.", "warning");
   const is_upper = (middle(object) ?? 0) > (middle(reference) ?? 0);
   const [upper, lower] = is_upper ? [object, reference] : [reference, object];
   for (const [index, view] of (["anterior", "left", "superior", "inferior"] as const).entries())
@@ -148,7 +148,7 @@ export function all_commands(): Command[] {
                        })) as Command[],
     {name: "Undo", key: "ctrl+z", run: () => void change_history("undo")},
     {name: "Redo", key: "ctrl+y", run: () => void change_history("redo")},
-    {name: "New branch", says: "Begins a branch, for changes that leave the present plan as it is.", run: () => void new_branch()},
+    {name: "New branch", says: "Begins a branch for changes, so that the present plan stays as it is.", run: () => void new_branch()},
     {name: "Name this version", run: () => void name_version()},
     {name: "Save", key: "ctrl+s", run: () => void save()},
     {
@@ -170,12 +170,12 @@ export function all_commands(): Command[] {
     },
     {
       name: "Procedure from landmarks",
-      says: "Le Fort I, sagittal split, genioplasty: placed by landmarks.",
+      says: "Plans a Le Fort I, a sagittal split or a genioplasty by landmarks.",
       run: () => dialogs.procedure()
     },
     {
       name: "First guess of landmarks",
-      says: "Looks for a skull's landmarks by its symmetry and extremal points; each is kept or corrected.",
+      says: "Looks for a skull's landmarks by its symmetry and extremal points; you keep or correct each.",
       run: () => void guess_landmarks()
     },
     {name: "Mirror the selected object", run: mirror_selected},
@@ -187,7 +187,7 @@ export function all_commands(): Command[] {
     },
     {
       name: "Contact map",
-      says: "Colours two objects, as the jaws, by their distance to each other.",
+      says: "Colours two objects, such as the jaws, by their distance to each other.",
       key: "t",
       run: map_contacts
     },
@@ -199,18 +199,18 @@ export function all_commands(): Command[] {
     },
     {
       name: "Radiograph and landmarks (cephalometry)",
-      says: "The left view as a radiograph in true scale.",
+      says: "Shows the left view as a radiograph in true scale.",
       run: show_cephalometry
     },
     {name: "Show the scan's audit", run: () => dialogs.audit()},
     {
       name: state.hides_patient ? "Show the patient" : "Hide the patient",
-      says: "Name, number and dates, on every screen of this browser and in new reports.",
+      says: "Hides or shows name, number and dates on every screen of this browser and in new reports.",
       run: () => hide_patient(!state.hides_patient)
     },
     {
       name: "Export",
-      says: "Surfaces for print, decks of finite elements, label maps.",
+      says: "Writes surfaces for print, decks of finite elements or label maps.",
       key: "ctrl+e",
       run: () => dialogs.export()
     },

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Which objects of the plan are drawn, in what colour: by default the pieces as they end up, and what they
-// have in common.
+// Which objects of the plan are drawn, in what colour: by default the pieces at their final places, and their
+// interference.
 import {DrawnObject, Step} from "./protocol";
 import {makes_body, makes_shape, moves_object, operands} from "./operations";
 import {bone_low, is_elsewhere, shown_scan, state, steps} from "./state";
@@ -19,8 +19,8 @@ const is_displaced = (step: Step): boolean => moves_object(step) || step.do === 
 const is_union = (step: Step): boolean =>
     step.do === "combine" && typeof step.expression === "string" && !/[&^~-]/.test(step.expression);
 
-/// Whether a step is what pieces have in common: interference, drawn in red. The pieces are moved ones, or some that a
-/// union of the plan joins, as a graft and the bone.
+/// Whether a step is the interference of pieces, which is drawn in red: the intersection of pieces of which
+/// one is moved, or which a union of the plan joins, such as a graft and the bone.
 export function is_overlap(step: Step, all: Step[]): boolean {
   if (step.do !== "combine" || typeof step.expression !== "string" || !/^[\w\s&|()]*&[\w\s&|()]*$/.test(step.expression))
     return false;
@@ -35,7 +35,7 @@ export function is_overlap(step: Step, all: Step[]): boolean {
 export const is_piece = (step: Step): boolean => step.do === "combine" &&
     typeof step.expression === "string" && /^[^|^~-]*&[^|^~-]*$/.test(step.expression);
 
-/// Whether a later union subtracts this piece, or the piece is only measured as a contact.
+/// Whether a later union leaves this piece out, because it is removed or only measured.
 function is_left_out(step: Step, all: Step[]): boolean {
   return is_piece(step) && !is_overlap(step, all) &&
       all.slice(all.indexOf(step)).some((later) => is_union(later) && !operands(later).includes(step.id));

@@ -24,7 +24,7 @@ export function make_bar(host: HTMLElement): void {
         plan ? el(state.page === "plan" ? "h1" : "span", {class: "plan-name", title: plan.path}, plan.name) : null,
         plan ? patient_button() : null,
         plan ? button(
-                   [icon("branch", 14), plan.branch], "New branch. The plan as it is stays on this one",
+                   [icon("branch", 14), plan.branch], "New branch. This branch keeps the plan as it is",
                    () => void new_branch(),
                    {class: "ghost small", "aria-label": `New branch beside ${plan.branch}`}) :
                null,
@@ -73,7 +73,7 @@ export function make_rail(host: HTMLElement): void {
                     `${tool.title}${tool.key ? ` (${tool.key.toUpperCase()})` : ""}. ${tool.says}`,
                     state.tool === tool.name,
                     () => {
-                      set({right_tab: "inspector"});  // also where the tool is in hand already
+                      set({right_tab: "inspector"});  // also if the tool is chosen already
                       take_tool(tool.name);
                     })),
         el("hr", {}),
@@ -87,7 +87,7 @@ export function make_rail(host: HTMLElement): void {
             "compare", "Compare (C). Colours the selected object by its distance from another",
             state.compare !== null && !state.compare.mutual, compare_selected),
         rail_button(
-            "contact", "Contacts (T). Colours two objects, as the jaws, by their distance to each other",
+            "contact", "Contacts (T). Colours two objects, such as the jaws, by their distance to each other",
             state.compare?.mutual === true, map_contacts),
         rail_button(
             "plane", "Cut plane (K). Hides everything on one side, to show the inside",
@@ -114,7 +114,7 @@ export function make_status(host: HTMLElement): void {
                ] :
                tool && tool.name !== "navigate" ?
                [el("b", {}, `${tool.title}: `), tool.says] :
-               "Drag turns a view. Wheel zooms a view and goes through slices. Click brings the cross-hair."),
+               "Drag turns a view. Wheel zooms a view and goes through slices. Click moves the cross-hair."),
         el("span", {class: "spring"}), state.pointer ? el("span", {class: "pointer"}, state.pointer) : null,
         el("span", {"data-tip": "The cross-hair: x to the patient's left, y to the back, z to the head."},
            `✛ ${cross} mm`),
@@ -163,7 +163,7 @@ export function make_lost(host: HTMLElement): void {
     if (!host.hidden)
       fill(
           host, el("span", {class: "spinner"}),
-          "The connection to the planner's program is lost. Nothing is lost: the plan is on disk. Trying again …");
+          "The connection to the planner's program is lost. No work is lost: the plan is on disk. Trying again …");
   };
   watch(["link"], again);
   again();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Facts of the table of operations about the plan's steps, read from the schema that the server sends.
+// What the table of operations states about the plan's steps, read from the schema that the server sends.
 import {Json, Schema, Step} from "./protocol";
 import {state} from "./state";
 

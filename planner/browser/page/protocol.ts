@@ -17,7 +17,7 @@ export interface Certificate {
   resolved?: boolean;
 }
 export interface Measured {
-  value: number|null;  // null where there is no answer yet
+  value: number|null;  // null if there is no result yet
   unit: string;
   half_width?: number|null;
   coverage?: number;
@@ -56,7 +56,8 @@ export interface MirrorPlane {
   kept_share: number|null;
   converged: boolean|null;
 }
-/// A thin neck by which one kernel alone connects a part. Both kernels keep the part, or the plan has to decide.
+/// A thin neck by which only one kernel connects a part. `kept`: both kernels keep the part; else the plan
+/// has to decide.
 export interface Neck {
   at_mm: Vec3;
   volume_mm3: number|null;  // of the part beyond it
@@ -140,7 +141,7 @@ export interface ProcedureSays {
   landmarks: {name: string; says: string; scan?: string}[];
   scans: {name: string; says: string}[];
   values: ProcedureValue[];
-  options: {name: string; says: string; values: ProcedureValue[]}[];  // further steps that a person may choose
+  options: {name: string; says: string; values: ProcedureValue[]}[];  // steps that a person may choose
 }
 export interface Tissue {
   name: string;
@@ -195,7 +196,7 @@ export interface DrawnObject {
   window?: {scan: string; low: number; high?: number; alone?: boolean};
   colour: string;
   opacity: number;
-  hatched?: boolean;  // in slices: its inside is drawn, too
+  hatched?: boolean;  // in slices: its inside is hatched
 }
 export interface PaneRequest {
   pane: number;
@@ -253,5 +254,5 @@ export interface FrameHeader {
 export interface Notice {
   message: string;
   level: "info"|"warning"|"error";
-  act?: {label: string; run(): void};  // what mends it
+  act?: {label: string; run(): void};  // an action that solves the problem
 }

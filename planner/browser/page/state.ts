@@ -19,7 +19,7 @@ export interface ObjectLook {
   colour?: string;
   visible?: boolean;
   opacity?: number;
-  behind?: string;  // a step whose objects stand in this one's place, as long as the plan has that step
+  behind?: string;  // id of a step: this object is hidden as long as the plan has that step
 }
 /// An object drawn in place of another: the object `of` after a motion, or the last object that steps outside
 /// the plan make.
@@ -86,7 +86,7 @@ export interface State {
   preview: Preview|null;
   overlap_mm3: number|null;
   tried: Tried|null;
-  difference_to: string|null;    // the object that a dragged piece is drawn against in two colours
+  difference_to: string|null;    // the object whose difference to a dragged piece is drawn in two colours
   difference: Difference|null;  // of the newest picture of the dragged piece
   cleaning: Cleaning|null;
   compare: Compare|null;
@@ -100,7 +100,7 @@ export interface State {
   jobs: Job[];
   notices: (Notice&{key: number})[];
   tour: number|null;
-  evaluations: number;  // number of times that the server has sent evaluated objects: pictures may have changed
+  evaluations: number;  // how often the server has sent evaluated objects, after which pictures may change
   pointer: string;      // description of what lies under the pointer
 }
 
@@ -208,7 +208,7 @@ export function on_leaving_plan(call: () => void): void {
 /// Clears everything in this window that belongs to the shown plan, including the current tool.
 export function leave_plan(): void {
   for (const call of plan_leavers) call();
-  // An error that was not read yet is one of the plan that is left.
+  // Errors that are still shown belong to the plan that is left, so they are removed.
   set({...without_plan(), notices: state.notices.filter((notice) => notice.level !== "error")});
 }
 /// Clears what belongs to a scan whose file was replaced in the same plan: tools and their drafts. How

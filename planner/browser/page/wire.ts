@@ -3,8 +3,8 @@
 // a loss.
 import {FrameHeader, Json} from "./protocol";
 
-/// A refusal by the server, with its code: input, geometry, cancelled, resource or internal; or "lost" if the
-/// connection broke.
+/// A refusal by the server, with its code: input, geometry, cancelled, resource, internal or changed; or
+/// "lost" if the connection broke.
 export class Refusal extends Error {
   constructor(message: string, readonly code: string) {
     super(message);
@@ -86,8 +86,8 @@ export class Wire {
     }
   }
 
-  /// Sends a request. The promise is rejected with a Refusal. `on_id` is called with the request's id at
-  /// once.
+  /// Sends a request. The promise is rejected with a Refusal if the server refuses it or the connection
+  /// breaks. `on_id` is called at once, with the request's id.
   ask<Answer>(word: string, fields: object = {}, on_id?: (id: number) => void): Promise<Answer> {
     const id = this.next_id++;
     on_id?.(id);

@@ -32,7 +32,7 @@ std::string decoded(std::string_view text) {
     plain += static_cast<char>(16 * digit_of(text[i + 1]) + digit_of(text[i + 2]));
     i += 2;
   }
-  if (plain.find('\0') != std::string::npos) throw std::runtime_error("the address holds a byte 0");
+  if (plain.find('\0') != std::string::npos) throw std::runtime_error("the address contains a zero byte");
   return plain;
 }
 
@@ -97,7 +97,7 @@ std::string token_in(const std::filesystem::path& path) {
   file >> token;
   constexpr std::size_t least_length = 32;
   if (token.size() < least_length || token.find_first_not_of("0123456789abcdef") != std::string::npos)
-    throw std::runtime_error(path.string() + ": holds no token: name a file that is not there yet");
+    throw std::runtime_error(path.string() + ": contains no token: name a file that does not exist yet");
   return token;
 }
 

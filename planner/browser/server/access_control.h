@@ -42,8 +42,8 @@ std::string token_in(const std::filesystem::path& path);
 /// this machine; it does not have the token, and its Host or Origin differs.
 class AccessControl {
  public:
-  /// `hosts` are the accepted values of the Host header: "127.0.0.1:8080". Empty: any, if the server listens
-  /// on other interfaces.
+  /// `hosts` are the accepted values of the Host header: "127.0.0.1:8080". Empty: any, for a server that
+  /// listens on all interfaces.
   AccessControl(std::string token, std::vector<std::string> hosts)
       : token_(std::move(token)), hosts_(std::move(hosts)) {}
 

@@ -28,8 +28,8 @@ std::vector<glm::dvec2> thinned(const std::vector<glm::dvec2>& polygon, double t
   return brep::first_crossing(thin) ? polygon : thin.points_mm;
 }
 
-/// Rounded to a hundredth of a millimetre, without points that then equal the one before and without contours that then
-/// enclose no area.
+/// Contours rounded to a hundredth of a millimetre. Points that then equal the one before are left out, and
+/// so are contours that then enclose no area.
 Json polygons_json(const PlaneContours& polygons, double thin_mm) {
   constexpr double least_mm2 = 0.01 * 0.01;
   Json all = Json::array();
@@ -49,7 +49,7 @@ Json polygons_json(const PlaneContours& polygons, double thin_mm) {
   return all;
 }
 
-/// The mesh kernel's answer, or half way between voxels where the object is not certified yet.
+/// The mesh kernel's surface; if the object is not certified yet, the surface half way between voxels.
 brep::Mesh surface_of(const Object& object) {
   if (object.mesh.within) return object.mesh.within->mesh();
   if (object.certificate) refuse_contours("'" + object.id + "' has no surface: see its findings");

@@ -77,8 +77,9 @@ void need_files_of_record(const Json& record, const std::vector<Field>& fields,
   }
 }
 
-/// Refuses files of a plan's text that the page may not read. Steps such as landmarks, transforms, saws and masks
-/// read their files while they are parsed, so a later check could already quote a file in an error.
+/// Refuses files of a plan's text that the page may not read. Steps such as landmarks, transforms, saws and
+/// masks read their files while they are parsed, so before a later check, an error could already quote a
+/// file.
 void need_files_within(const Json& plan, const std::filesystem::path& folder, const Folders& folders) {
   const auto steps = plan.find("steps");
   if (steps == plan.end() || !steps->is_array()) return;

@@ -16,7 +16,7 @@ namespace octotomy::planner::serve {
 /// time may use it.
 class Document {
  public:
-  /// Opens a plan's file. `folders` are those that changes may name; they must outlive this object. Throws as
+  /// Opens a plan's file. Changes may name files only in `folders`, which must outlive this object. Throws as
   /// read_plan() and PlanHistory do.
   Document(const std::filesystem::path& path, const Folders& folders);
 

@@ -151,7 +151,7 @@ fs::path need_plain_name(const std::string& name) {
                         !has_control(name) && name.find('\\') == std::string::npos;
   if (!is_plain)
     throw voxel::Error(voxel::ErrorCode::Input,
-                       "'" + name + "' is no plain file name, as head.nrrd or series/1.dcm");
+                       "'" + name + "' is not a plain file name such as head.nrrd or series/1.dcm");
   return path;
 }
 

@@ -60,8 +60,8 @@ constexpr auto members_of(const ToldNumbers&) {
                     member("gap_half_width_mm", &T::gap_half_width_mm), member("volume", &T::volume));
 }
 
-/// The number of a result that has a table, which is shown before its table. `value` is null where the result has
-/// no number: `findings` state why.
+/// The number of a result that has a table, which is shown before its table. `value` is null where the result
+/// has no number: `findings` state why.
 struct TableNumber {
   const char* key;  ///< that only this kind of measurement has
   nlohmann::json::json_pointer value;
@@ -101,7 +101,7 @@ std::optional<TableNumber> table_number(const Json& json) {
   return std::nullopt;
 }
 
-/// The words of a step whose result is a table without one number.
+/// What is shown for a step whose result is a table without a number to show first.
 std::string table_words(const Json& json) {
   if (json.contains("landmarks") && json.contains("missing"))
     return "First guess of " + std::to_string(json["landmarks"].size()) + " landmarks";
@@ -165,7 +165,7 @@ Json measurement_message(const Json& json) {
                  : Json{{"value", nullptr},
                         {"unit", asked->unit},
                         {"half_width", nullptr},
-                        {"sentence", says + ": no answer yet, the surface is made by Certify"}};
+                        {"sentence", says + ": no answer yet, because Certify makes the surface"}};
   } else if (measured.volume) {
     says = "Volume of " + measured.object;
     number = number_message(measured.volume->value, "mm3", print_value(measured.volume->half_width), says);

@@ -39,8 +39,8 @@ Message answer_to(std::int64_t id, const Json& ok);
 /// error may be megabytes.
 using LineOf = std::function<std::string(const std::string& text)>;
 
-/// {"id": ..., "error": {"message", "code"}}; the message formatted by `line_of`. The code is that of the
-/// error, "resource" if memory or disk space is exhausted, else "input".
+/// {"id": ..., "error": {"message", "code"}}; the message formatted by `line_of`. The code is "changed" if
+/// another program has changed the plan's file, else the name of fault_of(error).
 Message refusal_to(std::int64_t id, const std::exception& error, const LineOf& line_of);
 /// {"event": name, ...}.
 Message event(const std::string& name, const Json& said);

@@ -8,7 +8,7 @@
 
 namespace octotomy::planner::serve {
 
-/// The largest file that a page may send; a page sends no more than this in a folder, either.
+/// The largest file that a page may send, and the most that it sends in one folder.
 inline constexpr std::uint64_t most_upload_bytes = std::uint64_t{4} << 30;
 
 /// Files for a folder that is created only when all are complete; if the work ends earlier, neither exists.

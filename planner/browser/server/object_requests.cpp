@@ -81,8 +81,8 @@ Json points_mm(const Json& points, const Plan& plan) {
   return typed;
 }
 
-/// The centre of the voxel face nearest to a point, on the surface of all bones or of one; none if there is
-/// none within snap_mm.
+/// The centre of the voxel face nearest to a point, on the surfaces of all objects but tools, or of one
+/// object; none if there is none within snap_mm.
 std::optional<glm::dvec3> snapped(const Evaluation& evaluation, const glm::dvec3& p_mm,
                                   const std::string& only) {
   const voxel::Lattice lattice = evaluation.universe.lattice();

@@ -10,7 +10,8 @@ namespace octotomy::planner::serve {
 
 /// {"kind", "points" or "object"} -> {"value", "unit", "half_width", "sentence"}, as for a step "measure".
 Json measure(Session& session, const Json& said, const Watched& watched);
-/// {"object"} -> {"verdict", "sentence", "place", "detection_limit", "rows"}.
+/// {"object"} -> {"verdict", "sentence", "place", "detection_limit", "rows"}, and "certificate" if there is
+/// one.
 Json certify(Session& session, const Json& said, const Watched& watched);
 /// {"object", "with", "move"} -> {"mm3"}, in voxels.
 Json overlap(Session& session, const Json& said, const Watched& watched);
@@ -24,7 +25,7 @@ Json try_steps(Session& session, const Json& said, const Watched& watched);
 /// {"path", "frame", "unit"} -> {"audit"}: a mesh file's statements on its frame and unit, and how its size
 /// and position fit the plan's first scan. The path is relative as in a plan.
 Json mesh_audit(Session& session, const Json& said, const Watched& watched);
-/// {"object"} -> {"rows"}: its movement in words.
+/// {"object"} -> {"rows"}: its rows of the movement table; without "object", all rows.
 Json movement(Session& session, const Json& said, const Watched& watched);
 /// {"name", "point", "snap"} -> {"point", "snapped"}: names a point; with "snap", moves it to the nearest
 /// bone if one is near.

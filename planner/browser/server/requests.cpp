@@ -149,7 +149,7 @@ Json list(Session& session, const Json& said, const Watched&) {
   return {{"folder", folder.string()}, {"entries", entries}};
 }
 
-/// The plans of the opened folders, the one that was changed last first.
+/// The plans of the opened folders; the most recently changed one is first.
 Json recent(Session& session, const Json&, const Watched&) {
   constexpr std::size_t most_plans = 8;
   struct Found {
@@ -276,8 +276,8 @@ Json without_steps_of(const Procedure& procedure, const Json& plan) {
   return kept;
 }
 
-/// Whether a step of the plan names other views or landmarks than the same step of the procedure, as the right cheek's
-/// steps do, which are called as the left one's.
+/// Whether a step of the plan names other views or landmarks than the procedure's step of the same id. The
+/// steps of zygoma_right differ from those of zygoma_left only in this.
 bool names_others(const Procedure& procedure, const Json& own, const Json& planned,
                   const std::string& key = {}) {
   if (own.is_string() && planned.is_string())
@@ -296,7 +296,7 @@ bool names_others(const Procedure& procedure, const Json& own, const Json& plann
   });
 }
 
-/// Whether a plan has all steps of a procedure, unchained.
+/// Whether a plan has all steps of a procedure, under the names of its file.
 bool has_own_steps(const Procedure& procedure, const Json& plan) {
   const Json& steps = plan.at("steps");
   return std::all_of(procedure.steps.begin(), procedure.steps.end(), [&](const Json& own) {
@@ -307,14 +307,15 @@ bool has_own_steps(const Procedure& procedure, const Json& plan) {
 }
 
 /// The object on which the procedure would act after others, in the plan without its own steps. None if it
-/// would be the plan's first procedure, or if the plan contains its own steps unchained; these are then
-/// replaced.
+/// would be the plan's first procedure, or if the plan contains its own steps under the names of its file;
+/// these are then replaced.
 std::optional<std::string> acted_on(const Procedure& procedure, const Json& whole, const Plan& before) {
   return has_own_steps(procedure, whole) ? std::nullopt : outcome_of(before);
 }
 
-/// Whether a step of a plan is one of an option's, by its name and operation. `chained`: of the steps that act on
-/// another procedure's outcome, which are called after the procedure; otherwise of those with their own names.
+/// Whether a step of a plan is a step of an option, by its name and operation. `chained`: compares the names
+/// that the steps have after another procedure, which begin with the procedure's name; otherwise those of the
+/// file.
 bool is_step_of(const Procedure& procedure, const ProcedureOption& option, bool chained, const Json& step) {
   const auto id = step.at("id").get<std::string>();
   const std::optional<std::string> name = chained ? name_before_chaining(procedure, id) : id;
@@ -323,8 +324,8 @@ bool is_step_of(const Procedure& procedure, const ProcedureOption& option, bool 
   });
 }
 
-/// Whether a plan has an option: most of its steps. Single ones may have been deleted, and a step of the user's may
-/// have the name of one.
+/// Whether a plan has more than half of an option's steps. The user may have deleted some of them, or have
+/// given another step the name of one.
 bool has_option(const Procedure& procedure, const ProcedureOption& option, bool chained, const Json& plan) {
   const Json& steps = plan.at("steps");
   const auto present = std::count_if(steps.begin(), steps.end(), [&](const Json& step) {
@@ -333,7 +334,8 @@ bool has_option(const Procedure& procedure, const ProcedureOption& option, bool 
   return 2 * static_cast<std::size_t>(present) > option.steps.size();
 }
 
-/// Removes the steps, with names of their own, of options that the plan has and the user does not choose any more.
+/// Removes the steps of options that the plan has and the user no longer chooses, for a procedure that is not
+/// chained.
 Json without_other_options(const Procedure& procedure, const std::vector<std::string>& chosen,
                            const Json& plan) {
   Json kept = plan;
@@ -372,8 +374,9 @@ Json steps_named_as_in_file(const Procedure& procedure, bool chained, const Json
   return steps;
 }
 
-/// The value for a procedure's bone that the plan has chosen already, by a window without an upper end: of another scanner
-/// or another unit, the procedure's default would be another tissue. Null if the plan has no such window.
+/// The threshold of bone that a window of the plan without an upper end states, as the procedure's value. In
+/// scans of another scanner or unit, the procedure's default would be another tissue. Null if the plan has no
+/// such window.
 Json chosen_bone(const Procedure& procedure, const Json& plan) {
   const auto bone = std::find_if(procedure.steps.begin(), procedure.steps.end(),
                                  [&](const Json& step) { return step.at("id") == procedure.acts_on; });
@@ -386,8 +389,8 @@ Json chosen_bone(const Procedure& procedure, const Json& plan) {
   return nullptr;
 }
 
-/// The object on which a procedure would act, and what the plan's steps of the procedure state: its options and its
-/// values. For the page to show beforehand.
+/// The object on which a procedure would act, and the options and values that the plan's steps of the
+/// procedure state. The page shows them in the procedure's form.
 Json acts_on(Session& session, const Json& said, const Watched& watched) {
   const Procedure procedure = known_procedure(said);
   const auto [whole, folder] = session.with_document([](Document& document) {

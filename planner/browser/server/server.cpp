@@ -163,8 +163,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
         stream_, buffer_, *parser_, [self = shared_from_this()](beast::error_code failed, std::size_t) {
           if (!failed) self->guard([&] { self->take(); });
           if (failed == http::error::header_limit)
-            self->refuse(http::status::request_header_fields_too_large,
-                         "a header may hold " + std::to_string(most_header_bytes / 1024) + " KB");
+            self->refuse(
+                http::status::request_header_fields_too_large,
+                "the request's header is longer than " + std::to_string(most_header_bytes / 1024) + " KB");
         });
   }
 
@@ -319,8 +320,9 @@ bool is_want(const beast::error_code& failed) {
          failed == errc::no_buffer_space || failed == errc::not_enough_memory;
 }
 
-/// Each connection has a strand: a message that another thread posts must not pass one that the connection's
-/// own handler posted before, and without a strand asio keeps the handler's back until it has ended.
+/// Each connection has a strand, so that its messages are sent in the order in which they are posted. Without
+/// a strand, asio delays what a handler posts until the handler has ended, so that a message of another
+/// thread could overtake it.
 void accept(Tcp::acceptor& acceptor, Context& context) {
   const net::any_io_executor strand = net::make_strand(acceptor.get_executor());
   acceptor.async_accept(strand, [&](beast::error_code failed, Tcp::socket socket) {
@@ -351,7 +353,7 @@ struct Server::Port {
 Server::Server(ServerOptions options) : options_(std::move(options)), port_(std::make_unique<Port>()) {
   beast::error_code failed;
   const auto address = net::ip::make_address(options_.address, failed);
-  if (failed) throw std::runtime_error("--listen: '" + options_.address + "' is no address of an interface");
+  if (failed) throw std::runtime_error("--listen: '" + options_.address + "' is not an IP address");
   Tcp::acceptor& acceptor = port_->acceptor;
   try {
     const Tcp::endpoint endpoint(address, static_cast<unsigned short>(options_.port));

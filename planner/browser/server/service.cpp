@@ -23,7 +23,7 @@ constexpr double most_frame_ms = 14.0;
 /// The least time between reports of progress.
 constexpr std::chrono::milliseconds tell_every{100};
 
-/// Whether a view shows what lies along rays, see ray_pictures.h.
+/// Whether a view's shading is computed along rays (ray_pictures.h).
 bool is_ray_shading(const Json& said) {
   const std::vector<std::string> names = ray_picture_names();
   const Json shading = said.value("shading", Json());
@@ -117,7 +117,7 @@ void Service::take(std::uint64_t window, Request request) {
     for (Drawing& drawing : drawings_) drawing.panes.shown(pane(), said.value("frame", std::int64_t{0}));
     return;
   }
-  // Allows a page to distinguish an idle connection from a broken one.
+  // A page asks this to find out whether its idle connection still works.
   if (request.what == "alive") return send(window, answer_to(request.id, Json::object()));
   if (request.what == "cancel") {
     const std::int64_t target = said.value("target", std::int64_t{0});

@@ -21,8 +21,9 @@
 namespace octotomy::planner::serve {
 
 /// The windows on one session and the threads that handle their requests: one each for views and slices, for
-/// pictures along rays, which take longer, for edits, evaluation, certificates, overlaps and long tasks. Every request is answered exactly once, even if it
-/// fails. All members may be called from any thread.
+/// pictures along rays, which take longer, for edits, evaluation, certificates, overlaps and long tasks.
+/// Every request of an open window is answered exactly once, even if it fails, except "shown", which has no
+/// answer. All members may be called from any thread.
 class Service {
  public:
   /// Sends a message to a window's socket; may be called from any thread and must not block.

@@ -24,8 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Limits of a session's cache: number and memory of results, for objects and for scans. A certified head
-/// takes 400 MB, so the last two are stored and undo and redo find theirs.
+/// Limits of a session's cache, for objects and for scans separately: the number of results and their memory.
+/// A certified head takes 400 MB, so the last two are stored, and undo and redo find theirs.
 constexpr std::size_t most_answers = 512;
 constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30;
 
@@ -77,8 +77,8 @@ Json certificate_json(const verify::Certificate& certificate) {
   return json;
 }
 
-/// The thin necks of an object whose parts were chosen: those that stay because one kernel connects them, and those
-/// that the certificate leaves open. Null if there are none.
+/// The thin necks of an object whose parts were chosen: those that stay because one kernel connects them, and
+/// those that the certificate leaves open. Null if there are none.
 Json necks_json(const Object& object) {
   Json necks;
   const auto add = [&](const Json& at_mm, const Json& volume_mm3, bool is_kept) {
@@ -152,8 +152,8 @@ Json answered(const Plan& plan, const Evaluation& evaluation, std::map<std::stri
   return list;
 }
 
-/// The measurements of existing objects in the form that a page shows, and why measurements and scans failed; `errors`
-/// as in answered().
+/// The measurements of existing objects in the form that a page shows, and why measurements and scans failed;
+/// `errors` as in answered().
 Json measurements_of(const Plan& plan, const Evaluation& evaluation,
                      std::map<std::string, std::string>& errors) {
   const auto is_there = [&](const std::string& id) {
@@ -399,8 +399,8 @@ voxel::GreyOctree Session::alone(const Snapshot& snapshot, const std::string& sc
 
 namespace {
 
-/// The voxel size for previews that follow a hand: that of the plan, or if its universe has more voxels a side than
-/// fit the time of a picture, a multiple of it.
+/// The voxel size for previews during a drag: that of the plan, or a multiple of it if its universe has more
+/// voxels along a side than can be computed for each picture.
 std::optional<double> coarse_voxel_mm(const Snapshot& snapshot, const Plan& plan) {
   constexpr int most_side = 256;
   if (!snapshot.evaluation) return plan.voxel_mm;

@@ -66,9 +66,10 @@ class Session {
   }
 
   /// Evaluates steps of the plan and those on which they depend; all steps if none are named. Without
-  /// `certify`, only in voxels; the result then becomes the snapshot, and unknown names are ignored. A step
-  /// that cannot be evaluated is left out, with those that depend on it. Throws Stopped, and exceptions of
-  /// evaluate() that no step has caused.
+  /// `certify`, only in voxels, and unknown names are ignored. The result becomes the snapshot, unless
+  /// `certify` is set for named steps, or another plan was opened or certified meanwhile. A step that cannot
+  /// be evaluated is left out, with those that depend on it. Throws Stopped, and exceptions of evaluate()
+  /// that no step has caused.
   Snapshot evaluate(const std::vector<std::string>& steps, bool certify, const Watched& watched);
   /// Evaluates another plan, which does not become the snapshot; `only_look_up` as in EvaluateOptions.
   Evaluation evaluate(const Plan& plan, const std::vector<std::string>& steps, bool certify,
@@ -79,8 +80,8 @@ class Session {
   /// Caches the newest one.
   voxel::GreyOctree alone(const Snapshot& snapshot, const std::string& scan);
 
-  /// An object after a change that is not in the plan, in voxels only: moved, or made by further steps; and its
-  /// overlap with other objects, or its difference to one.
+  /// An object after a change that is not in the plan, in voxels only: moved, or made by further steps; and
+  /// its overlap with other objects, or its difference to one.
   struct Preview {
     std::shared_ptr<const Evaluation> evaluation;
     static constexpr const char* moved = "dragged_piece";
@@ -96,9 +97,9 @@ class Session {
   };
   /// Sets "preview" of a picture's header: the changed object's volume, voxels and findings.
   static void describe(const Preview& preview, Json& header);
-  /// `asked` is {"object", "of", "move"}: `of`, or else `object`, moved as by a step "move"; or {"steps"}: the
-  /// last of steps that follow the plan's. With "coarse", a universe of many voxels is replaced by a coarser one.
-  /// "difference" names an object of the plan; `with` is not read then.
+  /// `asked` is {"object", "of", "move"}: `of`, or else `object`, moved as by a step "move"; or {"steps"}:
+  /// the last of steps that follow the plan's. With "coarse", a universe of many voxels is replaced by a
+  /// coarser one. "difference" names an object of the plan; `with` is not read then.
   Preview preview(const Json& asked, const std::vector<std::string>& with, const std::stop_token& stop);
 
   /// The plan's state for a page; null if none is open.
@@ -110,19 +111,20 @@ class Session {
   Document& need_document() const;
   Json objects_json(const Plan& plan) const;
   /// bone_low() of each scan that was read, computed again where the scan was read anew. Calls wait for each
-  /// other; the session's own lock is free meanwhile.
+  /// other; the session's own lock is not held meanwhile.
   std::map<std::string, double> bone_lows_of(const Evaluation& evaluation);
-  /// Keeps the certificates, sizes and measurements of what was evaluated in both kernels, by the keys of the steps.
+  /// Keeps the certificates, sizes and measurements of what was evaluated in both kernels, by the keys of the
+  /// steps.
   void keep_certified(const Plan& plan, const Evaluation& evaluation, const Json& measurements);
   /// Replaces measurements by those of the same steps that were evaluated in both kernels.
   void put_certified(const Plan& plan, Json& measurements) const;
 
   std::filesystem::path working_folder_;
-  mutable std::timed_mutex mutex_;  ///< protects all members below
+  mutable std::timed_mutex mutex_;  ///< protects the members down to `certified_`
   std::unique_ptr<Document> document_;
   std::uint64_t opened_ = 0;  ///< number of documents opened so far; results of an earlier one are discarded
   Snapshot snapshot_;
-  /// The key of a step's answer, and its certified results.
+  /// The certified results of a step, and the key by which they are recognised as those of the current plan.
   struct Certified {
     std::string key;
     Json said;  ///< of an object "certificate", "necks", "volume", "area"; of another step its measurement

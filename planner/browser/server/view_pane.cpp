@@ -27,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 /// The smallest scale of a moving picture's sides: a coarser picture is useless.
 constexpr double least_scale = 0.375;
 
-/// Number of cached distance fields of a pane: for both objects and a few ranges.
+/// The most distance fields that a pane caches: those of both objects, for a few ranges.
 constexpr std::size_t most_scalars = 8;
 /// Stops of the legend's ramp.
 constexpr int legend_colours = 9;
@@ -131,7 +131,7 @@ std::vector<std::uint8_t> red_and_cyan(const std::vector<std::uint8_t>& left,
   return rgb;
 }
 
-/// A position in a view's plane, as the point of the plane through the origin.
+/// The point at a position of a view, on the plane through the origin.
 glm::dvec3 on_plane(const voxel::View& view, const glm::dvec2& p_mm) {
   return view.right * p_mm.x + view.up * p_mm.y;
 }
@@ -182,8 +182,8 @@ struct ViewPane::Drawing {
     return packed(header, {flat_part(is_moving, size_px, rgb)});
   }
 
-  /// A picture of values along rays through the first object's samples, of a share of the pixels along each
-  /// side.
+  /// A picture of values along rays through the samples of the first object that has some. It is drawn with
+  /// `scale` times the pane's pixels along each side.
   Message along_rays(double scale, const std::stop_token& stop) {
     Timings timings;
     const auto first = std::find_if(objects.begin(), objects.end(),
@@ -209,8 +209,8 @@ struct ViewPane::Drawing {
     return made;
   }
 
-  /// The picture for red and cyan glasses. `eye` draws the picture of one eye. Depths and objects stay those of
-  /// the view between the eyes, in which the pointer picks.
+  /// The picture for red and cyan glasses. `eye` draws the picture of one eye. Depths and objects stay those
+  /// of the view between the eyes, in which the pointer picks.
   template <typename Eye>
   std::vector<std::uint8_t> in_stereo(voxel::RenderOptions made, const Eye& eye) const {
     std::array<std::vector<std::uint8_t>, 2> rgb;
@@ -286,7 +286,7 @@ void ViewPane::add_objects(Session& session, const Json& said, Drawing& drawing,
   }
   const Object* moved = preview.evaluation ? find(*preview.evaluation, Session::Preview::moved) : nullptr;
   const Json difference = difference_json(asked, preview);
-  // Three parts stand in the place of the piece and the other object.
+  // Three parts are drawn in place of the piece and the other object.
   if (!difference.is_null()) moved = nullptr;
   const auto is_in_parts = [&](const std::string& id) {
     return !difference.is_null() && (id == dragged || id == difference["to"]);

@@ -24,12 +24,12 @@ class ViewPane {
   struct Drawing;
   /// Adds the objects of a request; a dragged one at its new position.
   void add_objects(Session& session, const Json& said, Drawing& drawing, const std::stop_token& stop);
-  /// Colours one of them by its distance to another; "mutual": both by each other.
+  /// Colours one object by its distance to another; with "mutual", both by their distance to each other.
   void colour(const Json& colour_by, Drawing& drawing);
   /// A window of a scan that is not a step yet; with "alone", in a universe around the scan.
   voxel::DrawnObject threshold(Session& session, const Snapshot& snapshot, const Json& window);
   Message moving(Drawing& drawing, double most_ms);
-  /// A picture of what lies along rays; during a motion with fewer pixels if all would take too long.
+  /// A picture computed along rays; during a motion with fewer pixels if all would take too long.
   Message along_rays(Drawing& drawing, double most_ms, const std::stop_token& stop);
   /// The share of pixels along each side that can be drawn in this time.
   double scale_within(double most_ms) const;

@@ -20,7 +20,7 @@ interface Exports {
   draw(width: number, height: number, lx: number, ly: number, lz: number, ux: number, uy: number, uz: number): number;
 }
 
-/// The kernel refused something and its instance is gone. The message is the kernel's.
+/// The kernel has thrown an error, whose message this is, and its instance has ended.
 export class Refusal extends Error {}
 
 /// The four calls of WASI that the kernel links: only writing its last message and ending have an effect
@@ -57,7 +57,7 @@ export class Kernel {
         await WebAssembly.instantiate(module, {wasi_snapshot_preview1: wasi(() => exports.memory.buffer)});
     exports = instance.exports as unknown as Exports;
     exports._initialize();
-    // Each call may move the memory: views are made anew.
+    // Each call may move the memory, so views of it are made anew.
     const samples = exports.new_scan(...volume.dims) >>> 0;
     new Int16Array(exports.memory.buffer, samples, volume.samples.length).set(volume.samples);
     const matrix = exports.lps_from_voxel() >>> 0;

@@ -5,7 +5,7 @@ declare module "page_kernel.gz" {
   export default bytes;
 }
 
-// In every browser since 2023, not in the compiler's list.
+// All browsers have this class since 2023, but the compiler's declarations lack it.
 declare class DecompressionStream {
   constructor(format: "gzip");
   readonly readable: ReadableStream<Uint8Array>;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The page: a file of this machine, its window, its numbers and its picture. Nothing is sent or fetched.
+// The page: opens a file of this machine, and shows its window, numbers and picture. Nothing is sent or
+// fetched.
 import kernel_bytes from "page_kernel.gz";
 import {Kernel, Measured} from "./kernel";
 import {inflated, read_volume, Volume} from "./volume_file";
@@ -18,7 +19,7 @@ function say(text: string, is_refusal = false): void {
   by_id("said").className = is_refusal ? "refusal" : "";
 }
 
-/// Runs what may be refused. A refusal ends the kernel's instance: the scan is opened in a new one.
+/// Runs work and shows its error. An error ends the kernel's instance, so the scan is opened in a new one.
 async function attempt(work: () => void|Promise<void>): Promise<void> {
   try {
     await work();
@@ -35,7 +36,7 @@ async function attempt(work: () => void|Promise<void>): Promise<void> {
 /// The directions as in the program's views: the observer's azimuth from the front towards the patient's
 /// left, then the elevation.
 function directions(): [number[], number[]] {
-  // Along the axes exactly, so that the kernel traces nodes.
+  // Values along the axes are exact, so that the kernel traces nodes.
   const exact = (value: number) => Math.abs(value - Math.round(value)) < 1e-12 ? Math.round(value) : value;
   const a = azimuth_deg * Math.PI / 180, e = elevation_deg * Math.PI / 180;
   const sa = exact(Math.sin(a)), ca = exact(Math.cos(a)), se = exact(Math.sin(e)), ce = exact(Math.cos(e));
@@ -102,7 +103,7 @@ async function open(file: File): Promise<void> {
     kernel = await Kernel.open(module, read);
     volume = read;
     const [least, most] = range(volume.samples);
-    // Bone of a CT; the upper half of anything else.
+    // The first window: bone of a CT, or the upper half of other samples.
     low.value = String(least < 0 && most > 300 ? 300 : Math.round((least + most) / 2));
     high.value = String(most);
     say([`${file.name}: ${volume.dims.join(" x ")} samples, ${least} to ${most}`, ...volume.remarks].join("; "));

@@ -46,7 +46,7 @@ extern "C" {
   return std::get<Int16Samples>(page_state().scene.samples).data();
 }
 
-/// Room for lps_from_voxel, 16 numbers by columns.
+/// The memory of lps_from_voxel: 16 numbers, column by column.
 [[clang::export_name("lps_from_voxel")]] double* lps_from_voxel() {
   return &page_state().scene.lattice.lps_from_voxel[0][0];
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// NIfTI-1 (.nii, .nii.gz) and NRRD (.nrrd, samples raw or gzip within the file), read where the file is opened.
-// Offsets and meanings of NIfTI's header are from nifti1.h by R. Cox and others; NRRD's fields are from the format's
-// definition by G. Kindlmann. What is not read is refused with its name.
+// NIfTI-1 (.nii, .nii.gz) and NRRD (.nrrd, samples raw or gzip within the file), read in the browser. Offsets
+// and meanings of NIfTI's header are from nifti1.h by R. Cox and others; NRRD's fields are from the format's
+// definition by G. Kindlmann. Other features are refused by name.
 
-/// Samples x fastest, and the matrix from voxels to LPS millimetres, by columns.
+/// Samples x fastest, and the matrix from voxels to LPS millimetres, column by column.
 export interface Volume {
   dims: [number, number, number];
   lps_from_voxel: number[];
@@ -46,8 +46,8 @@ function numbers(bytes: Uint8Array, at: number, count: number, type: NumberType,
   return new array(own.buffer);
 }
 
-/// Stored samples as the kernel takes them: rescaled, rounded to the nearest integer, halves upward, and held
-/// within 16 bits.
+/// Stored samples as the kernel takes them: rescaled, rounded to the nearest integer, halves upward, and
+/// limited to 16 bits.
 function to_int16(stored: Numbers, slope: number, intercept: number, remarks: string[]): Int16Array {
   if (stored instanceof Int16Array && slope === 1 && intercept === 0) return stored;
   const samples = new Int16Array(stored.length);
@@ -89,14 +89,14 @@ export function read_nifti(bytes: Uint8Array): Volume {
   if (bytes.length < 352) throw new Error("it is cut short within its header");
   const little = view.getInt32(0, true) === 348;
   if (!little && view.getInt32(0, false) !== 348)
-    throw new Error("it is no NIfTI-1 file; NIfTI-2 is for the program");
+    throw new Error("it is not a NIfTI-1 file; the program also reads NIfTI-2");
   const int16 = (at: number) => view.getInt16(at, little), float = (at: number) => view.getFloat32(at, little);
   const axes = int16(40);
   const dims = checked(Array.from({length: Math.max(0, axes)}, (_, i) => int16(42 + 2 * i)), axes);
   const type = nifti_types[int16(70)];
-  if (type === undefined) throw new Error(`its samples are of type ${int16(70)}, which is no real number`);
-  // The sform, else the qform, else spacings alone, which name no frame: as Analyze's then, left, front, head and
-  // centred. RAS becomes LPS.
+  if (type === undefined) throw new Error(`its samples have type ${int16(70)}, which is not read here`);
+  // The sform, else the qform. Without both, only spacings are known: axes are then left, front and head,
+  // with the volume's centre at the origin, as in Analyze. RAS becomes LPS.
   let rows: number[][];
   const remarks: string[] = [];
   if (int16(254) > 0)
@@ -115,10 +115,10 @@ export function read_nifti(bytes: Uint8Array): Volume {
   if (unit === undefined) remarks.push("the file states no unit of length: millimetres are assumed");
   const lps_from_voxel = [0, 1, 2, 3].flatMap(
       column => [...[0, 1, 2].map(row => rows[row][column] * (row < 2 ? -1 : 1) * (unit ?? 1)), column === 3 ? 1 : 0]);
-  // A slope of zero, or one that is no number, means that nothing is scaled.
+  // If the slope is zero or not finite, samples are not scaled.
   const is_scaled = Number.isFinite(float(112)) && float(112) !== 0;
   const slope = is_scaled ? float(112) : 1, intercept = is_scaled ? float(116) : 0;
-  if (!Number.isFinite(intercept)) throw new Error("its intercept is no finite number, though its slope is one");
+  if (!Number.isFinite(intercept)) throw new Error("its intercept is not a finite number, but its slope is");
   const count = dims[0] * dims[1] * dims[2];
   const stored = numbers(bytes, Math.max(352, float(108)), count, type, little);
   return {dims, lps_from_voxel, samples: to_int16(stored, slope, intercept, remarks), remarks};
@@ -139,12 +139,12 @@ const millimetres: Record<string, number> = {
   "um": 0.001, "\u00b5m": 0.001, "\u03bcm": 0.001, "micron": 0.001, "micrometer": 0.001, "in": 25.4, "inch": 25.4
 };
 
-/// Millimetres in the units of a NRRD's axes; none where it states none.
+/// The millimetres in the unit of each of a NRRD's axes; none if it states no units.
 function units_of(text: string|undefined): number[]|undefined {
   return text === undefined ? undefined : [...text.matchAll(/"([^"]*)"/g)].map(([, word]) => {
     const name = word.trim().toLowerCase().replace(/metre/, "meter").replace(/(.{3})s$/, "$1");
     const mm = millimetres[name];
-    if (mm === undefined) throw new Error(`its unit '${word}' is no known unit of length`);
+    if (mm === undefined) throw new Error(`its unit '${word}' is not a known unit of length`);
     return mm;
   });
 }
@@ -177,7 +177,7 @@ export async function read_nrrd(bytes: Uint8Array): Promise<Volume> {
     "right-anterior-superior": [-1, -1, 1], "ras": [-1, -1, 1],
     "left-anterior-superior": [1, -1, 1], "las": [1, -1, 1]
   } as Record<string, number[]>)[space];
-  if (space !== "" && signs === undefined) throw new Error(`its space '${space}' names no patient`);
+  if (space !== "" && signs === undefined) throw new Error(`its space '${space}' is not a patient's frame`);
   if (signs === undefined) remarks.push("the file does not say how the patient lies: axes are taken as left, back, head");
   const spacing = (fields["spacings"] ?? "1 1 1").split(/\s+/).map(value => Math.abs(Number(value)) || 1);
   const axes = fields["space directions"] ? vectors(fields["space directions"])
@@ -196,7 +196,7 @@ export async function read_nrrd(bytes: Uint8Array): Promise<Volume> {
   return {dims, lps_from_voxel, samples: to_int16(stored, 1, 0, remarks), remarks};
 }
 
-/// Reads by what the file holds, not by its name. Throws Error with the reason.
+/// Determines the format from the file's content, not from its name. Throws Error with the reason.
 export async function read_volume(bytes: Uint8Array): Promise<Volume> {
   if (bytes[0] === 0x1f && bytes[1] === 0x8b) bytes = await inflated(bytes);
   return new TextDecoder().decode(bytes.subarray(0, 7)) === "NRRD000" ? read_nrrd(bytes) : read_nifti(bytes);

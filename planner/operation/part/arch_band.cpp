@@ -27,8 +27,8 @@ glm::dvec2 on_spline(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2&
   return between(between(ab, bc, t0, t2), between(bc, cd, t1, t3), t1, t2);
 }
 
-/// A spline through the points, in steps of at most curve_step_mm. At either end it is computed with a further
-/// point, which continues the outermost segment straight.
+/// A spline through the points, in steps of at most curve_step_mm. At either end it is computed with a
+/// further point, which continues the outermost segment straight.
 std::vector<glm::dvec2> curve_through(const std::vector<glm::dvec2>& points_mm) {
   std::vector<glm::dvec2> p{2.0 * points_mm[0] - points_mm[1]};
   p.insert(p.end(), points_mm.begin(), points_mm.end());
@@ -44,8 +44,8 @@ std::vector<glm::dvec2> curve_through(const std::vector<glm::dvec2>& points_mm) 
 }
 
 /// Whether a point half a width beside the curve's point `i` lies beyond the centre of a bend: it is nearer
-/// to another point of the curve. Points farther along the curve than half the width must be a hundredth
-/// farther away, so that the two sides of a bend do not cross.
+/// to another point of the curve. For points farther along the curve than half the width, a distance that is
+/// larger by up to a hundredth counts as nearer, too, so that the two sides of a bend do not cross.
 bool is_beyond_bend(const std::vector<glm::dvec2>& curve, std::size_t i, const glm::dvec2& p_mm,
                     double half_mm) {
   constexpr double rounding = 1e-6;

@@ -15,7 +15,7 @@ namespace octotomy::planner {
 /// The plane of an arch's points, and the points in it.
 struct ArchFrame {
   glm::dvec3 right{1, 0, 0}, up{0, 1, 0}, look{0, 0, 1};  ///< unit, LPS; look is the plane's normal
-  double height_mm = 0.0;                                 ///< p . look of the points, on the mean
+  double height_mm = 0.0;                                 ///< the mean of p . look over the points
   double off_plane_mm = 0.0;                              ///< the largest distance of a point from the plane
   std::vector<glm::dvec2> points_mm;                      ///< (p . right, p . up)
 

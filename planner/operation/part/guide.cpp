@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A guide for saw and drill on the surface of a bone.
 //
-// 1 The region, about points or drawn, and the way in which the guide is put on, from the side that the surgeon
-//   reaches (guide_site.h). The slots follow from the plan's cuts (guide_slots.h), sleeves from its screws.
-// 2 The bone near the region, grown by the clearance, and all that lies behind it along that way: no part of the
-//   guide may lie there. Where there is no undercut, the fitting surface is that of the grown bone.
-// 3 The region's bone grown by clearance and thickness, so that the guide's rim is round; about each slot walls
-//   that reach as far before the bone as the slot is deep: that shadow moved back along the saw; a rod for each
-//   sleeve. Edges of the walls are rounded.
+// 1 The region, about points or drawn, and the way in which the guide is put on, from the side that the
+//   surgeon reaches (guide_site.h). The slots follow from the plan's cuts (guide_slots.h), sleeves from its
+//   screws.
+// 2 The bone near the region, grown by the clearance, and all that lies behind it along that way: no part of
+//   the guide may lie there. Where there is no undercut, the fitting surface is that of the grown bone.
+// 3 The region's bone grown by clearance and thickness, so that the guide's rim is round. Walls about each
+//   slot extend as far before the bone as the slot is deep: they lie within the shadow of 2 after it is moved
+//   back along the saw. A rod for each sleeve. Edges of the walls are rounded.
 // 4 3 minus 2, minus slots and holes. Only the part that is covered by balls within it as wide as the least
 //   wall: slots and holes leave slivers at the edges of the bone, which no printer makes.
 // 5 The largest piece, with points that files for printers can hold.
 //
-// The mesh kernel does 3 and 4 without Booleans, on distances to the surfaces (brep/shape/level_body.h). The voxel
-// kernel combines windows of distances.
+// The mesh kernel does 3 and 4 without Booleans, on distances to the surfaces (brep/shape/level_body.h). The
+// voxel kernel combines windows of distances.
 // 1 is settled once and is a shared value of both kernels.
 #include <algorithm>
 #include <cmath>
@@ -76,8 +77,9 @@ struct Guide {
   double sleeve_radius_mm() const { return hole_radius_mm() + sleeve_wall_mm; }
 };
 
-/// Cell size of the mesh's level sets. Triangles of each of the two lie within a 16th of a cell: together
-/// within an eighth of a millimetre, below a printer's error of 0.16 mm, and a third of that on average.
+/// Cell size of the mesh's level sets. The middles of the balls and the final surface each lie within a 16th
+/// of a cell: together within an eighth of a millimetre, below a printer's error of 0.16 mm, and a third of
+/// that on average.
 constexpr double guide_cell_mm = 1.0;
 /// Margin around the region beyond what the guide needs.
 constexpr double room_mm = 1.0;
@@ -117,7 +119,7 @@ void check(const Guide& guide, const FieldLocation& place) {
   }
 }
 
-/// The sleeves; each must lie within the region and beside all slots.
+/// The sleeves. Throws std::runtime_error unless each lies within the region and beside all slots.
 std::vector<Sleeve> sleeves_of(const Guide& guide, const SettleBench& bench) {
   std::vector<Sleeve> sleeves;
   for (const ObjectName& name : guide.screws) {
@@ -194,8 +196,8 @@ std::string definition(const Guide& guide, const Objects&) {
          " slots, " + std::to_string(guide.sleeves.size()) + " sleeves";
 }
 
-/// Where the bone's shadow ends. Moved back by the depth of a slot it bounds the slot's walls, and still ends behind the
-/// region, so that the walls meet the base everywhere.
+/// Where the bone's shadow ends. Moved back by the depth of a slot, the shadow bounds the slot's walls; it
+/// then still ends behind the region, so that the walls meet the base everywhere.
 double shadow_end_mm(const Guide& guide) {
   return guide.site.end_mm + (guide.slots.empty() ? 0.0 : guide.slot_depth_mm);
 }
@@ -358,7 +360,7 @@ Operation guide_operation() {
                    "Points on the bone, in their order along it, about which the guide lies: [x, y, z] or "
                    "landmarks. Default, without a region: the heads of the screws."))
       .takes(field("radius_mm", &Guide::radius_mm,
-                   "How far the guide reaches about the line through the points, as it is put on.")
+                   "How far the guide reaches to either side of the line through the points.")
                  .from(3.0)
                  .to(60.0)
                  .read_if<Guide>([](const Guide& guide) { return !guide.region; },
@@ -381,8 +383,8 @@ Operation guide_operation() {
                          .required()})
                  .in_plans_only())
       .takes(field("reach_mm", &Guide::reach_mm,
-                   "How far the guide reaches back from the region's foremost bone; the default is a "
-                   "project's choice.")
+                   "How far the guide reaches back from the region's foremost bone; 25 reaches from the "
+                   "piriform rim to the buttress.")
                  .from(2.0)
                  .to(150.0))
       .takes(field("clearance_mm", &Guide::clearance_mm,
@@ -395,20 +397,22 @@ Operation guide_operation() {
               .from(1.0)
               .to(10.0))
       .takes(
-          field("cuts", &Guide::cuts,
-                "Saw steps, masks and flaps' spaces of this plan whose cuts get slots; of a mask the walls "
-                "that cut bone in the region, of a flap's segment both cuts, of its resection those in the "
-                "region.")
+          field(
+              "cuts", &Guide::cuts,
+              "Saw steps, masks and flaps' spaces of this plan whose cuts get slots. A mask gets "
+              "slots at its walls that cut bone in the region, a flap's segment at both cuts, a resection at "
+              "its cuts in the region.")
               .in_plans_only())
       .takes(field("kerf_mm", &Guide::kerf_mm,
                    "The width of the saw's cut for masks, which state none; saw steps have their own.")
                  .from(0.1)
                  .to(5.0))
-      .takes(field("play_mm", &Guide::play_mm,
-                   "By how much slots are wider than the kerf, and holes than the drill, so that these run; "
-                   "the default is a project's choice.")
-                 .from(0.0)
-                 .to(1.0))
+      .takes(
+          field("play_mm", &Guide::play_mm,
+                "By how much slots are wider than the kerf, and holes than the drill, so that saw and drill "
+                "run freely; 0.2 is above a printer's error of 0.16.")
+              .from(0.0)
+              .to(1.0))
       .takes(
           field("slot_depth_mm", &Guide::slot_depth_mm,
                 "How long a slot's walls are along the saw, from the fitting surface to their rim: they lead "
@@ -416,21 +420,23 @@ Operation guide_operation() {
               .from(1.0)
               .to(40.0))
       .takes(field("slot_wall_mm", &Guide::slot_wall_mm,
-                   "The thickness of the walls beside a slot; the default is a project's choice.")
+                   "The thickness of the walls beside a slot; 2 is twice the least that leads a saw.")
                  .from(1.0)
                  .to(10.0))
-      .takes(field("slot_end_mm", &Guide::slot_end_mm,
-                   "The wall of the guide beyond a slot's closed ends; the default is a project's choice.")
-                 .from(1.0)
-                 .to(30.0))
+      .takes(
+          field(
+              "slot_end_mm", &Guide::slot_end_mm,
+              "The wall of the guide beyond a slot's closed ends; 4 is twice the default of 'slot_wall_mm'.")
+              .from(1.0)
+              .to(30.0))
       .takes(field("slot_form", &Guide::slot_form,
                    "closed: both ends of slots are closed; three_sided: the end of the line's last point is "
                    "open.")
                  .one_of({"closed", "three_sided"}))
       .takes(
           field("rounding_mm", &Guide::rounding_mm,
-                "The radius of the edges of slots' walls, which are thicker than twice this; the default is "
-                "a project's choice. The base's rim is round by itself.")
+                "The radius of the edges of slots' walls, which are thicker than twice this; 1 is half the "
+                "default of 'slot_wall_mm'. The base's rim needs no rounding.")
               .from(0.3)
               .to(5.0))
       .takes(field("screws", &Guide::screws, "Screws of this plan whose holes the guide drills.")
@@ -439,12 +445,13 @@ Operation guide_operation() {
                  .from(0.5)
                  .to(6.0))
       .takes(field("sleeve_wall_mm", &Guide::sleeve_wall_mm,
-                   "The wall of a drill's sleeve; the default is a project's choice.")
+                   "The wall of a drill's sleeve; 1.5 is the diameter of a usual drill.")
                  .from(1.0)
                  .to(5.0))
       .takes(field("sleeve_height_mm", &Guide::sleeve_height_mm,
-                   "How far before the bone's surface a sleeve reaches along its axis; the default is a "
-                   "project's choice.")
+                   "How far before the bone's surface a sleeve reaches along its axis; over a length of 6 a "
+                   "drill tilts by at "
+                   "most 2 degrees in its play.")
                  .from(1.0)
                  .to(40.0))
       .takes(least_wall(&Guide::least_wall_mm))

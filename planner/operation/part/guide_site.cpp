@@ -22,7 +22,7 @@ constexpr double hidden_mm = 3.0;
 /// normal of the bone on which the guide sits.
 constexpr double most_turned_deg = 60.0;
 constexpr double grid_mm = 1.0;
-/// The least share of the region from which a second bone counts.
+/// The region is refused if this share of it, or more, lies on a second bone.
 constexpr double second_share = 0.05;
 
 voxel::View head_view(const std::string& text, const SettleBench& bench) {
@@ -95,7 +95,7 @@ ViewBox box_of(const std::vector<glm::dvec2>& outline_mm, double margin_mm = 0.0
   return box;
 }
 
-/// Computes the outlines of the region and of the bone that counts, in the base's frame.
+/// Computes the outlines of the region and of the space around it, in the base's frame.
 void draw_outlines(const SiteAsked& asked, const SettleBench& bench, GuideSite& site) {
   ArchFrame& frame = site.base.frame;
   if (asked.drawn) {
@@ -166,7 +166,7 @@ void need_points_seen(const SiteAsked& asked, const brep::Solid& bone,
   }
 }
 
-/// The visible part of the region: its foremost bone, its pieces and its mean normal.
+/// The visible bone of the region, sampled on a grid.
 struct SeenRegion {
   double foremost_mm = std::numeric_limits<double>::infinity();
   std::vector<std::pair<double, Seen>> all;  ///< each with its depth
@@ -205,8 +205,8 @@ void need_one_bone(const SiteAsked& asked, const SeenRegion& region,
 }
 
 void need_facing(const SiteAsked& asked, const SeenRegion& region, const GuideSite& site) {
-  // A line of sight represents an area that grows with the slant of the surface, so normals are weighted to
-  // give the mean over the area.
+  // A line of sight represents an area that grows with the slant of the surface, so normals are weighted by
+  // it: their sum then has the direction of the mean normal over the area.
   constexpr double least_slant = 0.05;
   glm::dvec3 sum(0.0);
   for (const auto& [depth_mm, seen] : region.all)

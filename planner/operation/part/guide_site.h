@@ -25,24 +25,24 @@ struct SiteAsked {
   std::string bone;  ///< the name of the object
   std::string side;  ///< a view of the head as it is held
   std::optional<glm::dvec3> direction;
-  std::vector<glm::dvec3> points_mm;  ///< where nothing is drawn
+  std::vector<glm::dvec3> points_mm;  ///< if no region is drawn
   double radius_mm = 10.0;            ///< of the region about the points
   std::optional<double> ends_mm;      ///< how far it extends beyond the first and last of several points;
                                       ///< none: by the radius
   std::optional<DrawnSite> drawn;
   double reach_mm = 25.0;      ///< behind the region's foremost bone
-  double before_mm = 5.0;      ///< how far the guide goes before the bone
-  double margin_mm = 5.0;      ///< how far beside the region bone counts
+  double before_mm = 5.0;      ///< how far the guide extends before the bone
+  double margin_mm = 5.0;      ///< how far beside the region bone is used
   std::string part = "guide";  ///< in messages
   bool is_on_several = false;  ///< the part may lie on several pieces of the bone
 };
 
 struct GuideSite {
-  Slab base;                  ///< the region, from before the bone to the reach
-  Slab near;                  ///< the bone that counts
-  glm::dvec3 along{0, 1, 0};  ///< unit, LPS: in which the guide is put on
-  double end_mm = 0.0;        ///< p . along behind all that counts
-  brep::BooleanResult bone;   ///< its mesh
+  Slab base;                  ///< the region, from `before_mm` before to `reach_mm` behind the foremost bone
+  Slab near;                  ///< the space whose bone shapes the part
+  glm::dvec3 along{0, 1, 0};  ///< unit, LPS: the direction in which the guide is put on
+  double end_mm = 0.0;        ///< p . along of a plane behind `base` and `near`
+  brep::BooleanResult bone;   ///< the bone's mesh within `near`
   Front front;                ///< of the bone about the region
 
   /// The visible bone at a position of the base's view, within the reach.

@@ -5,8 +5,8 @@
 // view, the curve has one point for each place along the sweep.
 //
 // 1 Sample the blade's line, or the sweep. A sample is on bone, over a gap of the bone, or beside the region.
-// 2 The longest run of samples that are not beside it, from its first to its last on bone, is the slot; closed
-//   ends stay within it by the wall beyond them.
+// 2 The longest run of samples that are not beside it, from its first to its last on bone, is the slot;
+//   closed ends stay within it by the wall beyond them.
 // 3 The opening is the blade as wide as the kerf. It begins before the guide and ends behind it.
 #include "planner/operation/part/guide_slots.h"
 
@@ -29,7 +29,8 @@ namespace octotomy::planner {
 namespace {
 
 constexpr double step_mm = 0.5;
-/// Two directions count as one if the angle between them is at most this.
+/// A region's polygon is swept along the guide's direction if its line of sight is within this angle of that
+/// direction or of the opposite one, and across it otherwise.
 constexpr double most_apart_deg = 45.0;
 /// The largest angle between a saw's direction and the direction in which the guide is put on.
 constexpr double most_oblique_deg = 60.0;
@@ -92,7 +93,7 @@ CutSample met_along(const glm::dvec3& p_mm, const glm::dvec3& direction, const S
   const double sinks = glm::dot(direction, frame.look);
   double depth_mm = 0.5 * (asked.base.low_mm + asked.base.high_mm);
   CutSample sample;
-  constexpr int rounds = 6;  // each brings an oblique saw nearer to where it meets the bone
+  constexpr int rounds = 6;  // each moves the sample closer to where an oblique saw meets the bone
   for (int round = 0; round < rounds; ++round) {
     const glm::dvec3 at_mm = p_mm + direction * ((depth_mm - glm::dot(p_mm, frame.look)) / sinks);
     const glm::dvec2 seen_mm = frame.project(at_mm);
@@ -172,7 +173,7 @@ std::vector<CutSample> longest_run(const std::vector<CutSample>& samples) {
   return best;
 }
 
-/// The lengths between which a slot is open, and its walls.
+/// Where a slot's opening and its walls begin and end, as lengths along the cut.
 struct SlotEnds {
   double from_mm, to_mm, walls_from_mm, walls_to_mm;
 };
@@ -271,7 +272,7 @@ bool is_within(const voxel::RegionMask& regions, const glm::dvec3& p_mm) {
   return false;
 }
 
-/// Removes samples whose bone lies in no other region of the mask, because nothing is cut there.
+/// Excludes samples whose bone lies outside the mask's other regions, because nothing is cut there.
 void leave_out_beside(const voxel::RegionMask& others, std::vector<CutSample>& samples) {
   for (CutSample& sample : samples)
     if (sample.on == On::Bone && !is_within(others, sample.bone_mm)) sample.on = On::Beside;
@@ -411,9 +412,9 @@ std::string too_short(const std::string& cut, double met_mm, const SlotsAsked& a
          " mm at its ends: make the region larger, or 'slot_end_mm' smaller";
 }
 
-/// The slots of a flap's cuts. The saw goes in within the plane of a cut, as near as possible to the way in which
-/// the guide is put on, and takes its kerf on one side of the plane. Cuts of the resection that miss the region
-/// belong to another guide.
+/// The slots of a flap's cuts. The saw goes in within the plane of a cut, as near as possible to the way in
+/// which the guide is put on, and takes its kerf on one side of the plane. Cuts of the resection that miss
+/// the region belong to another guide.
 std::vector<SawSlot> slots_of_flap(const std::string& cut, const std::vector<FlapCut>& cuts,
                                    const SlotsAsked& asked, double& longest_mm) {
   std::vector<SawSlot> slots;

@@ -27,26 +27,26 @@ struct Blade {
 /// A slot through a guide: the opening for the saw, and the walls that lead the saw.
 struct SawSlot {
   std::string cut;              ///< the step whose cut it is
-  glm::dvec3 goes_in{0, 1, 0};  ///< unit: in which the saw enters the bone
+  glm::dvec3 goes_in{0, 1, 0};  ///< unit: the direction in which the saw enters the bone
   double kerf_mm = 1.0;         ///< of the cut
   double length_mm = 0.0;       ///< of its opening, along the bone
-  Blade opening, walls;         ///< the walls go on beyond closed ends
+  Blade opening, walls;         ///< the walls extend beyond closed ends
 };
 
 /// The region of the guide that slots are cut into, and the measures of the slots.
 struct SlotsAsked {
   Slab base;                  ///< the guide's region
-  glm::dvec3 along{0, 1, 0};  ///< unit: in which the guide is put on
+  glm::dvec3 along{0, 1, 0};  ///< unit: the direction in which the guide is put on
   std::function<std::optional<glm::dvec3>(const glm::dvec2& p_mm)>
-      bone_at;                ///< of a place in the base's view
+      bone_at;                ///< at a place in the base's view
   double mask_kerf_mm = 1.0;  ///< the saw's width for masks, which state none
   double end_mm = 4.0;        ///< wall beyond a closed end
   bool is_open = false;       ///< the end of the line's last point is open
   double margin_mm = 20.0;    ///< how far openings reach before and behind the bone
 };
 
-/// The slots of a saw step, a mask or a flap's space. Throws std::runtime_error, which names the step, if it is no
-/// cut, if the saw enters from another side, or if the cut misses the region.
+/// The slots of a saw step, a mask or a flap's space. Throws std::runtime_error, which names the step, if it
+/// is no cut, if the saw enters from another side, or if the cut misses the region.
 std::vector<SawSlot> slots_of(const std::string& cut, const SlotsAsked& asked, const SettleBench& bench);
 
 }  // namespace octotomy::planner

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The insertion direction with the least undercut: of a grid of directions about a first one, that along which
-// the object's shadow adds the least volume. The voxel kernel answers for all directions; the mesh kernel
-// repeats the first and the best one.
+// The insertion direction with the least undercut: of a grid of directions about a first one, that along
+// which the object's shadow adds the least volume. The voxel kernel measures all directions; the mesh kernel
+// measures the first and the best one again.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -64,7 +64,7 @@ Json measure(const InsertionSearch& asked, const AnswerBench& bench) {
   json["filled_mm3"] = filled[best];
   json["first"] = {{"direction", to_json(first)}, {"filled_mm3", filled[0]}, {"mesh_filled_mm3", nullptr}};
   if (!object.mesh.within || object.mesh.within->empty()) {
-    json["findings"].push_back("there is no mesh of '" + object.id + "': voxels alone answer");
+    json["findings"].push_back("there is no mesh of '" + object.id + "': only voxels were used");
     return json;
   }
   json["first"]["mesh_filled_mm3"] = by_mesh_mm3(*object.mesh.within, first, bench);
@@ -72,8 +72,8 @@ Json measure(const InsertionSearch& asked, const AnswerBench& bench) {
                                       : Json(by_mesh_mm3(*object.mesh.within, directions[best], bench));
   if (json["mesh_filled_mm3"].get<double>() > json["first"]["mesh_filled_mm3"].get<double>())
     json["findings"].push_back(
-        "the mesh has less undercut along the first direction than along the one that voxels find: take the "
-        "first");
+        "in the mesh, the first direction has a smaller undercut than the best direction of the voxels: use "
+        "the first");
   return json;
 }
 
@@ -89,7 +89,7 @@ Operation insertion_search_operation() {
       .takes(insertion_direction(&InsertionSearch::insertion))
       .takes(insertion_view(&InsertionSearch::insertion))
       .takes(field("within_deg", &InsertionSearch::within_deg,
-                   "How far directions are tilted from the first one at most.")
+                   "The largest angle between the first direction and the others.")
                  .greater_than(0.0)
                  .to(80.0))
       .takes(field("step_deg", &InsertionSearch::step_deg, "The angle between neighbouring directions.")

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A plate on a bone as it is planned, with its holes where the plan's motions bring its screws.
 //
-// 1 The band about the curve through the points, the side from which the plate is put on (guide_site.h), and the
-//   screws' axes.
-// 2 The bone near the band and all that lies behind it along the way in which the plate is put on; grown by the
-//   bending radius and the clearance, then shrunk by the radius: its surface has no hollow narrower than the
-//   radius, so that the plate bridges gaps. It still contains all that lies behind it, so that the plate slides
-//   on.
+// 1 The band about the curve through the points, the side from which the plate is put on (guide_site.h), and
+//   the screws' axes.
+// 2 The bone near the band and all that lies behind it along the way in which the plate is put on; grown by
+//   the bending radius and the clearance, then shrunk by the radius: its surface has no hollow narrower than
+//   the radius, so that the plate bridges gaps. It still contains all that lies behind it, so that the plate
+//   slides on.
 // 3 The plate: 2 grown by the thickness minus the rounding, within a band that is narrower by the
 //   rounding on each side; all of this grown by the rounding, so that all outer edges are round. Minus 2,
 //   minus the holes.
@@ -14,8 +14,8 @@
 //   beside the plate, a flange would get ever thinner. The largest piece, with points that files for printers
 //   can hold.
 //
-// The mesh kernel does 3 and 4 without Booleans, on distances to the surfaces (brep/shape/level_body.h). The voxel
-// kernel combines windows of distances.
+// The mesh kernel does 3 and 4 without Booleans, on distances to the surfaces (brep/shape/level_body.h). The
+// voxel kernel combines windows of distances.
 // 1 is settled once and is a shared value of both kernels.
 #include <algorithm>
 #include <array>
@@ -60,7 +60,7 @@ struct Plate {
   double least_wall_mm = 0.8;
   // The values that settle() computes.
   GuideSite site;
-  Slab ridge;  ///< the band that the rounding makes as wide as the plate
+  Slab ridge;  ///< narrower than the plate by the rounding on each side
   std::vector<ScrewAxis> axes;
 
   double hole_radius_mm(const ScrewAxis& axis) const { return 0.5 * (axis.diameter_mm + play_mm); }
@@ -239,10 +239,10 @@ double through_mm(const Plate& plate) {
   return plate.clearance_mm + plate.thickness_mm + plate.bend_radius_mm + plate_room_mm;
 }
 
-/// Everything behind the bone, grown by bending radius and clearance and shrunk by the radius. Correct only
-/// within the plate's thickness about its band, where it is read. Shrinking needs the grown body within the
-/// radius about that region; beyond, all points count as grown, so that distances are measured only to the
-/// surface before the band.
+/// Everything behind the bone, grown by bending radius and clearance and then shrunk by the radius. It is
+/// correct only where it is used: up to the plate's thickness away from its band. Shrinking needs the grown
+/// body only up to the radius beyond that region. Farther away every point is taken as grown, so distances
+/// are measured only to the surface before the band.
 voxel::Expression closed_about(const Plate& plate, const voxel::Expression& behind, const VoxelBench& bench) {
   const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
   const double voxel_mm = std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
@@ -254,7 +254,7 @@ voxel::Expression closed_about(const Plate& plate, const voxel::Expression& behi
     about.high_mm += by_mm;
     return about.expression();
   };
-  // Voxels between a region's border and its next neighbours are interpolated.
+  // Two voxels more, because distances next to a region's border are interpolated.
   const double wanted_mm = plate.thickness_mm + 2.0 * voxel_mm, reach_mm = wanted_mm + plate.bend_radius_mm;
   const voxel::Octree wanted = bench.combined(about_band(wanted_mm + 2.0 * voxel_mm)),
                       reached = bench.combined(about_band(reach_mm + 2.0 * voxel_mm));
@@ -301,7 +301,7 @@ void voxels(const Plate& plate, const VoxelBench& bench, VoxelSide& made) {
   if (made.octree.is_empty()) has_none();
 }
 
-/// The gap between a plate and the bone: at all places of its surface that face the bone.
+/// The gap between a plate and the bone, over those parts of the plate's surface that face the bone.
 struct FitGap {
   double mean_mm = 0.0, largest_mm = 0.0;
   glm::dvec3 largest_at_mm{0.0};
@@ -358,7 +358,7 @@ std::optional<FitGap> voxel_gap(const VoxelSide& plate, const glm::dvec3& along,
   const voxel::Octree beside = voxel::combine(universe, voxel::Expression(bone.octree) & near);
   if (facing.empty() || beside.is_empty()) return std::nullopt;
   const std::vector<glm::dvec3> surface = crossings_of(beside, *bone.symbol & near);
-  constexpr std::size_t most = 2000;  // these are compared with all crossings of the bone
+  constexpr std::size_t most = 2000;  // each is compared with all crossings of the bone
   const std::size_t step = std::max<std::size_t>(1, facing.size() / most);
   std::vector<glm::dvec3> places_mm;
   for (std::size_t i = 0; i < facing.size(); i += step) places_mm.push_back(facing[i]);
@@ -522,23 +522,21 @@ Operation plate_operation() {
       .takes(
           field("bend_radius_mm", &Plate::bend_radius_mm,
                 "The least radius of hollows that the plate follows: it bridges narrower ones and gaps. At "
-                "least twice the thickness; the default is a project's choice.")
+                "least twice the thickness; 10 is four times the usual one.")
               .from(2.0)
               .to(60.0))
-      .takes(
-          field("clearance_mm", &Plate::clearance_mm,
-                "The gap between plate and bone where the plate follows the bone; the default is a project's "
-                "choice.")
-              .from(0.05)
-              .to(2.0))
+      .takes(field("clearance_mm", &Plate::clearance_mm,
+                   "The gap between plate and bone where the plate follows the bone; 0.2 is above a "
+                   "printer's error of 0.16.")
+                 .from(0.05)
+                 .to(2.0))
       .takes(field("rounding_mm", &Plate::rounding_mm,
-                   "The radius of the outer edges; the default is a project's choice.")
+                   "The radius of the outer edges; 0.8 is a third of the usual thickness.")
                  .from(0.2)
                  .to(2.5))
       .takes(field("reach_mm", &Plate::reach_mm,
                    "How far the plate extends backwards from the foremost bone, along the direction in which "
-                   "it is put on; the default is a project's "
-                   "choice.")
+                   "it is put on; 25 reaches from the piriform rim to the buttress.")
                  .from(2.0)
                  .to(150.0))
       .takes(field("screws", &Plate::screws,
@@ -546,12 +544,13 @@ Operation plate_operation() {
                    "holes are there.")
                  .in_plans_only())
       .takes(field("play_mm", &Plate::play_mm,
-                   "By how much holes are wider than their screws; the default is a project's choice.")
+                   "By how much holes are wider than their screws; 0.2 is above a printer's error of "
+                   "0.16.")
                  .from(0.0)
                  .to(1.0))
       .takes(field("hole_wall_mm", &Plate::hole_wall_mm,
-                   "The least wall between a hole and the plate's side or another hole; the default is a "
-                   "project's choice.")
+                   "The least wall between a hole and the plate's side or another hole; 1 is above the "
+                   "default of 'least_wall_mm'.")
                  .from(0.5)
                  .to(5.0))
       .takes(field("away_from", &Plate::away_from,
@@ -559,8 +558,8 @@ Operation plate_operation() {
                    "nerve's canal.")
                  .in_plans_only())
       .takes(field("least_mm", &Plate::least_mm,
-                   "The least distance from the screws to 'away_from'; a smaller one is a finding. The "
-                   "default is a project's choice.")
+                   "The least distance from the screws to 'away_from'; a smaller one is a finding. 1 is "
+                   "published for screws between roots.")
                  .from(0.0)
                  .to(20.0))
       .takes(least_wall(&Plate::least_wall_mm))

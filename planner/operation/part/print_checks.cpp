@@ -34,14 +34,14 @@ glm::dvec3 middle_of(const brep::Triangles& triangles, std::size_t face) {
   return (triangles.points_mm[a] + triangles.points_mm[b] + triangles.points_mm[c]) / 3.0;
 }
 
-/// How the triangles of an edge run along it: the number from its lower point to the higher, and the number
-/// back.
+/// A triangle's side: the two points of its edge by index, the triangle, and whether the side runs from the
+/// lower index to the higher.
 struct EdgeUse {
   std::uint32_t low = 0, high = 0, face = 0;
   bool is_upward = false;
 };
 
-/// The middle of the first edge for which `is_bad(upward sides, downward sides)` is true.
+/// The middle of the first triangle with an edge for which `is_bad(upward sides, downward sides)` is true.
 template <typename IsBad>
 std::optional<glm::dvec3> first_bad_edge(const brep::Triangles& triangles, const IsBad& is_bad) {
   std::vector<EdgeUse> uses;
@@ -66,7 +66,7 @@ std::optional<glm::dvec3> first_bad_edge(const brep::Triangles& triangles, const
   return middle_of(triangles, *first);
 }
 
-/// " (first: (1, 2, 3) mm)", or an empty text.
+/// " (first at (1, 2, 3) mm)", or an empty text.
 std::string first_at(const std::optional<glm::dvec3>& at_mm) {
   return at_mm ? " (first at " + place_in_words(*at_mm) + ")" : "";
 }
@@ -199,7 +199,7 @@ PrintCheck overhang_check(const brep::Linked& surface, const PrintLimits& limits
   const std::vector<brep::Overhang> found =
       brep::overhangs(surface, {limits.up, limits.overhang_deg, brep::OverhangOptions().resting_mm});
   for (const brep::Overhang& patch : found) {
-    // Patches smaller than the smallest wall are carried by the layer below.
+    // Patches smaller than the square of the least wall need no support: the layer below carries them.
     if (patch.area_mm2 < least_mm2) break;
     all_mm2 += patch.area_mm2;
     ++patches;
@@ -216,12 +216,12 @@ PrintCheck overhang_check(const brep::Linked& surface, const PrintLimits& limits
   return made;
 }
 
-/// A position on a shell: its face with the least number, so that the position is the same in every run.
+/// A position on a shell: the middle of its first face, so that the position is the same in every run.
 glm::dvec3 place_of(const brep::Triangles& triangles, const brep::Component& piece) {
   return middle_of(triangles, piece.faces.front());
 }
 
-/// The first triangle of the first shell with a negative volume.
+/// The middle of the first triangle of the first shell with a negative volume.
 std::optional<glm::dvec3> first_cavity(const brep::Solid& solid) {
   const brep::Linked& linked = solid.linked();
   std::vector<char> is_seen(linked.triangles.faces.size(), 0);
@@ -273,7 +273,8 @@ PrintCheck pieces_check(const brep::Solid& solid, const voxel::Octree* voxels) {
     made.verdict = fails;
     made.at_mm = place_of(solid.triangles(), pieces[1]);
     made.says = std::to_string(pieces.size()) + " pieces, the second of " + grouped(pieces[1].volume_mm3, 2) +
-                " mm\u00b3 at " + place_in_words(*made.at_mm) + ": separate keeps the largest";
+                " mm\u00b3 at " + place_in_words(*made.at_mm) +
+                ": the operation 'separate' makes one of them an object";
   }
   if (voxels == nullptr || voxels->is_empty()) return made;
   const std::size_t count = voxel::component_count(*voxels);
@@ -295,7 +296,7 @@ PrintCheck cavity_check(const brep::Solid& solid, const voxel::Octree* voxels, d
     made.verdict = fails;
     made.at_mm = first_cavity(solid);
     made.says = std::to_string(cavities) + " closed cavities hold resin or powder" + first_at(made.at_mm) +
-                ": fill closes them, or give each a drain hole";
+                ": the operation 'fill' closes them; or give each a drain hole";
   }
   if (voxels == nullptr || voxels->is_empty()) return made;
   if (const FreeVoxels free = free_voxels(*voxels, margin_mm); free.octree)
@@ -303,7 +304,7 @@ PrintCheck cavity_check(const brep::Solid& solid, const voxel::Octree* voxels, d
   return made;
 }
 
-/// The least thickness that both kernels measure, below `up_to_mm`.
+/// The least thickness below `up_to_mm`, as each kernel measures it.
 struct Thinnest {
   std::optional<double> mesh_mm, voxel_mm;
   std::optional<glm::dvec3> at_mm;
@@ -378,7 +379,7 @@ std::vector<PrintCheck> build_checks(const brep::Linked& surface, const PrintLim
 
 std::vector<PrintCheck> solid_checks(const brep::Solid& solid, const voxel::Octree* voxels,
                                      const PrintLimits& limits, const voxel::Progress& progress) {
-  // The box extends beyond the part by more than the width of any gap that counts.
+  // The box extends beyond the part by more than the widest gap that is reported.
   const double margin_mm = std::max(4.0 * limits.least_gap_mm, 2.0), up_to_mm = 0.9 * margin_mm;
   std::vector<PrintCheck> made{pieces_check(solid, voxels), cavity_check(solid, voxels, margin_mm)};
   made.push_back(thinnest_check(thinnest_of(solid, voxels, std::numeric_limits<double>::infinity(), progress),

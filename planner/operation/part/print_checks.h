@@ -12,7 +12,7 @@
 #include "voxel/space/progress.h"
 #include "voxel/tree/octree.h"
 
-// Checks whether a printer can make a part: one line for each question, with a verdict, numbers and a place.
+// Checks whether a printer can make a part: one line for each check, with a verdict, numbers and a place.
 namespace octotomy::planner {
 
 /// A printer and its material.
@@ -20,10 +20,10 @@ struct PrintLimits {
   glm::dvec3 up{0.0, 0.0, 1.0};  ///< unit, LPS: from the bed to the layers above
   double overhang_deg = 45.0;
   double least_wall_mm = 0.6, least_gap_mm = 0.5;
-  glm::dvec3 bed_mm{145.0, 145.0, 185.0};  ///< width, depth and height of what the printer can hold
+  glm::dvec3 bed_mm{145.0, 145.0, 185.0};  ///< width, depth and height of the space for a part
 };
 
-/// The answer to one question.
+/// The result of one check.
 struct PrintCheck {
   std::string check;                   ///< "wall"
   std::optional<std::string> verdict;  ///< PASS, WARN or FAIL; none: not measured
@@ -39,8 +39,9 @@ std::vector<PrintCheck> health_checks(const brep::Triangles& triangles, const br
 /// surface can be linked.
 std::vector<PrintCheck> build_checks(const brep::Linked& surface, const PrintLimits& limits);
 /// Checks pieces, cavities, the smallest wall and the smallest gap of a solid. If there are voxels, they are
-/// checked as well; a PASS becomes a WARN if the two answers differ by more than voxels can resolve.
-/// Precondition: the solid is not empty.
+/// checked as well: a PASS becomes a WARN if voxels have more pieces, or a wall or gap that is smaller by
+/// more than voxels can resolve. The cavities of voxels are only counted. Precondition: the solid is not
+/// empty.
 std::vector<PrintCheck> solid_checks(const brep::Solid& solid, const voxel::Octree* voxels,
                                      const PrintLimits& limits, const voxel::Progress& progress);
 /// The same four lines as solid_checks(), marked as not measured, with the reason.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Whether an object can be printed, one line a question: is it closed, without self-crossings, outward, one
+// Whether an object can be printed, one line for each check: closed, without self-crossings, outward, one
 // piece, without closed cavities; its smallest wall and gap; overhangs for a build direction; the printer's
-// bed. Both kernels answer about pieces, cavities, walls and gaps; the mesh's answer counts, and voxels must
-// agree within their resolution. The others are exact questions about triangles.
+// bed. Both kernels check pieces, walls and gaps; the mesh's result is reported, and voxels must agree within
+// their resolution. The other checks are exact on triangles; the cavities of voxels are counted, too.
 
 #include "planner/operation/file/mesh_in.h"
 #include "planner/operation/measure/result_json.h"
@@ -46,7 +46,7 @@ Json answer_of(const std::string& object, const PrintLimits& limits, const std::
   return json;
 }
 
-/// All lines about one surface; `voxels` may be null.
+/// All lines about one surface. `voxels_of` may return null.
 std::vector<PrintCheck> checks_of(const brep::Triangles& triangles, const brep::Solid* known,
                                   const PrintLimits& limits,
                                   const std::function<const voxel::Octree*(const brep::Solid&)>& voxels_of,
@@ -87,8 +87,7 @@ Json measure(const Printable& asked, const AnswerBench& bench) {
           bench.progress("printable")));
 }
 
-/// The edge of the voxels for a file: half of the smallest length that counts, but with at most 256 voxels a
-/// side.
+/// The edge of the voxels for a file: half of the least wall or gap, but with at most 256 voxels a side.
 double voxel_mm_of(const Printable& asked, const brep::Solid& solid) {
   const glm::dvec3 size_mm = solid.size().high_mm - solid.size().low_mm;
   return asked.voxel_mm.value_or(std::max(0.5 * std::min(asked.least_wall_mm, asked.least_gap_mm),
@@ -129,7 +128,7 @@ Operation printable_operation() {
                              "Measures whether an object can be printed: surface, pieces, walls, gaps, "
                              "overhangs and the printer's bed.",
                              Makes::Measurement)
-      .takes(field("object", &Printable::object, "The part; of the verb a mesh in a file.")
+      .takes(field("object", &Printable::object, "The part; for the verb, a mesh in a file.")
                  .required()
                  .positional("file"))
       .takes(
@@ -150,9 +149,10 @@ Operation printable_operation() {
                    "state for resin.")
                  .greater_than(0.0)
                  .to(10.0))
-      .takes(field("bed_mm", &Printable::bed_mm,
-                   "Width, depth and height that your printer can hold; the default is a size of desktop "
-                   "printers and of no certain one: state yours."))
+      .takes(field(
+          "bed_mm", &Printable::bed_mm,
+          "Width, depth and height that your printer can build; the default is that of a desktop printer for "
+          "dental resin."))
       .verb_takes(field("voxel_mm", &Printable::voxel_mm,
                         "Edge of the voxels of the second answer. Default: half of the smallest wall or "
                         "gap, or the extent's 256th where that is larger.")

@@ -29,16 +29,16 @@ brep::Solid first_piece(const brep::Solid& solid) {
                              brep::proof_of_part(solid.proof()));
 }
 
-/// An expression without the voxels of pieces beside the largest one. `whole` is its octree.
+/// An expression without the voxels of all pieces but the largest. `whole` is the expression's octree.
 voxel::Expression of_largest(const voxel::Expression& expression, const voxel::Octree& whole,
                              const voxel::Octree& largest, const VoxelBench& bench) {
   return expression -
          voxel::Expression(bench.combined(voxel::Expression(whole) - voxel::Expression(largest)));
 }
 
-/// The union of the balls of the radius that fit within a solid: of all, or of those about the largest piece of their
-/// middles. Balls about another piece meet those about it in a neck that is thinner than a ball, because no ball fits
-/// between the two.
+/// The union of the balls of the radius that fit within a solid: of all, or of those about the largest piece
+/// of their middles. Balls about another piece meet these in a neck that is thinner than a ball, because no
+/// ball fits between the two.
 voxel::Expression balls_within(const voxel::Expression& solid, double radius_mm, bool without_necks,
                                const VoxelBench& bench) {
   const voxel::Octree octree = bench.combined(solid);
@@ -58,15 +58,16 @@ voxel::Expression balls_within(const voxel::Expression& solid, double radius_mm,
                                                  bench.progress));
 }
 
-/// The width below which a neck is cut through: the least wall that printers make, and at most this share of the part's
-/// own least wall. Other walls are thinner than the least wall by at most twice the tolerance of triangles. Where balls
-/// as wide as the least wall meet in a neck, the surface turns by at least 74 degrees, or by half of that at two edges
-/// next to each other: above the least angle of NecksOptions.
+/// The width below which a neck is cut through: the least wall that printers make, and at most this share of
+/// the part's own least wall. Other walls are thinner than the least wall by at most twice the tolerance of
+/// triangles. Where balls as wide as the least wall meet in a neck, the surface turns by at least 74 degrees,
+/// or by half of that at two edges next to each other: above the least angle of NecksOptions.
 constexpr double neck_share = 0.8;
 double neck_mm(double least_wall_mm) {
   return std::min(neck_share * least_wall_mm, PrintLimits{}.least_wall_mm);
 }
-/// Half the width of the cleft that parts the two sides of a neck. Printers keep clefts from 0.5 mm on open.
+/// Half the width of the cleft that parts the two sides of a neck. Printers keep clefts of 0.5 mm and more
+/// open.
 constexpr double half_cleft_mm = 0.3;
 
 /// The union of the balls of the radius about points.
@@ -86,7 +87,7 @@ brep::Solid balls_about(const std::vector<brep::Neck>& necks, double radius_mm,
   return brep::thickened(points, {radius_mm, 0.5 * radius_mm, progress});
 }
 
-/// Records the middles of necks, one of those nearer to each other than a length.
+/// Records the middles of necks; of necks that are closer to each other than `apart_mm`, only the first.
 void record_necks(const std::vector<brep::Neck>& necks, double apart_mm, std::vector<glm::dvec3>& at_mm) {
   for (const brep::Neck& neck : necks)
     if (std::none_of(at_mm.begin(), at_mm.end(), [&](const glm::dvec3& other_mm) {
@@ -149,7 +150,7 @@ brep::Solid thick_part(const brep::LevelBody& body, const ThickPart& asked, cons
   brep::Solid middles;
   {
     const Stopwatch watch(bench.timings, part + "_core");
-    // Balls about other pieces would hang on by necks, as in balls_within().
+    // Balls about other pieces would be connected only by necks, as in balls_within().
     middles = first_piece(brep::core_of(body, {-radius_mm, asked.cell_mm, progress}));
   }
   brep::Solid whole;

@@ -13,15 +13,16 @@
 // points as files store them.
 namespace octotomy::planner {
 
-/// The union of all balls of the radius that fit within a solid: edges are rounded, and walls thinner than twice the
-/// radius are cut off. Cuts keep a tenth of the radius away from those balls, so that other surfaces do not move. If
-/// the balls are narrower than voxels, they are not resolved, and the solid is returned unchanged.
+/// The union of all balls of the radius that fit within a solid: edges are rounded, and walls thinner than
+/// twice the radius are cut off. Cuts keep a tenth of the radius away from those balls, so that other
+/// surfaces do not move. If the balls are narrower than voxels, they are not resolved, and the solid is
+/// returned unchanged.
 voxel::Expression rounded(const voxel::Expression& solid, double radius_mm, const VoxelBench& bench);
-/// rounded() with balls as wide as the least wall, about the largest connected piece of their middles: pieces that hang
-/// on by a neck thinner than the least wall are cut off, too.
+/// rounded() with balls as wide as the least wall, about the largest connected piece of their middles: pieces
+/// that are connected only by a neck thinner than the least wall are cut off, too.
 voxel::Expression thick_part(const voxel::Expression& solid, double least_wall_mm, const VoxelBench& bench);
 
-/// Keeps the largest piece. Other pieces are removed together with the voxels around them.
+/// Keeps the largest piece. The voxels of the other pieces are subtracted.
 void keep_largest(const voxel::Expression& solid, const VoxelBench& bench, VoxelSide& made);
 /// The largest piece. A finding in `made` lists the pieces that are left out.
 brep::Solid largest_piece(const brep::Solid& solid, const std::string& part, MeshSide& made);
@@ -32,15 +33,16 @@ brep::Solid printed(const brep::Solid& solid, const std::string& part, MeshSide&
 struct ThickPart {
   double least_wall_mm = 0.8;
   double cell_mm = 0.8;  ///< of the mesh's level sets; flat parts lie within an eighth of it
-  /// Levels of the body's `without`, as drills' holes, whose surface has its points within a thousandth of a cell.
-  /// That of others follows the triangles of the balls' middles, which narrow a hole by up to a 16th of a cell.
+  /// Levels of the body's `without`, such as drills' holes, whose surface points lie within a thousandth of a
+  /// cell. Other surfaces follow the triangles of the balls' middles, which narrow a hole by up to a 16th of
+  /// a cell.
   std::vector<brep::Level> holes = {};
 };
-/// The mesh of a body without walls and necks thinner than the least wall: the union of balls of that width within the
-/// body whose middles hang together, so edges are rounded. Where two sides overlap in a neck thinner than 0.6 mm or
-/// 0.8 of the least wall, a ball that leaves a cleft of 0.6 mm is cut out between them. Keeps the largest piece, as
-/// printed(). `made` lists the volume that is cut off with thin walls, and the necks. Throws as brep::core_of() and
-/// brep::boolean().
+/// The mesh of a body without walls and necks thinner than the least wall: the union of balls of that width
+/// within the body whose middles are connected, so edges are rounded. Where two sides overlap in a neck
+/// thinner than 0.6 mm and than 0.8 of the least wall, a ball that leaves a cleft of 0.6 mm is cut out
+/// between them. Keeps the largest piece, as printed(). `made` lists the volume that is cut off with thin
+/// walls, and the necks. Throws as brep::core_of() and brep::boolean().
 brep::Solid thick_part(const brep::LevelBody& body, const ThickPart& asked, const std::string& part,
                        const MeshBench& bench, MeshSide& made);
 /// The mean distance of the triangles from the body's surface, over smooth parts.
@@ -52,7 +54,7 @@ Field least_wall(double Part::*least_wall_mm) {
   return field(
              "least_wall_mm", least_wall_mm,
              "Thinner walls are cut off, and edges are rounded by half of this. Printers make walls from 0.6 "
-             "on; the default is a project's choice.")
+             "on, and 0.8 keeps 0.2 in reserve.")
       .from(0.3)
       .to(3.0);
 }

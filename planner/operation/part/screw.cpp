@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A screw's axis, and how far the screw stays from what it must not touch: roots, a nerve's canal, saw cuts.
-// Each kernel measures on its own answer to those objects; the mesh's distance is the one that counts.
+// A screw's axis, and its distances from what it must not touch: roots, a nerve's canal, saw cuts. Each
+// kernel measures with its own version of those objects; the mesh's distance is reported as the result.
 //
-// A screw at a place that is seen from a side of the head goes in along that view, where the view's line through the
-// place meets the bone first. A flap's screw meets the axis of its segment, where the segment is placed, at a right
-// angle and from a side of the head. On the uncut bone it lies where the segment's motion brings it to that place.
+// A screw at a place that is seen from a side of the head goes in along that view, where the view's line
+// through the place meets the bone first. A flap's screw meets the axis of its segment, where the segment is
+// placed, at a right angle and from a side of the head. On the uncut bone it lies where the segment's motion
+// brings it to that place.
 #include "planner/operation/part/screw.h"
 
 #include <algorithm>
@@ -65,7 +66,7 @@ void check(const Screw& screw, const FieldLocation& place) {
       place.at("away_from").refuse("names '" + object.name + "', in which the screw sits");
 }
 
-/// The gap by voxels; none if the screw or the other object has no voxels.
+/// The gap measured in voxels; none if the screw or the other object has no voxels.
 std::optional<double> voxel_gap_mm(const voxel::Octree& screw, const voxel::Octree& other) {
   if (screw.is_empty() || other.is_empty()) return std::nullopt;
   return gap_between(screw, other, std::nullopt, std::nullopt).voxel_mm;
@@ -79,8 +80,8 @@ ScrewClear clear_of_object(const Object& object, const brep::Solid& rod, const v
   return clear;
 }
 
-/// The distance of a screw from the walls of a mask or of a flap's space, on either side of them; or from the bone
-/// that a saw removes.
+/// The distance of a screw from the walls of a mask or of a flap's space, on either side of them; or from the
+/// bone that a saw removes.
 ScrewClear clear_of_cut(const Object& object, const Action& maker, const brep::Solid& rod,
                         const voxel::Octree& voxels, const std::filesystem::path& folder) {
   const voxel::Universe universe = voxels.universe();
@@ -153,8 +154,8 @@ void report(const Screw& screw, const std::vector<ScrewClear>& clearances, const
   }
 }
 
-/// The point at which a line enters bone from outside, between two places on it. Throws std::runtime_error if no
-/// bone of the object lies there, with the remedy.
+/// The point at which a line enters bone from outside, between two places on it. Throws std::runtime_error
+/// if no bone of the object lies there, with the remedy, or if the first place lies in bone.
 glm::dvec3 entry_mm(const std::string& name, const brep::Solid& bone, const glm::dvec3& from_mm,
                     const glm::dvec3& to_mm, const std::string& remedy) {
   constexpr double sample_mm = 0.1;  // walls thinner than this hold no screw
@@ -170,7 +171,7 @@ glm::dvec3 entry_mm(const std::string& name, const brep::Solid& bone, const glm:
   if (first == inside.begin())
     throw std::runtime_error(
         "bone of '" + name + "' reaches farther than " + three_figures(glm::distance(from_mm, to_mm)) +
-        " mm from the flap's axis on the side of the screw: give its flap_space more reach");
+        " mm from the flap's axis on the side of the screw: raise 'reach_mm' of its flap_space step");
   const auto at = static_cast<std::size_t>(first - inside.begin());
   glm::dvec3 outer_mm = places_mm[at - 1], inner_mm = places_mm[at];
   constexpr int halvings = 20;  // to a millionth of the step
@@ -211,7 +212,7 @@ Placed placed(const Screw& asked, const SettleBench& bench) {
   constexpr double least_across = 0.5;
   if (glm::length(square) < least_across)
     throw std::runtime_error("the view from '" + side +
-                             "' looks along the flap's axis, to less than 30 degrees: choose another 'side'");
+                             "' is less than 30 degrees off the flap's axis: choose another 'side'");
   const glm::dvec3 along = glm::normalize(square);
   const glm::dmat4 motion = place.uncut_from_placed.value_or(glm::dmat4(1.0));
   const auto here_mm = [&](double depth_mm) {
@@ -372,8 +373,10 @@ std::optional<double> hole_off_mm(const brep::Solid& solid, const ScrewAxis& axi
 Operation screw_operation() {
   constexpr auto of_flap = [](const Screw& screw) { return screw.flap.has_value(); };
   const char* const needs_flap = "applies only to 'flap': leave it out";
-  return Describe<Screw>("screw", "Places a screw: its axis goes with the bone, to guides and plates.",
-                         Makes::Object)
+  return Describe<Screw>(
+             "screw",
+             "Places a screw, whose axis moves with its bone and sets the holes of guides and plates.",
+             Makes::Object)
       .takes(field("object", &Screw::object, "The bone or piece in which the screw sits.").required())
       .takes(field("at", &Screw::at,
                    "Where its axis meets the bone's surface, or with 'side' a place before or behind that: "
@@ -413,7 +416,7 @@ Operation screw_operation() {
                 "Saw steps, masks and flaps' spaces of this plan whose cuts the screw must stay away from."))
       .takes(field("least_mm", &Screw::least_mm,
                    "The least distance from the screw to 'away_from' and 'cuts'; a smaller one is a finding. "
-                   "The default is a project's choice.")
+                   "1 is published for screws between roots.")
                  .from(0.0)
                  .to(20.0))
       .example(R"({"id": "left_1", "do": "screw", "object": "maxilla", "at": [18, -80, -34],

@@ -18,9 +18,11 @@ struct Screw {
   ObjectName object;       ///< the bone or piece in which it sits
   std::optional<Mark> at;  ///< where its axis meets the surface
   std::optional<glm::dvec3> direction;
-  std::optional<ObjectName> flap;  ///< in place of both: a space of a flap, whose axis the screw's axis meets
+  std::optional<ObjectName> flap;  ///< in place of `at` and `direction`: a space of a flap, whose axis
+                                   ///< the screw's axis meets
   double share = 0.5;              ///< where on the flap's axis
-  /// A view of the head: from there it is screwed in where the bone is placed. With `at`, in place of `direction`.
+  /// The view of the head from whose side the screw is driven in. With `at` it replaces `direction`; with
+  /// `flap` it refers to the segment at its new place.
   std::optional<std::string> side;
   double diameter_mm = 2.0, length_mm = 6.0;
   std::vector<ObjectName> away_from, cuts;
@@ -38,8 +40,8 @@ struct ScrewAxis {
   double diameter_mm = 2.0, length_mm = 6.0;
 };
 
-/// The axis of a screw of the plan, or of a screw that steps moved. Throws std::runtime_error, which names the
-/// object, if it is no screw.
+/// The axis of a screw of the plan, or of a screw that steps of the plan have moved. Throws
+/// std::runtime_error, which names the object, if it is no screw.
 ScrewAxis screw_axis(const std::string& name, const SettleBench& bench);
 
 /// The distance of a screw from one object, in both kernels.

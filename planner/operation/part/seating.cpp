@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Whether a part can be put on: how deep bone or teeth reach into the space that it passes through on its way
-// to its place. Each kernel sweeps its own answer to the part and compares it with its own answers to the
-// objects. The mesh's depth is the answer; the voxels' must agree within their resolution.
+// to its place. Each kernel sweeps its own version of the part and compares it with its own versions of the
+// objects. The mesh's depth is the result; the voxels' must agree within their resolution.
 #include "brep/shape/seating.h"
 
 #include <cmath>
@@ -68,9 +68,8 @@ std::string sentence_of(const Found& found, const std::string& part) {
   return "'" + part + "' binds on '" + found.object + "': it would go " + three_figures(at.depth_mm) +
          " mm into it at " + voxel::rounded(at.at_mm) + " mm, from " + three_figures(at.first_mm) + " to " +
          three_figures(at.last_mm) +
-         " mm before its place; take the object's shadow along the insertion direction away from the part, "
-         "or "
-         "choose another direction";
+         " mm before its place; subtract the object's shadow along the insertion direction from the part, "
+         "or choose another direction";
 }
 
 Found find(const Object& part, const Object& object, const glm::dvec3& along, const AnswerBench& bench) {
@@ -139,16 +138,17 @@ Json measure(const Seating& asked, const AnswerBench& bench) {
 
 Operation seating_operation() {
   return Describe<Seating>("seating",
-                           "Tests whether a part can be put on: how deep objects reach into its path.",
+                           "Tests whether a part can be put on, by how deep objects reach into its path.",
                            Makes::Measurement)
       .takes(field("object", &Seating::part, "The part at its place.").required())
       .takes(field("against", &Seating::against, "The bone or teeth on which it sits.").required().from(1))
       .takes(insertion_direction(&Seating::insertion))
       .takes(insertion_view(&Seating::insertion))
       .takes(
-          field("tolerance_mm", &Seating::tolerance_mm,
-                "The depth that is tolerated, because parts give: an undercut of this depth lets a part snap "
-                "on.")
+          field(
+              "tolerance_mm", &Seating::tolerance_mm,
+              "The depth that is tolerated, because parts are elastic: an undercut of this depth lets a part "
+              "snap on.")
               .from(0.0)
               .to(2.0))
       .example(R"({"id": "goes_on", "do": "seating", "object": "advanced", "against": ["rest"],

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // An object with all that lies behind it along an insertion direction: its undercuts blocked out. A part from
-// which this is subtracted can be slid on along the direction. Each kernel works on its own answer to the
+// which this is subtracted can be slid on along the direction. Each kernel works on its own version of the
 // object; the direction and the end plane are determined first, so that both kernels use the same.
 //
 // With a tolerated undercut the shadow is that of the object's points deeper than the tolerance, united with
-// the object. On its way a part then meets points of the object that are at most so deep below its surface.
+// the object. On its way a part then meets only points of the object that are at most that deep.
 #include "brep/shape/shadow.h"
 
 #include <algorithm>
@@ -77,9 +77,9 @@ double cell_mm(const brep::Solid& solid, double tolerance_mm) {
   return std::max(0.25 * tolerance_mm, std::max({extent.x, extent.y, extent.z}) / 200.0);
 }
 
-/// The part of a shadow within the universe, at whose border the voxels of the shadow end too. The plane at
-/// the end of an oblique shadow always extends beyond the universe; this part does not count as lost. A verb
-/// that works on meshes alone has no universe.
+/// The part of a shadow within the universe, where the voxels of the shadow end too. The end plane of an
+/// oblique shadow extends beyond the universe; what is cut off there is not reported as lost. A verb that
+/// works on meshes alone has no universe.
 brep::BooleanResult cut_at_universe(const brep::Solid& shadow, bool has_voxels, const MeshBench& bench) {
   const glm::dvec3 &low = bench.low_mm, &high = bench.high_mm;
   if (!has_voxels || shadow.empty() ||
@@ -94,7 +94,7 @@ brep::BooleanResult cut_at_universe(const brep::Solid& shadow, bool has_voxels, 
 }
 
 void voxels(const Shadow& shadow, const VoxelBench& bench, VoxelSide& made) {
-  made.lineage = "columns of the octree filled from their first crossing of its surface";
+  made.lineage = "columns of the octree, filled from where they first cross its surface";
   const VoxelSide& object = bench.object(shadow.object.name);
   if (object.octree.is_empty()) {
     made.symbol = voxel::Expression(made.octree);
@@ -111,7 +111,7 @@ void voxels(const Shadow& shadow, const VoxelBench& bench, VoxelSide& made) {
     made.octree = object.octree;
     made.symbol = object.symbol;
     made.findings.push_back(
-        "no point of the object is deeper than the tolerated undercut, so nothing is blocked out: take a "
+        "no point of the object is deeper than the tolerated undercut, so nothing is blocked out: choose a "
         "smaller one");
     return;
   }
@@ -123,9 +123,10 @@ void voxels(const Shadow& shadow, const VoxelBench& bench, VoxelSide& made) {
   const double apart_mm =
       std::abs(found.far_end_mm + shadow.tolerance_mm.value_or(0.0) + shadow.beyond_mm - shadow.end_mm);
   if (apart_mm > glm::length(bench.universe.lattice().spacing_mm()))
-    made.findings.push_back("the object's far end lies " + three_figures(apart_mm) +
-                            " mm apart in voxels and in the mesh: a thin tip has no voxels, so take smaller "
-                            "ones or cut the tip off");
+    made.findings.push_back(
+        "the object's far end lies " + three_figures(apart_mm) +
+        " mm apart in voxels and in the mesh: a thin tip has no voxels, so choose smaller "
+        "voxels or cut the tip off");
   const voxel::Expression window(found.window);
   made.octree = bench.combined(shadow.tolerance_mm ? window | voxel::Expression(object.octree) : window);
   made.symbol = bench.within_universe(shadow.tolerance_mm ? window | *object.symbol : window);
@@ -172,7 +173,7 @@ void bound(const Shadow& shadow, const BoundBench& bench, Object& made) {
         made.mesh.whole->measures().area_mm2);
     made.bound.reshaped = {shadow.object.name};
   }
-  // The outline of whole voxels is too wide by up to half an edge.
+  // The outline of whole voxels is too wide by up to half a voxel's edge.
   const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
   if (is_whole_voxels(object.voxel))
     made.bound.measured_apart_mm += 0.5 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
@@ -188,7 +189,7 @@ void bound(const Shadow& shadow, const BoundBench& bench, Object& made) {
 
 Operation shadow_operation() {
   return Describe<Shadow>("shadow",
-                          "Blocks out an object's undercuts: the object and everything behind it along an "
+                          "Blocks out an object's undercuts: fills everything behind it along an "
                           "insertion direction.",
                           Makes::Object)
       .takes(field("object", &Shadow::object, "The object.").required().positional("solid"))

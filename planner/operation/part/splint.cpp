@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A splint between two jaws: a slab along the arch less what the teeth need.
+// A splint between two jaws: a slab along the arch, without the space that the teeth take up.
 //
 // 1 The arch's plane and a band about the curve through its points; the slab reaches `depth_mm` over the tips
-//   of both rows of teeth. The jaws near the band are all that counts.
-// 2 The insertion directions, typed or found: that of a grid along which the least of the teeth is undercut.
-// 3 From the slab are taken the teeth grown by the offset, and the shadow of the teeth grown by the offset less
-//   the tolerated undercut. That shadow lies within the grown teeth where there is no undercut, so that there
-//   the fitting surface is that of the grown teeth.
-// 4 Walls thinner than asked are cut off: only the part that is covered by balls of that diameter within the
-//   splint stays.
+//   of both rows of teeth. Only the jaws near the band are used.
+// 2 The insertion directions, typed or found: of a grid of directions, the one with the least undercut.
+// 3 From the slab are taken the teeth grown by the offset, and the shadow of the teeth grown by the offset
+//   less the tolerated undercut. That shadow lies within the grown teeth where there is no undercut, so that
+//   there the fitting surface is that of the grown teeth.
+// 4 Walls thinner than the least wall are cut off: only the part that is covered by balls of that diameter
+//   within the splint stays.
 // 5 The largest piece, with points that files for printers can hold.
 //
-// The mesh kernel does 3 and 4 without Booleans, on distances to the surfaces (brep/shape/level_body.h). The voxel
-// kernel combines windows of distances. 1 and 2 are settled once, by mesh and voxels, and are shared values of both kernels.
+// The mesh kernel does 3 and 4 without Booleans, on distances to the surfaces (brep/shape/level_body.h). The
+// voxel kernel combines windows of distances. 1 and 2 are settled once, by mesh and voxels, and are shared
+// values of both kernels.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -40,9 +41,9 @@ namespace {
 
 /// The values of a jaw that settle() determines.
 struct SplintJaw {
-  Slab near;                  ///< the part of the jaw that counts
-  glm::dvec3 along{0, 0, 1};  ///< unit, LPS: in which the splint moves onto it
-  double end_mm = 0.0;        ///< p . along, behind all that counts
+  Slab near;                  ///< the part of the jaw that is used
+  glm::dvec3 along{0, 0, 1};  ///< unit, LPS: the direction in which the splint moves onto it
+  double end_mm = 0.0;        ///< p . along of a plane behind `near` and the slab
   double tip_mm = 0.0;        ///< p . look of the teeth's tips
 };
 
@@ -56,7 +57,7 @@ struct Splint {
   SplintJaw jaws[2];  ///< upper, lower
 };
 
-/// The size of the space around the band in which a jaw counts: beside the band, and above and below it.
+/// The size of the space around the band in which a jaw is used: beside the band, and above and below it.
 constexpr double margin_mm = 3.0, reach_mm = 12.0;
 /// Searched directions are tilted from the arch's normal by at most this, in these steps.
 constexpr double search_deg = 20.0, search_step_deg = 10.0;
@@ -99,7 +100,7 @@ void need_one_jaw(const std::vector<glm::dvec3>& points_mm, const Splint& splint
 }
 
 /// The tips of a jaw's teeth in the band: the least p . look of the upper jaw, the largest of the lower jaw.
-/// `column` is the band, extended up and down as far as jaws count.
+/// `column` is the band, extended up and down as far as jaws are used.
 double tip_of(const brep::Solid& jaw, const Slab& column, double sign, const std::string& name,
               const SettleBench& bench) {
   const brep::Solid teeth =
@@ -112,7 +113,7 @@ double tip_of(const brep::Solid& jaw, const Slab& column, double sign, const std
   if (!(std::abs(sign * tip_mm - column.frame.height_mm) < reach_mm - cut_mm))
     throw std::runtime_error("'" + name + "' has no tips of teeth within " + three_figures(reach_mm) +
                              " mm above or below the arch's points: give points on its biting surfaces, and "
-                             "jaws that end there");
+                             "let the object hold this jaw alone");
   return sign * tip_mm;
 }
 
@@ -188,7 +189,7 @@ Splint settle(const Splint& asked, const SettleBench& bench) {
     } else {
       of.along = found_direction(bench.objects.at(name_of(asked, jaw).name), slab, sign, bench, details);
     }
-    // The jaw counts slightly beyond the slab, so that its cut stays away from the splint.
+    // The jaw is used up to slightly beyond the slab, so that its cut stays away from the splint.
     (jaw == 0 ? of.near.high_mm : of.near.low_mm) =
         jaw == 0 ? slab.high_mm + margin_mm : slab.low_mm - margin_mm;
     of.end_mm = std::max(of.near.far_end_mm(of.along), slab.far_end_mm(of.along)) + margin_mm;
@@ -201,7 +202,7 @@ Splint settle(const Splint& asked, const SettleBench& bench) {
   bench.details["height_mm"] = slab.high_mm - slab.low_mm;
   if (slab.frame.off_plane_mm > asked.depth_mm)
     bench.findings.push_back("points of the arch lie up to " + three_figures(slab.frame.off_plane_mm) +
-                             " mm off their plane: teeth there are covered that much less or more");
+                             " mm off their plane: teeth there are covered less or more by this much");
   return made;
 }
 
@@ -296,7 +297,7 @@ void bound(const Splint& splint, const BoundBench& bench, Object& made) {
     const Object& object = bench.objects.at(name_of(splint, jaw).name);
     inherit(object, made);
     if (!object.mesh.whole || !made.mesh.whole || made.mesh.whole->empty()) continue;
-    // The mesh kernel keeps exact distances up to the last surface, but of shrunk teeth, which cast a shadow.
+    // The mesh kernel uses exact distances up to the last surface, except for the shadow of shrunk teeth.
     const double cell_mm = shadow_by_mm(splint) < 0.0 ? fit_cell_mm : 0.0;
     double of_mm =
         verify::offset_allowance_mm(
@@ -340,11 +341,11 @@ Operation splint_operation() {
                    "The gap between splint and teeth; 0.05 to 0.2 are published.")
                  .from(0.05)
                  .to(0.5))
-      .takes(
-          field("depth_mm", &Splint::depth_mm,
-                "How far the splint reaches over the tips of both rows; published splints of 5 seat badly.")
-              .from(0.5)
-              .to(6.0))
+      .takes(field("depth_mm", &Splint::depth_mm,
+                   "How far the splint reaches over the tips of both rows; published splints that reach 5 "
+                   "fit badly.")
+                 .from(0.5)
+                 .to(6.0))
       .takes(field("thickness_mm", &Splint::thickness_mm,
                    "Thinner walls are cut off; 0.6 is the least thickness published for splints.")
                  .from(0.6)
@@ -353,11 +354,13 @@ Operation splint_operation() {
                    "The splint's width across the arch; molars are about 10 wide.")
                  .from(4.0)
                  .to(40.0))
-      .takes(field("tolerance_mm", &Splint::tolerance_mm,
-                   "How far the splint may reach into undercuts of the gap's surface, so that it snaps on; "
-                   "the default is the one published for splints.")
-                 .from(0.0)
-                 .to(0.5))
+      .takes(
+          field(
+              "tolerance_mm", &Splint::tolerance_mm,
+              "How far the splint may reach into undercuts of the teeth with their gap, so that it snaps on; "
+              "the default is the one published for splints.")
+              .from(0.0)
+              .to(0.5))
       .takes(field("upper_direction", &Splint::upper_direction,
                    "The direction in which the splint moves onto the upper teeth, LPS. Default: the one of "
                    "least undercut within 20 degrees of the arch's normal.")

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A scan of teeth laid onto an object, and the object's crowns replaced by the scan's.
+// A scan of teeth aligned with an object, and the object's crowns replaced by the scan's.
 //
-// settle() reads the scan and lays it: by points, then by the crowns' surfaces. Patches that the fit did not use
-// state how far the scan is off. Only the mesh kernel blends surfaces: its answer is voxelised, so that later steps
-// find it in both kernels. The certificate reads the scan's triangles and the object's own samples by other code.
+// settle() reads the scan and aligns it by points, then by the crowns' surfaces. Patches that the fit did not
+// use measure the error. Only the mesh kernel blends surfaces: its result is voxelised, so that later steps
+// have it in both kernels. The certificate reads the scan's triangles and the object's own samples by other
+// code.
 #include "brep/align/tooth_scan.h"
 
 #include <algorithm>
@@ -114,7 +115,7 @@ void report(const ToothScan& made, const SettleBench& bench) {
                                        {"is_left_out", patch.is_left_out}});
   }
   details["definition"] =
-      "error is the root mean square distance of the scan's points, as laid, from where they truly are; held "
+      "error is the root mean square distance of the scan's points, as laid, from their true places; held "
       "patches are those that the fit did not use, and their distances are to the object's surface";
   bench.findings.push_back(file_name(made) + " lies " + three_figures(laid.error_mm) + " \u00b1 " +
                            three_figures(laid.half_width_mm) + " mm off its true place in 99 of 100 cases");
@@ -172,7 +173,7 @@ void triangles(const ToothScan& asked, const MeshBench& bench, MeshSide& made) {
   made.findings.push_back(made.lineage);
   if (of.scan_mm2 == 0.0)
     made.findings.push_back(
-        "WARN none of the crowns is the scan's alone: take a smaller 'blend_mm', or a larger "
+        "WARN no crown's surface comes from the scan alone: take a smaller 'blend_mm', or a larger "
         "'depth_mm' or 'radius_mm'");
 }
 

@@ -18,9 +18,9 @@ struct Cephalogram {
 };
 
 /// The patient's radiograph from the right, face to the right, in true scale and in the head's orientation,
-/// with the landmarks and the lines of the lateral measures: the patient pale, the plan orange where it
-/// differs. The picture is a square around the landmarks with a margin of 25 mm. Throws Stopped. Cost: one
-/// ray per pixel, at most two per voxel.
+/// with the landmarks and the lines of the lateral measures: pale blue as scanned, orange as planned where
+/// they differ. The picture is a square around the landmarks with a margin of 25 mm. Throws Stopped. Cost: at
+/// most one ray per pixel; rays lie at least half a voxel apart, except that each side has 64 or more.
 Cephalogram draw_cephalogram(const voxel::GreyOctree& grey, const Cephalometry& definitions,
                              const std::vector<MovedLandmark>& landmarks, const glm::dmat3& lps_from_head,
                              int size_px, const voxel::Progress& progress = {});

@@ -95,7 +95,8 @@ class Reader {
     if (measure.points.size() != kind.points)
       refuse(where + ", points", "must be " + std::to_string(kind.points) + " landmarks");
     if (measure.of.size() != (kind.points == 0 ? 2u : 0u))
-      refuse(where + ", of", kind.points == 0 ? "must be two measures" : "is for a difference or a share");
+      refuse(where + ", of",
+             kind.points == 0 ? "must be two measures" : "applies only to a difference or a share");
     if (measure.plane == Plane::Space &&
         (kind.kind == Kind::Bend || kind.kind == Kind::Tilt || kind.kind == Kind::Across))
       refuse(where + ", plane",

@@ -11,10 +11,10 @@ namespace octotomy::planner {
 
 /// The definition of a measure by its points. A line runs from its first point to its second.
 enum class CephalometricKind {
-  Angle,       ///< a, v, b: at v, 0 to 180 degrees
-  Bend,        ///< a, v, b: 180 degrees minus the angle at v; negative if v lies behind the line a, b
-  Lines,       ///< a, b, c, d: between the directions a to b and c to d, 0 to 180 degrees
-  Tilt,        ///< a, b: angle of a to b above the horizontal, degrees; positive if b is higher
+  Angle,  ///< a, v, b: at v, 0 to 180 degrees
+  Bend,   ///< a, v, b: 180 degrees minus the angle at v; negative if v lies behind the line a, b (a above b)
+  Lines,  ///< a, b, c, d: between the directions a to b and c to d, 0 to 180 degrees
+  Tilt,   ///< a, b: angle of a to b above the horizontal, degrees; positive if b is higher
   Distance,    ///< a, b: mm
   Along,       ///< a, b, p, q: from p to q along the line a, b, mm
   Across,      ///< a, b, p, q: from p to q perpendicular to the line a, b, mm; upward is positive if a to b
@@ -54,7 +54,7 @@ struct Cephalometry {
 
 /// Landmarks' positions by their names, in any frame.
 using LandmarkPlaces = std::map<std::string, glm::dvec3>;
-/// The placed landmarks, and those that were not placed but are means of others.
+/// Adds each landmark that was not placed but is the mean of landmarks that are known.
 LandmarkPlaces with_means(const Cephalometry& definitions, LandmarkPlaces points);
 
 /// Throws std::runtime_error with the position in the text for an unknown key, kind, landmark or measure (a

@@ -30,10 +30,10 @@ double degrees(double radians) {
   return radians * 180.0 / std::numbers::pi;
 }
 
-/// Measures in the head's directions: x to the left, y back, z up.
+/// Evaluates one measure in the head's frame: x to the left, y back, z up.
 class Ruler {
  public:
-  /// `of` numbers the measure's points.
+  /// `of` contains the index in `points` of each of the measure's points.
   Ruler(const CephalometricMeasure& measure, const Points& points, const std::vector<std::size_t>& of)
       : measure_(measure) {
     assert(of.size() <= points_.size());
@@ -72,15 +72,16 @@ class Ruler {
   glm::dvec3 line(std::size_t from, std::size_t to) const {
     const glm::dvec3 line = points_[to] - points_[from];
     if (!(glm::length(line) > shortest_line_mm))
-      throw voxel::InvalidInput(measure_.name + ": " + measure_.points[from] + " and " + measure_.points[to] +
-                                " lie in one point, so that no line goes through them");
+      throw voxel::InvalidInput(
+          measure_.name + ": " + measure_.points[from] + " and " + measure_.points[to] +
+          " lie at the same place, so that they define no line: place one of them anew");
     return line;
   }
   static double angle(const glm::dvec3& a, const glm::dvec3& b) {
     return degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));
   }
-  /// The component of `b` perpendicular to a direction: upward for a direction that points forward (in the
-  /// frontal plane: to the left), and forward for one that points down.
+  /// The component of `b` perpendicular to a direction. Upward is positive if the direction points forward
+  /// (in the frontal plane: to the left); forward (to the left) is positive if it points down.
   double across(const glm::dvec3& direction, const glm::dvec3& b) const {
     const double turn = measure_.plane == Plane::Lateral ? glm::cross(direction, b).x * -1.0
                                                          : glm::cross(direction, b).y * -1.0;
@@ -94,7 +95,8 @@ class Ruler {
 /// Values of a chart's measures, in their order.
 using Values = std::vector<double>;
 
-/// A measure whose landmarks are all present, with the indices of these and of its parts in the chart.
+/// A measure whose landmarks are all known, with the chart's indices of these landmarks and of the measures
+/// from which it is computed.
 struct ChartedMeasure {
   const CephalometricMeasure* definition = nullptr;
   std::vector<std::size_t> points, of;
@@ -117,7 +119,8 @@ class Chart {
 
   const std::vector<ChartedMeasure>& measures() const { return measures_; }
   const auto& lacking() const { return lacking_; }
-  /// Precondition: the landmarks of the chart, in their order. Landmarks that no measure uses are not read.
+  /// Precondition: `landmarks_mm` has the order of the constructor's landmarks. Those that no measure uses
+  /// are not read.
   Values values(const Points& landmarks_mm) const {
     Points points(places_.size());
     for (const std::size_t place : used_)
@@ -127,7 +130,7 @@ class Chart {
     for (const ChartedMeasure& measure : measures_) values.push_back(value(measure, points, values));
     return values;
   }
-  /// Landmarks that the measures use, by number.
+  /// Indices of the landmarks that the measures use.
   std::vector<std::size_t> used_landmarks() const {
     std::vector<std::size_t> numbers;
     for (const std::size_t place : used_)
@@ -153,7 +156,7 @@ class Chart {
     places_.push_back(std::move(mean));
   }
 
-  /// A measure is defined after its parts, so their missing landmarks are already known.
+  /// A measure is defined after the measures of its `of`, so their missing landmarks are already known.
   void add(const CephalometricMeasure& measure) {
     std::set<std::string> missing;
     for (const std::string& name : measure.points)
@@ -224,7 +227,7 @@ class Trials {
   std::vector<std::vector<double>> found_;
 };
 
-/// The landmarks along the head's directions, before and after.
+/// Coordinates of the landmarks along the head's directions, before and after the plan's motions.
 class Placing {
  public:
   Placing(const std::vector<MovedLandmark>& landmarks, const glm::dmat3& lps_from_head,

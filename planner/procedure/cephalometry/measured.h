@@ -36,7 +36,7 @@ struct LandmarkDoubt {
   std::uint64_t seed = 1;
 };
 
-/// The measures that the landmarks allow. Values are those of the placed landmarks. Intervals come from
+/// Computes the measures whose landmarks are known, from the placed landmarks. Intervals come from
 /// `trials` trials in which each placed landmark has a random, independent, normally distributed error.
 /// Throws std::invalid_argument, which names the measure, if a line's two points coincide. The same seed
 /// produces the same bits. Cost: less than a microsecond per trial and measure or landmark.

@@ -48,7 +48,8 @@ const Step& step_of(const Plan& plan, const std::string& id) {
   return *std::find_if(plan.steps.begin(), plan.steps.end(), [&](const Step& step) { return step.id == id; });
 }
 
-/// Squared distances from a point to the nearest voxel of a piece, and of the other bone of `whole`.
+/// Squared distances in mm² from a point to the nearest voxel of a piece, and to the nearest other voxel of
+/// the objects from which the piece was cut.
 struct Nearest {
   double piece = std::numeric_limits<double>::infinity();
   double other = std::numeric_limits<double>::infinity();
@@ -77,7 +78,7 @@ Nearest nearest(const glm::dvec3& p_mm, const voxel::Octree& piece,
   return found;
 }
 
-/// The position of a point of the scan after the motions from which the outcome is made. Once the point has
+/// The position of a point of the scan after the motions that the outcome contains. Once the point has
 /// moved with a piece, only pieces cut from that piece move it further. A mirror image does not move its
 /// original.
 glm::dvec3 carried_mm(glm::dvec3 p_mm, const Plan& plan, const Evaluation& evaluated,
@@ -111,7 +112,7 @@ std::vector<brep::Landmark> carried(const std::vector<NamedPoint>& landmarks, co
   return now;
 }
 
-/// Adds landmarks to the plan's step that names landmarks, or adds such a step.
+/// Adds landmarks to the plan's first step `landmarks` with typed points, or adds such a step.
 void add_landmarks(const std::vector<brep::Landmark>& landmarks, const Plan& plan, Json& whole) {
   Json added = Json::array();
   for (const brep::Landmark& landmark : landmarks) {
@@ -122,9 +123,10 @@ void add_landmarks(const std::vector<brep::Landmark>& landmarks, const Plan& pla
       added.push_back(
           {{"name", landmark.name}, {"point_mm", {landmark.p_mm.x, landmark.p_mm.y, landmark.p_mm.z}}});
     else if (glm::distance(known->p_mm, landmark.p_mm) > same_mm)
-      throw std::runtime_error("the landmark '" + landmark.name + "' lies " +
-                               std::to_string(glm::distance(known->p_mm, landmark.p_mm)) +
-                               " mm away in the plan: leave it out, or change the plan's");
+      throw std::runtime_error(
+          "the landmark '" + landmark.name + "' lies " +
+          std::to_string(glm::distance(known->p_mm, landmark.p_mm)) +
+          " mm from the plan's landmark of this name: leave it out, or change the plan's");
   }
   if (added.empty()) return;
   for (Json& step : whole["steps"])
@@ -153,7 +155,7 @@ bool is_letter(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
-/// Gives the steps of a procedure unique names.
+/// Replaces the names in a procedure's steps by unique ones.
 class Renaming {
  public:
   /// `scan`: the plan's name of the patient's scan, which procedures call "ct".
@@ -190,7 +192,7 @@ class Renaming {
     return none;
   }
 
-  /// Names of steps become their new names. Landmarks become positions, because they may have moved.
+  /// Replaces names of steps by their new names, and landmarks by positions, because these may have moved.
   Json renamed(const Json& value, bool names_objects, bool names_points) const {
     if (value.is_string()) {
       const auto& text = value.get_ref<const std::string&>();
@@ -258,7 +260,7 @@ void need_used_values(const Procedure& procedure, const std::map<std::string, do
         std::any_of(procedure.values.begin(), procedure.values.end(),
                     [&, &name = name](const ProcedureValue& value) { return value.name == name; }))
       throw std::runtime_error("value " + name + " changes nothing: the procedure acts on '" + on +
-                               "', whose bone the plan has chosen: leave it out");
+                               "', an object that the plan has already: leave the value out");
 }
 
 }  // namespace
@@ -295,8 +297,8 @@ Chained chained(const Plan& plan, const Evaluation& evaluated, const Procedure& 
   const std::optional<std::string> outcome = outcome_of(plan);
   if (!outcome)
     throw std::runtime_error(
-        "the plan has no step 'planned' or 'rebuilt' for a further procedure to act on: give its last object "
-        "this name");
+        "the plan has no step 'planned' or 'rebuilt' for a further procedure to act on: name its last object "
+        "'planned'");
   need_used_values(procedure, input.values, *outcome);
   Chained result;
   result.plan = Json::parse(plan.text);
@@ -316,8 +318,8 @@ Chained chained(const Plan& plan, const Evaluation& evaluated, const Procedure& 
 
   std::set<std::string> taken;
   for (const Step& step : placed.steps) taken.insert(step.id);
-  // Compared with the names that the procedure would use: the prefix "le_fort_i_" alone also fits the steps
-  // of le_fort_i_two_piece.
+  // Whole names are compared, because the prefix "le_fort_i_" alone also fits the steps of
+  // le_fort_i_two_piece.
   const auto is_free = [&](const std::string& prefix) {
     return std::none_of(procedure.steps.begin(), procedure.steps.end(), [&](const Json& step) {
       return taken.contains(prefix + step.at("id").get<std::string>());

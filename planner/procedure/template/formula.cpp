@@ -66,7 +66,7 @@ Sum multiplied(const Sum& a, const Sum& b) {
     if (factor * by != 0.0) made.terms[name] = factor * by;
   return made;
 }
-/// `by` is not zero.
+/// Precondition: `by` is not zero.
 Sum divided(const Sum& a, const Sum& by) {
   if (!by.terms.empty()) return term("(" + text_of(a) + ") / (" + text_of(by) + ")");
   Sum made{{}, a.constant / by.constant};
@@ -76,20 +76,20 @@ Sum divided(const Sum& a, const Sum& by) {
 
 class Parser {
  public:
-  /// Without names every name is a term.
+  /// If `names` is null, every name becomes a term.
   Parser(std::string_view text, const std::map<std::string, double>* names) : text_(text), names_(names) {}
 
   Sum whole() {
     Sum value = sum();
     if (at_ != text_.size()) refuse("expected an operator or the end");
-    if (!std::isfinite(value.constant)) refuse("is no finite number");
+    if (!std::isfinite(value.constant)) refuse("the result is not a finite number");
     return value;
   }
 
  private:
   [[noreturn]] void refuse(const std::string& what) const {
-    throw std::runtime_error("formula '" + std::string(text_) + "', at " + std::to_string(at_ + 1) + ": " +
-                             what);
+    throw std::runtime_error("formula '" + std::string(text_) + "', character " + std::to_string(at_ + 1) +
+                             ": " + what);
   }
   void skip_blanks() {
     while (at_ < text_.size() && text_[at_] == ' ') ++at_;
@@ -125,7 +125,7 @@ class Parser {
         value = multiplied(value, factor());
       } else if (take('/')) {
         const Sum by = factor();
-        if (by.terms.empty() && by.constant == 0.0) refuse("divides by zero");
+        if (by.terms.empty() && by.constant == 0.0) refuse("a division by zero");
         value = divided(value, by);
       } else {
         return value;
@@ -154,7 +154,7 @@ class Parser {
     double value = 0.0;
     const char* begin = text_.data() + at_;
     const auto read = std::from_chars(begin, text_.data() + text_.size(), value);
-    if (read.ec != std::errc()) refuse("is no number");
+    if (read.ec != std::errc()) refuse("expected a number");
     at_ += static_cast<std::size_t>(read.ptr - begin);
     skip_blanks();
     return {{}, value};
@@ -171,7 +171,7 @@ class Parser {
     at_ = begin;
     std::vector<std::string> known;
     for (const auto& [each, unused] : *names_) known.push_back(each);
-    refuse("nothing is called '" + name + "'" + suggestion(name, known));
+    refuse("there is no value or landmark '" + name + "'" + suggestion(name, known));
   }
   Sum call(const std::string& name, std::size_t begin) {
     std::vector<Sum> arguments{sum()};

@@ -12,13 +12,13 @@ namespace octotomy::planner {
 /// for an unknown name with the nearest one; for a division by zero.
 double value_of(std::string_view formula, const std::map<std::string, double>& names);
 
-/// A formula as a sum of terms: factors by what they multiply, and a constant. A name is a term. So is all that is no sum,
-/// such as a product of two names or a call; it is called by a text that is the same for the same formula.
+/// A formula as a sum: the factor of each term, and a constant. A term is a name, or a product, quotient or
+/// call that contains names; the key of such a term is its text, which is the same for the same formula.
 struct Sum {
   std::map<std::string, double> terms;
   double constant = 0.0;
 };
-/// Needs no values of names. Throws std::runtime_error as value_of(), except for unknown names.
+/// Needs no values for the names. Throws std::runtime_error as value_of(), except for unknown names.
 Sum sum_of(std::string_view formula);
 
 }  // namespace octotomy::planner

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Every formula of the procedure's file with its number in the plan is an equation. Values are read in this order:
-//   1. from formulas of one value alone, and from two formulas that differ by one value alone, as a cut and the other side
-//      of its kerf do; repeated with the values read so far
+// Every formula of the procedure's file with its number in the plan is an equation. Values are read in this
+// order:
+//   1. from formulas with one value and nothing else, and from two formulas that differ by one value only,
+//      such as a cut and the other side of its kerf; repeated with the values read so far
 //   2. from formulas with landmarks, by bisection
-// Each equation that states a value has a vote. The number is the one with the fewest decimals that rounds as the plan's.
+// Each equation votes for a number, and the most frequent number is elected. The result is the number with
+// the fewest decimals that rounds to the elected one.
 #include "planner/procedure/template/planned_values.h"
 
 #include <algorithm>
@@ -19,16 +21,18 @@
 namespace octotomy::planner {
 namespace {
 
-/// The largest difference between a formula's value and its number in the plan, with a millionth more for the arithmetic.
+/// The largest difference between a formula's value and its number in the plan, plus a millionth of it for
+/// rounding errors.
 constexpr double rounding = 0.5 / roundings_per_unit * (1.0 + 1e-6);
 
 struct Equation {
   std::string formula;
-  Sum sum;  ///< of the formula, minus the values that are read
+  Sum sum;  ///< of the formula; its constant includes the values read so far
   double number = 0.0;
 };
 
-/// Adds the equations of a step of the file and the same step of the plan. Lists of another length were edited.
+/// Adds the equations of a step of the file and the same step of the plan. Lists that differ in length were
+/// edited and are left out.
 void add_equations(const Json& own, const Json& planned, std::vector<Equation>& equations) {
   if (own.is_string() && own.get_ref<const std::string&>().starts_with('=')) {
     const std::string formula = own.get<std::string>().substr(1);
@@ -76,7 +80,8 @@ std::optional<PlannedValue> elected(const std::vector<Vote>& votes) {
   return PlannedValue{with_fewest_decimals(*most), most_followers == std::ssize(votes)};
 }
 
-/// Votes of equations whose only term is the value, or of pairs that differ by nothing else.
+/// Votes of equations whose only term is the value; if there are none, of pairs of equations that differ in
+/// nothing else.
 std::vector<Vote> votes_without_landmarks(const std::vector<Equation>& equations, const std::string& name) {
   struct Side {
     double factor = 0.0, number = 0.0;
@@ -99,7 +104,7 @@ std::vector<Vote> votes_without_landmarks(const std::vector<Equation>& equations
   return alone.empty() ? paired : alone;
 }
 
-/// The value of a formula; none where it has none, as where it names what is not known.
+/// The value of a formula; none if it cannot be evaluated, for example because a name is unknown.
 std::optional<double> value_if_any(const std::string& formula, const std::map<std::string, double>& names) {
   try {
     return value_of(formula, names);
@@ -108,7 +113,8 @@ std::optional<double> value_if_any(const std::string& formula, const std::map<st
   }
 }
 
-/// The number for which a formula is the plan's, sought in the value's range and as far again on both sides.
+/// The value for which a formula yields the plan's number. Searched in the value's range and, on both sides,
+/// one more width of that range.
 std::optional<Vote> vote_by_bisection(const Equation& equation, const ProcedureValue& value,
                                       std::map<std::string, double> names) {
   const auto residual = [&](double at) {
@@ -135,7 +141,7 @@ std::optional<Vote> vote_by_bisection(const Equation& equation, const ProcedureV
   return std::nullopt;
 }
 
-/// Whether a formula of a sum may have a name: a call has those of its text.
+/// Whether a formula may use a name. In the terms for products and calls, the text of the term is searched.
 bool may_use(const Sum& sum, const std::string& name) {
   return std::any_of(sum.terms.begin(), sum.terms.end(),
                      [&](const auto& term) { return term.first.find(name) != std::string::npos; });

@@ -15,13 +15,13 @@ struct PlannedValue {
   bool is_agreed = true;  ///< false: the steps state more than one number, of which this is the most frequent
 };
 
-/// The values with which a procedure made a plan's steps, read from the numbers in the steps. A step that was edited states
-/// its new number. Values that no step states are left out.
+/// The values with which a procedure made a plan's steps, read from the numbers in the steps. A step that was
+/// edited states its new number. Values that no step states are left out.
 ///
-/// `planned` holds the plan's steps of the procedure, named as in the procedure's file. Most values are read without the
-/// landmarks, which may have been placed again since. `coordinates` returns those of coordinates_of() where a value stands
-/// beside a landmark only; then the value is what the steps state about the landmark's present place, and it is agreed
-/// only if all steps fit these places. `coordinates` is not called if no value needs it.
+/// `planned` holds the plan's steps of the procedure, named as in the procedure's file. Most values are read
+/// without the landmarks, which may have been placed again since. `coordinates` returns coordinates_of() the
+/// plan's landmarks; it is called only if some value occurs in no formula without landmarks. Such a value is
+/// computed with the landmarks' present places, and is agreed only if all steps fit these places.
 std::map<std::string, PlannedValue> planned_values(
     const Procedure& procedure, const nlohmann::ordered_json& planned,
     const std::function<std::map<std::string, double>()>& coordinates);

@@ -28,8 +28,8 @@ double rounded(double value) {
   return std::round(value * roundings_per_unit) / roundings_per_unit + 0.0;
 }
 
-/// The value with all formulas evaluated: "=" yields a number, "=?" whether it differs from 0, {"head_mm": [x, y, z]}
-/// the place with these coordinates along the head's directions, in LPS.
+/// The value with all formulas evaluated: "=" yields a number, "=?" true if it is not 0, {"head_mm": [x, y,
+/// z]} the place with these coordinates along the head's directions, in LPS.
 Json answered(const Json& value, const Values& names, const glm::dmat3& lps_from_head) {
   if (value.is_string() && value.get_ref<const std::string&>().starts_with('=')) {
     const std::string_view formula = std::string_view(value.get_ref<const std::string&>()).substr(1);
@@ -109,7 +109,7 @@ Json first_steps(const std::vector<brep::Landmark>& landmarks) {
 /// Another procedure of the program, whose landmarks or steps `borrower` uses.
 Procedure borrowed(const std::string& name, const Procedure& borrower) {
   if (name == borrower.name || name.ends_with(".json"))
-    throw std::runtime_error("of '" + name + "': must be another procedure of the program");
+    throw std::runtime_error("'of' must name another procedure of the program, not '" + name + "'");
   return read_procedure(name);
 }
 
@@ -151,7 +151,7 @@ std::vector<ProcedureValue> values_in(const SortedJson& list, const std::string&
   }
   if (values.size() > most_values)
     throw std::runtime_error(where + ": has more than " + std::to_string(most_values) +
-                             ", which nobody types without a mistake: derive some by formulas");
+                             " values, too many to enter without mistakes: compute some by formulas");
   return values;
 }
 
@@ -160,7 +160,7 @@ void need_steps(const Json& owner, const std::string& where) {
     throw std::runtime_error(where + ": must be a list of at least one step");
 }
 
-/// Reads the options, whose values and steps must have names of their own.
+/// Reads the options. Refuses values and steps whose names are used already.
 void add_options(const Json& list, Procedure& procedure) {
   for (const Json& entry : list) {
     const std::string where = "options[" + std::to_string(procedure.options.size()) + "]";
@@ -175,11 +175,12 @@ void add_options(const Json& list, Procedure& procedure) {
     for (const ProcedureValue& value : option.values)
       for (const ProcedureValue& known : before.values)
         if (known.name == value.name)
-          throw std::runtime_error(where + ": value '" + value.name + "' stands twice: rename one");
+          throw std::runtime_error(where + ": value '" + value.name + "' is defined twice: rename one");
     for (const Json& step : option.steps)
       for (const Json& known : before.steps)
         if (known.value("id", "") == step.value("id", ""))
-          throw std::runtime_error(where + ": step '" + step.value("id", "") + "' stands twice: rename one");
+          throw std::runtime_error(where + ": step '" + step.value("id", "") +
+                                   "' is defined twice: rename one");
     procedure.options.push_back(std::move(option));
   }
 }
@@ -190,7 +191,7 @@ void need_scans(const Procedure& procedure, const std::map<std::string, Json>& g
   for (const ProcedureScan& scan : procedure.scans)
     if (!given.contains(scan.name) && !known.contains(scan.name))
       throw std::runtime_error("procedure " + procedure.name + " lacks a scan: '" + scan.name + "', " +
-                               scan.says + ": give it by --" + scan.name);
+                               scan.says + ": add it by --" + scan.name);
   for (const auto& [name, unused] : given)
     if (std::none_of(procedure.scans.begin(), procedure.scans.end(),
                      [&, &name = name](const ProcedureScan& scan) { return scan.name == name; }))

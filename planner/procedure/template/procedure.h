@@ -45,7 +45,7 @@ struct Procedure {
   std::vector<ProcedureScan> scans;  ///< in addition to the patient's, which is "ct"
   std::vector<ProcedureValue> values;
   nlohmann::ordered_json steps = nlohmann::ordered_json::array();
-  /// The step that is the patient's bone. After another procedure, that one's outcome takes its place.
+  /// The step that is the patient's bone. In a plan with an earlier procedure, its outcome takes this place.
   std::string acts_on = {};
   /// The step with the result, on which a further procedure acts.
   std::string outcome = {};
@@ -55,7 +55,8 @@ struct Procedure {
 /// The largest number of values of a procedure, and of each of its options.
 inline constexpr std::size_t most_values = 12;
 
-/// Numbers that formulas yield are rounded to this share of a unit, so that a plan is easy to read: a tenth of a micrometre.
+/// Results of formulas are rounded to 1 / roundings_per_unit, a tenth of a micrometre for lengths, so that a
+/// plan is easy to read.
 inline constexpr double roundings_per_unit = 1e4;
 
 /// Reads a procedure's JSON. Throws std::runtime_error with the position in it.
@@ -87,13 +88,14 @@ struct ProcedureInput {
 };
 
 /// The plan of a procedure on one head, as self-contained JSON. If the landmarks include both porions and an
-/// orbitale, the head is oriented by the Frankfort plane, and along nasion and basion if these are present.
+/// orbitale, the Frankfort plane is horizontal; nasion and basion, if present, define the mid-plane.
 /// Throws std::runtime_error if a landmark or scan is missing (with its definition), a value is unknown or
 /// out of its range, or a formula or the resulting plan is refused, for example because landmarks of left and
 /// right are interchanged.
 nlohmann::ordered_json plan_of(const Procedure& procedure, const ProcedureInput& input);
 
-/// The names that formulas have for landmarks' places in LPS, "ans.x", with their coordinates along the head's directions.
+/// The names by which formulas read landmarks, "ans.x", with coordinates along the head's directions.
+/// `landmarks` are in LPS.
 std::map<std::string, double> coordinates_of(const std::vector<brep::Landmark>& landmarks,
                                              const glm::dmat3& lps_from_head);
 

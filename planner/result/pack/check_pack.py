@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Checks an archive of `octotomy pack` without Octotomy: needs Python 3 and NumPy alone.
+"""Checks an archive of `octotomy pack` without Octotomy: needs only Python 3 and NumPy.
 
     check_pack.py ARCHIVE.zip [--json] [--all]
 
-Computes the numbers of result.json again from the surfaces, voxels and samples that the archive carries, and says of
-each number whether it is confirmed, contradicted or not checked. Exits with 0; with 1 where anything is contradicted;
-with 2 where the file is no such archive. All lengths are in mm, coordinates in DICOM's patient frame, LPS.
+Computes numbers of result.json again from the surfaces, voxels and samples that the archive carries, and
+states for each number of its objects, certificates, measurements, movements and exports whether it is
+confirmed, contradicted or not checked. Exits with 0; with 1 if anything is contradicted; with 2 if the file
+is no such archive. All lengths are in mm, coordinates in DICOM's patient frame, LPS.
 """
 import base64
 import csv
@@ -24,7 +25,7 @@ import zlib
 import numpy as np
 
 FORMAT = 1
-# Sums of up to 10^7 numbers in double precision, in another order.
+# Relative tolerance for sums of up to 10^7 numbers in double precision, added in another order.
 SUM = 1e-9
 MOST_BYTES = 1 << 33
 # What every certificate of the bounded tier compares.
@@ -36,7 +37,7 @@ class NoPack(Exception):
 
 
 class Findings:
-    """What was found of each number, by its path in result.json, and of each other claim."""
+    """The verdict on each number, by its path in result.json, and on each other claim."""
 
     def __init__(self, result):
         self.values = {}  # path -> [number, state, reason]
@@ -147,7 +148,7 @@ class Archive:
 
 
 class Universe:
-    """The cube of voxels: from numbers of voxels to LPS mm."""
+    """The cube of voxels: from indices of voxels to LPS mm."""
 
     def __init__(self, manifest):
         self.side = int(manifest["side"])
@@ -161,7 +162,7 @@ class Universe:
 
 
 class Voxels:
-    """A set of voxels as runs along x: rows z, y, first x, x behind the last."""
+    """A set of voxels as runs along x: rows z, y, first x, x after the last."""
 
     def __init__(self, runs, universe):
         self.runs = runs.astype(np.int64)
@@ -469,7 +470,7 @@ def motion_of(step):
 
 
 class VoxelFile:
-    """Labels over z, y, x of a volume file, and its place: from numbers of voxels, x first, to LPS mm."""
+    """Labels over z, y, x of a volume file, and its place: from indices of voxels, x first, to LPS mm."""
 
     def __init__(self, labels, lps_from_voxel):
         self.labels, self.lps_from_voxel = labels, lps_from_voxel
@@ -739,7 +740,7 @@ class Checker:
         step = self.steps.get(name, {})
         kind = step.get("do")
         row = self.objects.get(name, (0, {}))[1]
-        # What a forger leaves out must not go unnoticed.
+        # A forger could leave these entries out, so their absence is a contradiction.
         if kind == "window":
             self.findings.claim("samples" in self.entries[name], f"{name}: the archive carries samples of its window")
         if kind == "move" and motion_of(step) is not None:
@@ -1093,7 +1094,7 @@ class Checker:
         if voxels is None or not voxels.sound:
             return
         universe = self.universe
-        # From the file's voxels to the universe's: the same ones, counted from another one.
+        # From the file's voxels to the universe's: the same voxels, with indices that begin at another one.
         step = np.linalg.inv(universe.matrix) @ read.lps_from_voxel
         first = np.rint(step[:3, 3])
         if np.abs(step[:3, :3] - np.eye(3)).max() > 1e-4 or np.abs(step[:3, 3] - first).max() > 1e-3:

@@ -107,16 +107,17 @@ ClinicalDocument clinical_document(const std::string& plan, const std::string& t
 std::string plan_in_document(std::string_view document) {
   const std::size_t begin = document.find(body_begin);
   if (begin == std::string_view::npos)
-    throw std::runtime_error("carries no plan of Octotomy: it is another program's document");
+    throw std::runtime_error("contains no plan of Octotomy: it is another program's document");
   const std::string_view rest = document.substr(begin + body_begin.size());
   const std::size_t sum_end = rest.find(body_middle);
   const std::size_t end = rest.find(body_end);
   if (sum_end == std::string_view::npos || end == std::string_view::npos ||
       end < sum_end + body_middle.size())
-    throw std::runtime_error("its body is damaged");
+    throw std::runtime_error("its body is damaged: export the document again");
   const std::string_view body = rest.substr(sum_end + body_middle.size(), end - sum_end - body_middle.size());
   std::string plan = brep::from_base64(body, body.size());
-  // Decoding ends at a symbol that is not base64, so the body has to be what the plan is encoded to.
+  // from_base64() stops at the first symbol that is not base64, so the decoded plan must encode to the whole
+  // body.
   if (in_base64(plan) != body || rest.substr(0, sum_end) != in_base64(bytes_of_hex(sha256_of(plan))))
     throw std::runtime_error(
         "its plan differs from the SHA-256 that the document states: it was damaged or changed");

@@ -7,20 +7,21 @@
 
 namespace octotomy::planner {
 
-/// A published fault of a library whose decoders or network code read data of unknown origin, and what it means for
-/// this program.
+/// A published fault of a library whose decoders or network code read data of unknown origin, and what it
+/// means for this program.
 struct KnownFault {
   std::string library, name;  ///< for example GDCM, CVE-2024-22373
-  std::string effect;         ///< what the data of an attacker do
-  std::string repaired_in;    ///< the first version without the fault; empty: no release is
-  /// Where the faulty code stands: in no part of the program; in a linked library, but never called; called in the
-  /// process that decodes; called in the program itself, whose memory and calls are not confined.
+  std::string effect;         ///< what an attacker's data can cause
+  std::string repaired_in;    ///< the first version without the fault; empty: none is known
+  /// Where the faulty code stands: in no part of the program; in a linked library, but never called; called
+  /// in the process that decodes and is confined; called in the program itself, which is not.
   enum class Place { NotLinked, NotCalled, InDecoder, InProgram } place;
-  std::string reason;  ///< why it is not called, or not linked; of InProgram: on which data it is called
+  std::string reason;  ///< why it is not called or not linked; for InProgram: on which data it is called
 };
 
-/// The faults that `versions` (library_versions()) may have: the library is not linked, or its version is before the
-/// first without the fault. A distribution may have repaired a fault without a new number.
+/// The faults of the libraries in `versions` (library_versions()) that their version may still have, and the
+/// faults of libraries that are not linked. A distribution may have repaired a fault without a new version
+/// number.
 std::vector<KnownFault> faults_of(const nlohmann::ordered_json& versions);
 
 /// Whether a version, numbers with dots, is before another one. Missing numbers count as zero.

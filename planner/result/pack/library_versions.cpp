@@ -31,8 +31,8 @@ std::string dotted(int major, int minor, int patch) {
   return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
 }
 
-/// What a function of a library answers; empty if the library is not loaded. `file` is its name with the version of its
-/// interface.
+/// The text that `ask` gets from a function of a shared library; empty if the library is not loaded. `file`
+/// is the library's file name with the version of its interface.
 template <typename Version, typename Ask>
 std::string loaded_version(const char* file, const char* function, const Ask& ask) {
   void* const library = dlopen(file, RTLD_LAZY | RTLD_NOLOAD);
@@ -43,7 +43,7 @@ std::string loaded_version(const char* file, const char* function, const Ask& as
   return answer;
 }
 
-/// Adds the libraries by which OpenImageIO reads TIFF and PNG, as far as it has loaded them with these interfaces.
+/// Adds the libraries with which OpenImageIO reads TIFF and PNG, if they are loaded with these interfaces.
 void add_picture_libraries(nlohmann::ordered_json& versions) {
   // "LIBTIFF, Version 4.5.0" and lines of copyright
   const std::string tiff = loaded_version<const char*()>("libtiff.so.6", "TIFFGetVersion",
@@ -56,7 +56,8 @@ void add_picture_libraries(nlohmann::ordered_json& versions) {
   if (!png.empty()) versions["libpng"] = png;
 }
 
-/// Adds the libraries of the parts that are started or loaded. `verify --self` reports a part that is missing.
+/// Adds the libraries of the decoder, which is a separate process, and of the picture reader, which is loaded
+/// when needed. If one of them is missing, its libraries are left out; `verify --self` reports it.
 void add_parts(nlohmann::ordered_json& versions) {
   try {
     for (const auto& [name, version] : voxel::codec_facts().libraries) versions[name] = version;

@@ -25,13 +25,14 @@ struct PackOptions {
 /// - witness/NUMBER/NAME.npy: witness_arrays() of each object;
 /// - dicom/: the files of write_result_objects(), if `options` asks for them;
 /// - NOTICE.txt: licences, and what the archive does not contain;
-/// - manifest.json, last: every other entry with its length and SHA-256; the objects with their entries; the scans
-///   with their lattice and SHA-256; the versions of the program and its libraries.
-/// A result after leave_out_names() is marked "identity": "removed", another anonymous one "unnamed", so that a
-/// replay leaves out the same.
-/// The scans' samples are not in it, except for the cells of witness_arrays(). Precondition: the evaluation has
-/// stored its scans (EvaluateOptions::keep_scans), and a pdf is not wanted. Returns the manifest. Throws as
-/// write_result_files(), and voxel::Error (Resource) if the disk is full; then `path` is as before.
+/// - manifest.json, last: every other entry with its length and SHA-256; the objects with their entries; the
+///   scans with their lattice and SHA-256; the versions of the program and its libraries.
+/// The manifest states "identity": "removed" for a result after leave_out_names(), and "unnamed" for any
+/// other anonymous one, so that a replay leaves out the same names. The scans' samples are not in it, except
+/// for the cells of witness_arrays(). Precondition: the evaluation has stored its scans
+/// (EvaluateOptions::keep_scans), and `options.files` requests no PDF. Returns the manifest. Throws as
+/// write_result_files(), and voxel::Error (Resource) if the disk is full; then the file at `path` is
+/// unchanged.
 nlohmann::ordered_json write_pack(Result& result, const std::filesystem::path& path,
                                   const PackOptions& options = {});
 

@@ -65,7 +65,7 @@ PackContents read_entries(const std::filesystem::path& path, const brep::ZipArch
   return pack;
 }
 
-/// A list element's label in `where`: its id or object, else its position.
+/// A list element's label in `where`: the first of these keys that it has, else its position.
 std::string name_of(const Json& element, std::size_t position) {
   for (const char* key : {"id", "object", "name", "operation"})
     if (element.is_object() && element.contains(key) && element[key].is_string())
@@ -73,7 +73,7 @@ std::string name_of(const Json& element, std::size_t position) {
   return std::to_string(position);
 }
 
-/// Collects all values, keyed by their position in the JSON.
+/// Collects all values, keyed by their path in the JSON.
 void flatten(const Json& json, const std::string& where, std::map<std::string, std::string>& values) {
   const auto below = [&where](const std::string& name) {
     return where.empty() ? name : where + " / " + name;
@@ -92,8 +92,7 @@ void flatten(const Json& json, const std::string& where, std::map<std::string, s
   }
 }
 
-/// The result without values that may differ in a replay: the folders of files, and the version that wrote
-/// them.
+/// The result without values that may differ in a replay: the paths of the scans, and the program's version.
 Json comparable(Json result) {
   result.erase("octotomy");
   if (result.contains("scans"))

@@ -14,8 +14,8 @@ struct PackContents {
   nlohmann::ordered_json manifest;  ///< as write_pack() returned it
   nlohmann::ordered_json result;    ///< result.json
 };
-/// Reads a pack. Throws voxel::Error (Input), which names the archive and the entry, if it is no pack, if an entry
-/// is missing or does not have the stated SHA-256, or if it was written in a later format.
+/// Reads a pack. Throws voxel::Error (Input), which names the archive and the entry, if it is no pack, if an
+/// entry is missing or does not have the stated SHA-256, or if its format is not pack_format.
 PackContents read_pack(const std::filesystem::path& path);
 
 /// A value that differs between two results.
@@ -30,7 +30,7 @@ struct PackComparison {
   std::vector<std::string> different_entries;
 };
 /// Compares a pack with another of the same plan, value by value and entry by entry. Elements of a list are
-/// matched by their "id" or "object" where they have one, else by their position.
+/// matched by their "id", "object", "name" or "operation", the first that they have, else by their position.
 PackComparison compare_packs(const PackContents& packed, const PackContents& replayed);
 
 nlohmann::ordered_json to_json(const PackComparison& comparison);

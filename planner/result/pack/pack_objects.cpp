@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_label_letters = 64;
 
-/// All keys and texts of a JSON value, in lower case and one a line.
+/// Adds all keys and texts of a JSON value, in lower case and one a line.
 void add_words(const Json& value, std::string& words) {
   const auto add = [&](const std::string& text) {
     for (const char c : text) words += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -118,7 +118,8 @@ class ObjectsWriter {
   void draw_on_voxels(voxel::RtstructOptions& structures, const Draw& draw, const std::string& why) {
     structures.planes = voxel::ContourPlanes::Voxels;
     draw();
-    findings_.push_back("structures.dcm: its contours lie on the planes of the voxels: " + why);
+    findings_.push_back("structures.dcm: its contours lie on the planes of the voxels, not of the images: " +
+                        why);
   }
 
   void write_models() {
@@ -208,10 +209,10 @@ void need_unnamed(const Json& plan, const voxel::DicomSource& source, const std:
         continue;
       }
       if (word.size() >= least_letters && words.find(word) != std::string::npos)
-        throw std::runtime_error((where.empty() ? "the plan" : where) + ": a text of the plan holds '" +
-                                 word +
-                                 "', which the source states of the patient or the study: rename it in the "
-                                 "plan, because --identity cannot change a step");
+        throw std::runtime_error(
+            (where.empty() ? "the plan" : where) + ": a text of the plan contains '" + word +
+            "', which the source states about the patient or the study: rename it in the "
+            "plan, because --identity cannot change a step");
       word.clear();
     }
   }

@@ -17,12 +17,14 @@ struct SeriesOfPlan {
   voxel::DicomSource series;
 };
 
-/// The series of the plan's first scan that was read from one; none if no scan was. Call it before
-/// leave_out_names(), which removes the paths. Throws as voxel::dicom_source() does.
+/// The DICOM series of the plan's first scan that was read from one and holds no labels; none if there is no
+/// such scan. Call it before leave_out_names(), which removes the paths. Throws as voxel::dicom_source()
+/// does.
 std::optional<SeriesOfPlan> series_of(const Result& result);
 
-/// Refuses a plan with a text, such as a step's name, that names the source's patient or study, because
-/// no writer can change a step. `where` is the plan's path. Throws std::runtime_error with the word.
+/// Refuses a plan with a text, such as a step's name, that contains a word of the source's patient or study,
+/// because writing a result cannot change a step. `where` is the plan's path. Throws std::runtime_error with
+/// the word.
 void need_unnamed(const nlohmann::ordered_json& plan, const voxel::DicomSource& source,
                   const std::string& where);
 
@@ -31,10 +33,10 @@ void need_unnamed(const nlohmann::ordered_json& plan, const voxel::DicomSource& 
 /// - structures.dcm: the same objects as contours on the series' images;
 /// - model_NNN.dcm: the surface of each object that the plan exports, as an encapsulated STL;
 /// - plan.dcm and picture_NNN.dcm: the plan's text, and the views/*.png of `results`.
-/// Patient and study are those of the series. An anonymous result's objects have the identity that
-/// decide_identity() makes of IdentityChoice::Remove, and need_unnamed() holds. Equal results make equal files. Returns
-/// {"scan", "identity": {"choice", "changes"}, "objects": [{"path", "kind", ...}], "findings"}. Throws as the writers
-/// do, and Stopped.
+/// Patient and study are those of the series. For an anonymous result, decide_identity() with
+/// IdentityChoice::Remove replaces them, and need_unnamed() is called. Equal results make equal files.
+/// Returns {"scan", "identity": {"choice", "changes"}, "objects": [{"path", "kind", ...}], "findings"}.
+/// Throws as the writers do, and Stopped.
 nlohmann::ordered_json write_result_objects(const Result& result, const SeriesOfPlan& of,
                                             const std::filesystem::path& results,
                                             const std::filesystem::path& folder,

@@ -16,7 +16,7 @@ namespace {
 
 using Rows = std::vector<std::int32_t>;
 
-/// For each run of voxels a row: z, y and x of its first voxel, and x behind its last.
+/// For each run of voxels a row: z, y and x of its first voxel, and x of the voxel after its last.
 Rows runs_of(const voxel::Octree& octree) {
   Rows runs;
   voxel::SliceBits slice;
@@ -48,8 +48,8 @@ struct CellSamples {
   std::array<double, 8> samples{};
 };
 
-/// None if the cell is not completely within the scan, or has a sample that was not measured: no kernel interpolates
-/// there.
+/// None if the cell is not completely within the scan, or has a sample that was not measured: no kernel
+/// interpolates there.
 std::optional<CellSamples> cell_at(const voxel::Scene& scene, const glm::dvec3& centre_mm) {
   const glm::dvec3 at = scene.lattice.voxel(centre_mm);
   const glm::ivec3 dims = scene.lattice.dims;
@@ -73,8 +73,8 @@ std::optional<CellSamples> cell_at(const voxel::Scene& scene, const glm::dvec3& 
   return found;
 }
 
-/// Chooses voxels: for some runs the first voxel and the voxel before it, and as many others anywhere in the
-/// universe.
+/// Chooses `most_samples` voxels: at most half of them are the first voxels of runs and the voxels before
+/// these, the others lie anywhere in the universe.
 std::vector<glm::ivec3> chosen_voxels(const Rows& runs, int side) {
   std::vector<glm::ivec3> voxels;
   const std::size_t count = runs.size() / 4, quarter = most_samples / 4;

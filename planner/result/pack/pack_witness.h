@@ -11,13 +11,15 @@ namespace octotomy::planner {
 
 /// The data of an object in a pack, from which anybody can recompute its numbers. Names and contents of .npy
 /// files:
-/// - runs: for each run of voxels a row: z, y, x of its first voxel, and x behind its last; ascending;
-/// - points, LPS mm, and triangles, three numbers of points each, of the surface within the universe, where the
+/// - runs: for each run of voxels a row: z, y, x of its first voxel, and x of the voxel after its last;
+///   ascending;
+/// - points, LPS mm, and triangles, three indices of points each, of the surface within the universe, if the
 ///   object has one;
 /// - samples, for a window alone (`window_of` is its scan, else nullptr): rows of 14 numbers, up to
-///   `most_samples` of them: a voxel of the universe (x, y, z), the scan's cell that holds its centre (x, y, z),
-///   and the cell's eight samples, x fastest. Half of the voxels lie on either side of the surface along x, the
-///   others anywhere; their choice is fixed. Cells with a sample that was not measured are left out.
+///   `most_samples` of them: a voxel of the universe (x, y, z), the scan's cell that holds its centre (x, y,
+///   z), and the cell's eight samples, x fastest. At most half of the voxels are neighbours along x on both
+///   sides of the surface; the others are pseudo-random with a fixed seed. Cells with a sample that was not
+///   measured are left out.
 std::map<std::string, std::string> witness_arrays(const Object& object, const voxel::Universe& universe,
                                                   const voxel::Scene* window_of);
 

@@ -15,7 +15,7 @@ namespace {
 constexpr unsigned long earliest_date = 0x00210000;
 /// Coordinates hardly compress: higher levels take three times as long and save 2 %.
 constexpr int level = 3;
-/// minizip accepts at most 32 bits of length per call.
+/// minizip accepts a length of at most 32 bits per call.
 constexpr std::size_t most_at_once = std::size_t{1} << 30;
 
 }  // namespace
@@ -32,7 +32,7 @@ ZipWriter::~ZipWriter() {
 void ZipWriter::refuse() const {
   throw voxel::Error(
       voxel::ErrorCode::Resource,
-      path_.string() + ": cannot be written: free some space on the disk, or choose another -o");
+      path_.string() + ": cannot be written: free some space on the disk, or choose another path by -o");
 }
 
 void ZipWriter::add(const std::string& name, std::string_view bytes) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Elements of the page, made in one expression, and a host that is filled anew without losing the control
-// that has the focus.
+// Functions that make an element in one expression, and fill(), which replaces an element's children and
+// gives the focus back to the control that had it.
 
 export type Child = Node|string|number|null|undefined|false|Child[];
 type Attribute = string|number|boolean|null|undefined|((event: never) => void);
@@ -63,7 +63,8 @@ const mark_of = (control: HTMLElement): string => control.dataset.key ??
 const alike = (host: Element, {tagName, mark}: {tagName: string; mark: string}): HTMLElement[] =>
     [...host.querySelectorAll<HTMLElement>(tagName)].filter((control) => mark_of(control) === mark);
 
-// The control in a host that shows the focus and has a mark.
+// Describes the control in a host that has the focus, to find it again after a refill. Null if there is none,
+// or if it has neither a `data-key` nor words and a visible focus.
 function focused_in(host: Element):
     {tagName: string; mark: string; place: number; typed: string|null}|null {
   const active = document.activeElement;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How overlays draw: the colours of the page's marks, and words, lines and dots that are seen on bone and on
-// the ground.
+// How overlays draw: the colours of the page's marks, and words, lines and dots that are legible on bone and
+// on the background.
 import {Vec2} from "./vector";
 
 export const ink = {

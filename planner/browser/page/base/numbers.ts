@@ -9,7 +9,7 @@ function fixed(value: number, digits: number): string {
   return is_tie && /[13579]$/.test(text) ? (value - 0.5 * 10 ** -digits).toFixed(digits) : text;
 }
 
-/// "−12 345.6": a dash for no number; groups of three digits where there are five or more.
+/// The number as "−12 345.6", or a dash if there is none. From five digits on they are in groups of three.
 export function grouped(value: number|null|undefined, digits = 0): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   const [whole = "", part] = fixed(Math.abs(value), digits).split(".");
@@ -24,12 +24,12 @@ export function three_figures(value: number|null|undefined): string {
   return grouped(value, Math.max(0, Math.min(6, 2 - Math.floor(Math.log10(Math.abs(value))))));
 }
 
-/// The longest of 1, 2 or 5 times a power of ten that is not longer, for scale bars.
+/// The largest number of the form 1, 2 or 5 times a power of ten that is at most `most`, for scale bars.
 export function round_length(most: number): number {
   const ten = 10 ** Math.floor(Math.log10(most) + 1e-12);
   return ([5, 2, 1].find((digit) => digit * ten <= most * (1 + 1e-12)) ?? 1) * ten;
 }
 
-/// The unit for people: "mm³" for "mm3".
+/// A unit as it is shown: "mm³" for "mm3".
 export const unit_text = (unit: string): string =>
     unit.replace("mm3", "mm³").replace("mm2", "mm²").replace("deg", "°").replace("per_mm", "per mm");

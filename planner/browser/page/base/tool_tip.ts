@@ -21,7 +21,7 @@ export function attach_tips(): void {
     const own = tip.getBoundingClientRect();
     const within = (at: number, size: number, all: number): number =>
         Math.max(8, Math.min(all - size - 8, at - size / 2));
-    // Beside the tool rail: a tip below would hide the next tools.
+    // A tip of the tool rail stands beside it: below, it would hide the next tools.
     const is_beside = target.closest(".rail") !== null;
     const below = box.bottom + 8 + own.height < innerHeight;
     const left = is_beside ? box.right + 8 : within(box.left + box.width / 2, own.width, innerWidth);

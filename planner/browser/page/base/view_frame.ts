@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Frames of orthographic pictures: directions, pixels and millimetres. The same table as the command line's
-// views.
+// Frames of orthographic pictures: directions, pixels and millimetres. Views have the same directions as on
+// the command line.
 import {add, cross, dot, scaled, Vec2, Vec3} from "./vector";
 
 export interface ViewFrame {

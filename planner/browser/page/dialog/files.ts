@@ -12,7 +12,7 @@ interface Entry {
   size?: number;
 }
 
-/// Files that are no image of a series: whole scans, objects and meshes.
+/// Names of files that are no single images of a series: whole scans, objects and meshes.
 const whole_files = /\.(nii|nii\.gz|nrrd|nhdr|mha|mhd|raw|octree|stl|ply|obj|off|vtp|vtk|glb)$/i;
 
 /// The folder picker. The server lists only folders that were opened with it. The choice is opened, or passed
@@ -54,7 +54,7 @@ export function open_picker(
                    entry.kind, entry.name, entry.size ? size_words(entry.size) : "",
                    () => (entry.kind === "folder" ? void show(join(entry.name)) : choose(join(entry.name))),
                    entry.kind === "folder" ? () => choose(join(entry.name)) : undefined)),
-           entries.length ? null : el("p", {class: "says"}, "No scan or plan lies here.")));
+           entries.length ? null : el("p", {class: "says"}, "This folder has no scan or plan.")));
   };
   void first_greeting().then(() => show(state.hello?.folders[0] ?? "."));
 }
@@ -81,7 +81,7 @@ async function open_found(path: string): Promise<void> {
   if (series.length < 2) return open_plan({path});
   const dialog = open_dialog(`Which of ${series.length} series?`, "picker");
   dialog.refill(
-      el("p", {class: "says"}, "This folder holds several DICOM series. A plan is of one of them."),
+      el("p", {class: "says"}, "This folder holds several DICOM series. A plan uses one of them."),
       el("div", {class: "files", role: "list"},
          series.map(
              (one) => el(

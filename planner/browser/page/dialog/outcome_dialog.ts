@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How near an operation came to its plan: takes a scan from after the operation, and shows the planned and
+// How close an operation came to its plan: reads a scan from after the operation, and shows the planned and
 // the achieved movements side by side, with intervals.
 import {busy, done, try_to} from "../actions";
 import {word_of} from "../base/anatomical";
@@ -34,14 +34,14 @@ export function open_outcome(): void {
 }
 
 async function hold_against(path: string): Promise<void> {
-  const job = busy("Laying the pieces on the later scan");
+  const job = busy("Aligning the pieces with the later scan");
   const outcome = await try_to<Outcome>("outcome", {path});
   done(job);
   if (!outcome) return;
   const dialog = open_dialog("Outcome of the operation", "outcome");
   dialog.refill(
       el("p", {class: "says"},
-         `Both scans are laid on each other by ${spoken(outcome.unmoved.object)}, which did not move (rms ${
+         `Both scans are aligned by ${spoken(outcome.unmoved.object)}, which did not move (rms ${
              outcome.unmoved.rms_mm.toFixed(2)} mm). The intervals hold in ${
              Math.round(100 * outcome.coverage)} of 100 cases, for bone that has kept its shape.`),
       findings(outcome.unmoved.findings), outcome.pieces.map(piece_table),
@@ -81,7 +81,7 @@ function piece_table(piece: Outcome["pieces"][number]): Child {
 }
 
 type Word = Parameters<typeof word_of>[0];
-/// A direction's row; amber if the interval does not contain the planned value.
+/// The row of one direction, amber if the interval does not contain the planned value.
 function result_row(
     name: string, word: Word, unit: string, planned: number, achieved: number, half_width: number): Child {
   const is_met = Math.abs(planned - achieved) <= half_width;

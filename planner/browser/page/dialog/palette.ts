@@ -99,7 +99,7 @@ export function open_help(): void {
                         el("tr", {}, el("td", {}, key_cap(command.key!)), el("td", {}, command.name))))),
       el("section", {}, el("h3", {}, "Certificates"),
          el("p", {},
-            "Two kernels compute every object: one counts voxels, one measures triangles. A green badge means that they agree within the resolution of the scan, amber that there is a doubt, red that they disagree. Click a badge to see the place."),
+            "Two kernels compute every object: one counts voxels, one measures triangles. A green badge means that they agree within the resolution of the scan, amber that they agree with a warning, red that they disagree. Click a badge to see the place."),
          el("p", {}, "Not a medical device. Nothing leaves this machine."))));
   // The help scrolls, so it must be able to have the focus.
   document.querySelector<HTMLElement>("dialog.help .dialog-body")!.tabIndex = 0;

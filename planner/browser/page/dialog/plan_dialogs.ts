@@ -105,7 +105,7 @@ export async function write_report(): Promise<void> {
   if (!answer) return;
   if (answer.left_out.length)
     notify(`The report lacks what failed: ${answer.left_out.join(", ")}. Its findings say why.`, "warning");
-  void evaluate(true);  // the report has certified everything: update the badges
+  void evaluate(true);  // the report has certified everything, so the badges are updated
   // The report's script runs in an origin of its own and cannot access this page.
   const frame = el("iframe", {src: file_url(answer.file), title: "Report", sandbox: "allow-scripts"});
   const follow = (event: MessageEvent): void => {
@@ -118,7 +118,7 @@ export async function write_report(): Promise<void> {
       el("div", {class: "row end"}, el("small", {class: "path"}, answer.folder),
          el("span", {class: "spring"}),
          button(
-             [icon("export", 15), "Download"], "Downloads the report, one file that needs nothing else",
+             [icon("export", 15), "Download"], "Downloads the report: one file that needs no other",
              () => download(answer.file)),
          el("a", {class: "button primary", href: file_url(answer.file), target: "_blank", rel: "noopener"},
             "Open in a tab to print")));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Procedures: chosen by name, given the scans that they take, placed by landmarks, and planned with a few
+// Procedures: the user chooses one by name and its additional scans, places its landmarks, and enters a few
 // values.
 import {change_plan, edit, evaluate, try_to} from "../actions";
 import {Dialog, open_dialog} from "../base/dialog";
@@ -12,11 +12,11 @@ import {PlanState, ProcedureSays, ProcedureValue} from "../protocol";
 import {on_leaving_plan, set, state} from "../state";
 import {Vec3} from "../base/vector";
 
-// What a person chose in the forms since the procedure was planned: values and ticks, by "fibula_flap.start_mm". Else the
-// plan's own steps decide.
+// Values and ticks that a person has changed in the forms since the procedure was planned, under names such
+// as "fibula_flap.start_mm". All others follow from the plan's steps.
 const typed = new Map<string, number>();
 const ticks = new Map<string, boolean>();
-// What was planned last. It stands in the form again where the planning was undone.
+// The values and ticks that were planned last. The form shows them again if the planning was undone.
 const planned = {typed: new Map<string, number>(), ticks: new Map<string, boolean>()};
 let pending_procedure: string|null = null;
 on_leaving_plan(() => {
@@ -25,7 +25,8 @@ on_leaving_plan(() => {
   for (const kept of [typed, ticks, planned.typed, planned.ticks]) kept.clear();
 });
 
-/// What the plan states of a procedure: the object on which it acts, after an earlier procedure, its options and its values.
+/// What the plan states of a procedure: its options, its values, and the object of an earlier procedure on
+/// which it acts.
 interface Planned {
   outcome: string|null;
   is_planned: boolean;  // the plan has the procedure's steps
@@ -33,7 +34,7 @@ interface Planned {
   values: {[name: string]: {value: number; is_agreed: boolean}};
 }
 
-/// Moves what was chosen in a procedure's form.
+/// Moves a procedure's entries from one map to another.
 function take_over<T>(from: Map<string, T>, to: Map<string, T>, procedure: string): void {
   for (const [name, chosen] of [...from]) {
     if (!name.startsWith(`${procedure}.`)) continue;
@@ -56,7 +57,7 @@ export function open_procedure(name?: string): void {
       chosen ?
           procedure_form(dialog, chosen, said ?? {outcome: null, is_planned: false, with: [], values: {}}) :
           el("p", {class: "says"},
-             "Each procedure is placed by named landmarks and a few values. What it writes are ordinary steps that you can change."));
+             "Each procedure is placed by named landmarks and a few values. It writes ordinary steps that you can change."));
   };
   void show(state.hello?.procedures.find((one) => one.name === name));
 }
@@ -138,10 +139,10 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays, said: Planned): C
   return [
     el("p", {class: "says"}, chosen.says),
     said.outcome ? el("p", {class: "says"},
-                `It acts on ${said.outcome}, what the plan has planned before. Place its landmarks where the scan shows them, as in slices: those that lie on a moved piece go along with it.`) :
+                `It acts on ${said.outcome}, the result of the procedure before. Place its landmarks where the scan shows them, for example in slices: landmarks on a moved piece move with it.`) :
              null,
     said.is_planned ? el("p", {class: "says", "data-key": "is-planned"},
-                "The plan has this procedure. The form shows the values of its steps; Plan it replaces these steps, also where they were changed by hand.") :
+                "The plan has this procedure. The form shows the values of its steps; “Plan it” replaces these steps, even if they were changed by hand.") :
              null,
     in_doubt.length ? el("p", {class: "sentence warn", role: "alert", "data-key": "in-doubt"},
                 `Check ${in_doubt.join(", ")}: steps or landmarks were changed since they were planned, and do not state one value.`) :
@@ -171,7 +172,7 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays, said: Planned): C
 }
 const scans = (): {[name: string]: {path: string}} => state.plan?.plan.scans ?? {};
 
-/// A scan that a procedure needs beside the patient's: its file, or a button to choose one.
+/// A scan that a procedure needs in addition to the patient's: its file, or a button to choose one.
 function scan_row(scan: {name: string; says: string}, procedure: string, dialog: Dialog): Child {
   const path = scans()[scan.name]?.path;
   const take = async(chosen: string): Promise<void> => {

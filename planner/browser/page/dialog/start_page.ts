@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The start page, and the audit of a scan that is shown before anything else.
+// The start page, and the page with a scan's audit, which is shown before the plan.
 import {open_plan, try_to} from "../actions";
 import {audit_rows} from "../panel/audit";
 import {grouped} from "../base/numbers";
@@ -42,7 +42,7 @@ function start(): Child {
              "play", "Guided tour", "A Le Fort I on the head phantom, in seven steps and five minutes.",
              () => void start_tour(), "primary"),
          offer(
-             "head", "Head phantom", "A CT of a head made of closed forms: every number has a known truth.",
+             "head", "Head phantom", "A CT of a head made of geometric solids, so every number is known.",
              () => void open_plan({phantom: "head"})),
          offer(
              "folder", "Scan or plan",
@@ -56,7 +56,7 @@ function start(): Child {
             file_chooser(
                 "Choose files", "Choose files. One file of a scan or a plan, or all images of a series", false),
             file_chooser(
-                "Choose a folder", "Choose a folder. A DICOM series with all that lies below it", true))),
+                "Choose a folder", "Choose a folder. A DICOM series, with all folders below it", true))),
       recent_plans(),
       is_opening ? el("p", {class: "opening", role: "status"}, el("span", {class: "spinner"}),
                       "Reading and checking the scan …") :

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The guided tour: a Le Fort I on the head phantom in seven steps, each done by the person and seen by the
-// page.
+// The guided tour: a Le Fort I on the head phantom in seven steps. The page recognises when the person has
+// done a step.
 import {add_step, free_id, open_plan, replace_step} from "../actions";
 import {certify_all, dialogs} from "../commands";
 import {button, Child, el, fill} from "../base/html";
@@ -29,7 +29,7 @@ let report_written = false;
 const stops: Stop[] = [
   {
     title: "Read the audit",
-    says: "Before anything else the planner says what it found in the scan. Read it and continue.",
+    says: "First the planner reports what it found in the scan. Read it and continue.",
     is_done: () => audit_seen || (state.page === "plan" && state.plan !== null),
     do_it: () => {
       audit_seen = true;
@@ -38,7 +38,7 @@ const stops: Stop[] = [
   },
   {
     title: "Set bone",
-    says: "Choose “bone” among the tissues and set it. Views show the window at once.",
+    says: "Choose “bone” among the tissues and set it. The views show it at once.",
     is_done: () => has((step) => step.do === "window") && state.tool !== "window" && state.plan !== null &&
         state.plan.plan.steps.length > 0 && window_seen,
     show: () => take_tool("window"),

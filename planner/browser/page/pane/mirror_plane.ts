@@ -27,8 +27,8 @@ export function plane_of(step: Step): Plane|null {
   };
 }
 
-/// A view shows the plane as a line if the cosine between its direction and the plane's normal is at most
-/// this.
+/// A view shows the plane as a line if the cosine of the angle between its direction and the plane's normal
+/// is at most this.
 const most_tilt = 0.2;
 /// The distance of the handles from the middle of the trace, as a share of the pane's shorter side.
 const reach_share = 0.3;
@@ -40,7 +40,7 @@ let held: {id: string, plane: Plane}|null = null;
 const shown_plane = (step: Step): Plane|null => held?.id === step.id ? held.plane : plane_of(step);
 
 interface Trace {
-  middle: Vec3;  // the point of the mirror's plane and the picture's that is nearest to the cross-hair
+  middle: Vec3;  // the point of both planes, the mirror's and the picture's, nearest to the cross-hair
   along: Vec3;   // unit vector
 }
 

@@ -9,7 +9,7 @@ import {directions_of, turned_towards} from "../base/view_frame";
 
 const reach_share = 0.36;  // of the pane's shorter side, from the cross-hair to a handle
 const near_px = 12;
-/// If the sine between plane and picture is below this, there is no trace to drag.
+/// If the sine of the angle between plane and picture is below this, there is no trace to drag.
 const least_sine = 0.2;
 
 interface Trace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What is drawn over a pane's picture: edge letters, scale, cross-hair, regions, landmarks, measured lines,
-// marks and the handles of the tool that is in hand.
+// marks and the handles of the chosen tool.
 import {begin_ink, dot_at, ink, keep_words_off, label, line, sentence, text, TextLook} from "../base/ink";
 import {draw_mirror_plane} from "./mirror_plane";
 import {draw_trace} from "./oblique";
@@ -90,8 +90,8 @@ interface Region {
   view: string;
   polygons_mm: Vec2[][];
 }
-/// Whether a mask's regions are drawn and edited in the panes. Not if they are in files, or if the head is
-/// repositioned and the mask belongs to the scan's own views.
+/// Whether a mask's regions are drawn and edited in the panes. They are not if they are in files, or if the
+/// head is repositioned and the mask belongs to the scan's own views.
 export const is_of_panes = (step: Step|undefined): boolean =>
     step?.do === "mask" && Array.isArray(step.regions) &&
     (step.regions as unknown as Region[]).every((region) => Array.isArray(region.polygons_mm)) &&
@@ -123,7 +123,7 @@ const near_slice_mm = 6;
 const is_near = (pane: Pane, p_mm: Vec3): boolean => !pane.is_slice ||
     Math.abs(dot(p_mm, pane.frame.look) - dot(state.cross_mm, pane.frame.look)) <= near_slice_mm;
 
-// The handles of a moving piece occupy the place of names and numbers.
+// While a piece moves, its handles take the place of names and numbers.
 const is_handled = (): boolean => state.tool === "move";
 
 const measured_words = (found: Measurement): string =>
@@ -197,7 +197,7 @@ function draw_letters(pane: Pane, context: CanvasRenderingContext2D): void {
   text(context, letters.bottom, [width / 2, height - inset], pane.ratio, look);
 }
 
-// Draws a bar of 1, 2 or 5 times a power of ten, about a fifth of the pane's width.
+// Draws a scale bar of 1, 2 or 5 times a power of ten millimetres, about a fifth of the pane's width.
 function draw_scale(pane: Pane, context: CanvasRenderingContext2D): void {
   const frame = pane.frame;
   const [width, height] = pane.size;

@@ -56,7 +56,8 @@ export function make_panes(host: HTMLElement, acknowledge: (pane: number, frame:
     legend.hidden = true;
   }
   watch(["plan", "compare", "theme"], () => want_all(false));
-  // While a slider moves, request coarse pictures; a picture at rest follows soon after the last one.
+  // While a slider moves, coarse pictures are requested; a picture at rest follows soon after the last of
+  // them.
   watch(["looks", "draft_window", "cut_plane"], () => want_all(true));
   watch(["preview"], follow_preview);
   watch(

@@ -46,7 +46,7 @@ export function request_of(pane: Pane, dragging: boolean): PaneRequest {
 }
 
 /// Whether the drawn pieces interpenetrate. Interference lies inside bone, so opaque bone would hide it.
-/// While a piece is dragged, nothing is made translucent, which would be too slow.
+/// While a piece is dragged, nothing is made translucent, because that would be too slow.
 function has_interference({preview, objects, dragging}: PaneRequest): boolean {
   if (preview?.move && preview.difference) return false;
   if (preview) return !dragging && (state.overlap_mm3 ?? 0) > 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A pane: a 2D canvas that shows the newest picture of the server, requests the next, and picks by the depth
-// and object planes of the picture at rest. At most two pictures are under way; the latest setting wins.
+// and object planes of the picture at rest. At most two requests are pending; the newest setting wins.
 import {ask} from "../actions";
 import {drawn_objects} from "../drawn_objects";
 import {el} from "../base/html";
@@ -61,8 +61,8 @@ export class Pane {
   get is_busy(): boolean {
     return this.is_wanted || this.in_flight > 0 || this.lacks_planes;
   }
-  /// Whether positions have known points. Not so in a view whose picture is moving or whose planes have not
-  /// arrived yet.
+  /// Whether the points of positions are known. They are not in a view whose picture is moving or whose
+  /// planes have not arrived yet.
   get has_places(): boolean {
     return this.is_slice || !this.picture || (this.picture.header.quality === "rest" && !this.lacks_planes);
   }
@@ -77,7 +77,7 @@ export class Pane {
   get is_slice(): boolean {
     return this.setting.mode !== "view";
   }
-  /// Whether the background is white, as for surfaces on a light page. Samples have a black one.
+  /// Whether the background is white, as for surfaces on a light page. Pictures of samples have a black one.
   get is_on_white(): boolean {
     return !this.is_slice && !is_dark() && !["radiograph", "mip"].includes(this.setting.shading);
   }
@@ -104,7 +104,8 @@ export class Pane {
   }
   private is_dragging = false;
 
-  /// Adapts the canvas to its size in the page. A pane that comes into sight again requests what it wanted meanwhile.
+  /// Adapts the canvas to its size in the page. A pane that becomes visible again sends the request that it
+  /// put off.
   resized(): void {
     const width = Math.round(this.canvas.clientWidth * this.ratio);
     const height = Math.round(this.canvas.clientHeight * this.ratio);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What comes beside a picture at rest: the depth and the object of every pixel of a view, the samples of a
-// slice.
+// The data that come with a picture at rest: the depth and the object of every pixel of a view, the samples
+// of a slice.
 import {FrameHeader} from "../protocol";
 
 export interface Planes {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Temporary settings of the views, which are no steps: the cut plane, colours by distance, contacts.
+// Temporary settings of the views, which are not steps of the plan: the cut plane, colours by distance,
+// contacts.
 import {add_step, free_id} from "../actions";
 import {clear_compare} from "../commands";
 import {object_ids} from "../drawn_objects";
@@ -68,7 +69,7 @@ export function compare_card(): Child {
       el("p", {class: "says"},
          mutual ?
              "Colours both by their distance to each other: white where they touch, blue where they overlap, orange where they are apart. The views from below and above show one alone." :
-             "Colours each surface point of the first object by its distance to the nearest of the second: orange outside of it, blue inside."),
+             "Colours each surface point of the first object by its distance to the nearest point of the second: orange outside of it, blue inside."),
       choose("object", mutual ? "One" : "Object"),
       choose("reference", mutual ? "The other" : "Compared with"),
       el("label", {class: "field"}, el("span", {}, "Last colours at"), el("input", {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Pointer, pen, touch, wheel and keys in a pane: the tool in hand first, then turning, panning, zooming,
-// slices, the cross-hair.
+// Pointer, pen, touch, wheel and keys in a pane. The chosen tool handles them first, then turning, panning,
+// zooming, slices and the cross-hair.
 import {mirror_from, MirrorDrag} from "./mirror_plane";
 import {tilt_from} from "./oblique";
 import type {Pane} from "./panes";

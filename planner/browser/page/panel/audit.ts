@@ -22,7 +22,7 @@ const marks = {
 function sentence_of(row: AuditRow): string {
   const quotes = /^(identity|patient(?!_position|_orientation).*)$/.test(row.check ?? "");
   return state.hides_patient && quotes && row.verdict !== "PASS" ?
-      "what the files state of the patient differs; hidden here" :
+      "the files state different things about the patient; hidden here" :
       row.sentence;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A certificate as a badge on every number: both kernels agree, there is a doubt, they disagree, or nothing
-// is certified yet.
+// The badge that shows a number's certificate: both kernels agree, they agree with a warning, they disagree,
+// or nothing is certified yet.
 import {Child, el} from "../base/html";
 import {grouped, unit_text} from "../base/numbers";
 import {show_place} from "../pane/pane_grid";
@@ -9,7 +9,7 @@ import {set} from "../state";
 
 const words = {
   PASS: "both kernels agree",
-  WARN: "the kernels agree, with a doubt",
+  WARN: "the kernels agree, with a warning",
   FAIL: "the kernels disagree"
 } as const;
 const signs = {
@@ -23,7 +23,7 @@ export const is_wider_than_its_value = (measured: Measured|null|undefined): bool
     measured !== null && measured !== undefined && measured.value !== null &&
     (measured.half_width ?? 0) > Math.abs(measured.value);
 
-/// The badge for a certificate and its number. If the interval is wider than the value, at best a doubt.
+/// The certificate that a number's badge shows. If the interval is wider than the value, PASS becomes WARN.
 export function judged(
     certificate: Certificate|null|undefined, measured: Measured|null|undefined): Certificate|null|undefined {
   if (certificate?.verdict !== "PASS" || !is_wider_than_its_value(measured)) return certificate;
@@ -48,7 +48,7 @@ export function badge(
           "data-tip": "Not certified yet. Certify computes all objects in both kernels and compares them."
         },
         "·");
-  const resolved = certificate.resolved === false ? " Not resolved: smaller than the voxels can tell." : "";
+  const resolved = certificate.resolved === false ? " Not resolved: smaller than the voxels can resolve." : "";
   return el(
       "button", {
         type: "button",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What cleans a window's object: each proposal with its numbers, a picture before and after, and a click that makes
-// it a step of the plan. None acts by itself.
+// Proposals to clean a window's object, each with its numbers, a picture before and after, and a button that
+// makes it a step of the plan. No proposal is applied by itself.
 import {add_step, ask, edit, free_id} from "../actions";
 import {button, Child, el} from "../base/html";
 import {grouped} from "../base/numbers";
@@ -79,7 +79,7 @@ function largest(step: Step, {parts, mm3, whole_mm3}: Part): Proposal|null {
     title: "Keep the largest part",
     says: `Of ${grouped(parts)} parts that do not touch each other, the largest has ${share(mm3, whole_mm3)} of the volume. ` +
         `The other ${others === 1 ? "one has" : `${grouped(others)} have`} ${cm3(whole_mm3 - mm3)}.`,
-    doubts: mm3 < 0.9 * whole_mm3 ? ["A lower jaw that does not touch the skull is a part of its own: look before you keep one part alone."] :
+    doubts: mm3 < 0.9 * whole_mm3 ? ["A lower jaw that does not touch the skull is a separate part: look before you keep only one part."] :
                                     [],
     made: {id: free_id(`${step.id}_largest`), do: "parts", object: step.id, largest: 1},
   };
@@ -103,7 +103,7 @@ async function tried(step: Step, whole_mm3: number, operation: string, stem: str
     const mm3 = object.mm3 - whole_mm3;
     return {made, lost: changed_by(mm3, whole_mm3), details: scan.details, findings: scan.findings, mm3};
   } catch (error) {
-    if (error instanceof Refusal && error.code !== "lost") return null;  // the operation is not applicable to this scan
+    if (error instanceof Refusal && error.code !== "lost") return null;  // not applicable to this scan
     throw error;
   }
 }
@@ -165,7 +165,7 @@ export function cleaning_rows(step: Step): Child {
         "div", {class: "row"},
         button(
             "Look for what to clean",
-            "Look for what to clean. Other parts, a headrest and metal streaks, each as a proposal",
+            "Look for what to clean. Proposes to remove other parts, a headrest and metal streaks",
             () => void look_for_cleaning(step.id), {"data-key": "clean"}));
   const open = cleaning.proposals.filter(
       ({name}) => !cleaning.dismissed.includes(name) &&
@@ -175,7 +175,7 @@ export function cleaning_rows(step: Step): Child {
       el("h4", {}, "Cleaning"),
       el("p", {class: "says", role: "status"},
          cleaning.is_looking     ? "Looking for other parts, a headrest and metal streaks …" :
-             open.length         ? "Proposals. None is done before you choose it, and each can be undone." :
+             open.length         ? "Proposals. Nothing is done before you choose one, and each can be undone." :
              cleaning.dismissed.length ? "No other proposal." :
                                    "Nothing to clean was found."),
       open.map((proposal) => proposal_card(step, proposal)));
@@ -193,7 +193,7 @@ function proposal_card(step: Step, proposal: Proposal): Child {
       el("div", {class: "row"},
          el("span", {class: "presets", role: "group", "aria-label": `Picture: ${title}`},
             side("Before", "The panes show the object as it is", !is_after, null),
-            side("After", "The panes show what this would make of it", is_after, proposal)),
+            side("After", "The panes show the object after this step", is_after, proposal)),
          el("span", {class: "spring"}),
          button(
              "Dismiss", `Dismiss: ${title}. Hides the proposal and leaves the plan as it is`,

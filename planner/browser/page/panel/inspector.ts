@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The right column: the tool in hand and the selected step, the plan's numbers with their certificates, and
+// The right column: the chosen tool and the selected step, the plan's numbers with their certificates, and
 // how far each piece and landmark moves.
 import {add_step, replace_step} from "../actions";
 import {live_rows, live_rows_of_draft} from "./live_step";
@@ -31,7 +31,7 @@ export function make_inspector(host: HTMLElement): void {
     fill_tabs(
         tabs, state.right_tab,
         [
-          ["inspector", "Inspector", "Inspector: the tool in hand and the selected step"],
+          ["inspector", "Inspector", "Inspector: the tool in use and the selected step"],
           ["numbers", "Numbers", "Numbers: volumes and measurements with their certificates"],
           ["movement", "Movement", "Movement: how far each piece and landmark moves"]
         ],

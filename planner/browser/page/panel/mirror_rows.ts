@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The plane about which a selected object was mirrored: where it lies, how well it fits, and fields that move it.
+// The plane about which a selected object was mirrored: where it lies, how well it fits, and fields that move
+// it.
 import {replace_step} from "../actions";
 import {Child, el} from "../base/html";
 import {plane_of} from "../pane/mirror_plane";
@@ -17,8 +18,8 @@ export function mirror_rows(step: Step): Child {
   const residual = typeof fit?.rms_mm === "number" ?
       `Fitted: the two halves lie ${fit.rms_mm.toFixed(2)} mm apart (root mean square) over ${
           Math.round(100 * (fit.kept_share ?? 1))} % of the surface.${
-          fit.converged === false ? " The fit had not come to rest: look at the plane." : ""}` :
-      "As given, not fitted: no residual.";
+          fit.converged === false ? " The fit did not converge: look at the plane." : ""}` :
+      "The plane was given, not fitted, so it has no residual.";
   const move = (event: Event): void => {
     const by_mm = Number((event.target as HTMLInputElement).value);
     if (!by_mm) return;

@@ -99,7 +99,7 @@ function difference_switch(): Child {
   return el(
       "label", {
         class: "field",
-        "data-tip": "Draws what only the piece holds and what only the other object holds in two colours, at each step of the motion"
+        "data-tip": "Draws in two colours what only the piece and what only the other object contains, while the piece moves"
       },
       el("span", {}, "Difference to"),
       el("select", {

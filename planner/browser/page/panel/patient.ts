@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Whom the plan is about, and the switch that hides it.
+// The patient of the plan, and the switch that hides the name.
 import {button, Child, el} from "../base/html";
 import {icon} from "../base/icons";
 import {Patient, ScanState} from "../protocol";
@@ -21,8 +21,8 @@ export function patient_button(): Child {
   const words = state.hides_patient ? hidden : short_words(scan.patient);
   return button(
       [icon(state.hides_patient ? "eye_off" : "eye", 14), words],
-      state.hides_patient ? "Shows whom the scan is of, here and in new reports" :
-                            "Hides whom the scan is of, here and in new reports",
+      state.hides_patient ? "Shows the patient's name, number and dates, here and in new reports" :
+                            "Hides the patient's name, number and dates, here and in new reports",
       () => hide_patient(!state.hides_patient),
       {class: "ghost small patient", "aria-label": `${words}. ${state.hides_patient ? "Show" : "Hide"} the patient`});
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a measuring step found: its tables and plots, as in the report, and what the panes can show of it.
+// The result of a measuring step: its tables and plots, as in the report, and buttons that show it in the
+// panes.
 import {clear_compare} from "../commands";
 import {open_dialog} from "../base/dialog";
 import {button, Child, el} from "../base/html";

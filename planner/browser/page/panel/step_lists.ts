@@ -44,7 +44,7 @@ function scan_choice(): Child {
   if (names.length < 2) return null;
   return el(
       "label",
-      {class: "field", "data-tip": "The scan whose slices are shown. A donor's lies in a frame of its own."},
+      {class: "field", "data-tip": "The scan whose slices are shown. A donor's scan has its own frame of reference."},
       el("span", {}, "Scan"),
       el("select", {
         "data-key": "scan",
@@ -143,7 +143,7 @@ export function step_words(step: Step): string {
   }
 }
 
-/// Why a step has no result. That of a scan is told beside the measurements.
+/// The reason why a step has no result. For a step that makes a scan, it stands in the measurements.
 function error_of(step: Step): string|null|undefined {
   if (!makes_scan(step)) return object_of(step.id)?.error;
   return state.plan?.measurements?.find((one) => one.id === step.id && one.value === null)?.sentence;
@@ -193,10 +193,10 @@ function step_menu(step: Step): Child {
              "Copy as Python", "Copies a line of Python that adds this step",
              () => void copy_command(step, "python"), {role: "menuitem"}),
          button(
-             "Put earlier", "Puts the step one place earlier; not before what it uses",
+             "Put earlier", "Puts the step one place earlier, but not before a step that it uses",
              () => put_step_at(step.id, steps().indexOf(step) - 1), {role: "menuitem"}),
          button(
-             "Put later", "Puts the step one place later; not behind what uses it",
+             "Put later", "Puts the step one place later, but not after a step that uses it",
              () => put_step_at(step.id, steps().indexOf(step) + 1), {role: "menuitem"}),
          button(
              "Remove", "Removes the step from the plan; undo restores it", () => remove_step(step),
@@ -225,7 +225,7 @@ function history(): Child {
     el("div", {class: "row"},
        button(
            [icon("branch", 15), "New branch"],
-           "New branch. Tries something beside the present plan; both are kept", () => void new_branch()),
+           "New branch. Changes go to a new branch; the present plan stays on this one", () => void new_branch()),
        button("Name version", "Names this state, so that you find it again", () => void name_version())),
     plan.branches.length > 1 ?
         el("label", {class: "field"}, el("span", {}, "Branch"),

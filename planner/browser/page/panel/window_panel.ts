@@ -76,7 +76,7 @@ function panel(): Child {
   return [
     !is_in_hu(draft.scan) ?
         el("p", {class: "says"},
-           "The samples of this scan are no Hounsfield units, so no tissue has known thresholds in them.") :
+           "The samples of this scan are not in Hounsfield units, so the tissues' thresholds do not apply.") :
         el("div", {class: "presets", role: "group", "aria-label": "Tissues"}, tissues.map((tissue) => {
       const on = draft.low === (tissue.low ?? least) && draft.high === (tissue.high ?? undefined);
       return button(

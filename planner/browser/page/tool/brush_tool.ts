@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The brush: a drag over the selected object erases it along the stroke, or paints onto it. Each stroke is one change
-// of the plan; further strokes of the same mode are added to the same step.
+// The brush: a drag over the selected object erases it along the stroke, or paints onto it. Each stroke is
+// one change of the plan; further strokes of the same mode are added to the same step.
 import {add_step, free_id, replace_step} from "../actions";
 import {button, Child, el, slider} from "../base/html";
 import {ink, line, text} from "../base/ink";
@@ -47,7 +47,7 @@ function target(as: Mode): {step: Step; going_on: boolean}|null {
   return {step, going_on: step.do === "brush" && mode_of(step) === as && has_room};
 }
 
-/// A line without points within a fiftieth of the radius of it (Douglas and Peucker 1973).
+/// A line without the points that lie within `within_mm` of the simplified line (Douglas and Peucker 1973).
 function simplified(points: Vec3[], within_mm: number): Vec3[] {
   const first = points[0]!, last = points[points.length - 1]!;
   if (points.length < 3) return points;
@@ -128,7 +128,7 @@ function begin(pane: Pane, at: Vec2, by_keys: boolean): boolean {
   return true;
 }
 
-/// Extends the stroke. Beside the surfaces of a view there is no depth, so the stroke pauses there.
+/// Extends the stroke. Where a view shows no surface there is no depth, so the stroke pauses there.
 function go_on(pane: Pane, at: Vec2): void {
   if (!draft || draft.pane !== pane || pane.is_beside(at)) return;
   const part = draft.parts[draft.parts.length - 1]!;
@@ -155,7 +155,7 @@ const colour = (): string => mode === "paint" ? ink.good : ink.bad;
 export const brush_tool: Tool = {
   name: "brush",
   title: "Brush",
-  says: "Drag over the selected object in a view or slice: erases it under the brush, or paints onto it. [ and ] change the radius.",
+  says: "Drag over the selected object in a view or slice to erase it under the brush, or to paint onto it. [ and ] change the radius.",
   key: "b",
   cursor: "crosshair",
   is_pointed: true,
@@ -260,7 +260,7 @@ function panel(): Child {
     el("p", {class: "says"},
        !on ? "Select the object to draw on." :
              `The next stroke ${mode === "paint" ? "adds to" : "erases from"} ${name}${on.going_on ? ", in the same step" : ", as a new step"}.`),
-    mode === "paint" ? el("p", {class: "says"}, "No scan measures what is painted; its findings state how much it is.") : null,
+    mode === "paint" ? el("p", {class: "says"}, "No scan shows the painted material; the step's findings state its volume.") : null,
   ];
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The geometry of contours under the hand: closed lines of points [u, v] in mm. No function changes its arguments.
+// The geometry of contours while they are edited: closed lines of points [u, v] in mm. No function changes
+// its arguments.
 import {Vec2} from "../base/vector";
 
 export type Polygon = Vec2[];
@@ -25,7 +26,7 @@ export function contains(line: Polygon, p: Vec2): boolean {
   return inside;
 }
 
-/// The point of a closed line that is nearest to a given one: the number of its piece, the point, and the
+/// The point of a closed line that is nearest to a given one: the index of its segment, the point, and the
 /// distance.
 export function nearest_on(line: Polygon, p: Vec2): {piece: number; at: Vec2; mm: number} {
   let best = {piece: 0, at: line[0]!, mm: Infinity};
@@ -39,7 +40,8 @@ export function nearest_on(line: Polygon, p: Vec2): {piece: number; at: Vec2; mm
   return best;
 }
 
-/// An open line without points within a distance of it (Douglas and Peucker 1973).
+/// An open line without the points that lie within `within_mm` of the simplified line (Douglas and Peucker
+/// 1973).
 export function simplified(line: Polygon, within_mm: number): Polygon {
   if (line.length < 3) return line;
   const first = line[0]!, last = line[line.length - 1]!;
@@ -71,7 +73,7 @@ export function tidy(line: Polygon): Polygon {
 /// Replaces a part of the line by a stroke that begins and ends on it. The longer part of the line stays.
 export function spliced(line: Polygon, stroke: Polygon, within_mm: number): Polygon|null {
   const from = nearest_on(line, stroke[0]!), to = nearest_on(line, stroke[stroke.length - 1]!);
-  // The points along the line from one place on to another.
+  // The points of the line after one place, up to another.
   const onward = (start: {piece: number}, end: {piece: number}): Polygon => {
     const part: Polygon = [];
     for (let i = (start.piece + 1) % line.length, left = line.length; left > 0; i = (i + 1) % line.length, --left) {
@@ -87,7 +89,7 @@ export function spliced(line: Polygon, stroke: Polygon, within_mm: number): Poly
   return made.length > 2 && Math.abs(area_mm2(made)) >= 0.5 ? made : null;
 }
 
-/// The line with pieces of at most this length near a position.
+/// The line with segments of at most `most_mm` near a position, but at most 200 for each original segment.
 export function refined(line: Polygon, at: Vec2, reach_mm: number, most_mm: number): Polygon {
   return line.flatMap((a, i) => {
     const b = line[(i + 1) % line.length]!;
@@ -105,7 +107,7 @@ export function dragged(line: Polygon, point: number, to: Vec2, reach_mm: number
   });
 }
 
-/// Moves points near a position towards the middle of their neighbours, and out again by slightly less, so
+/// Moves points near a position towards the middle of their neighbours, and out again by slightly more, so
 /// that the line becomes smooth without shrinking (Taubin 1995).
 export function smoothed(line: Polygon, at: Vec2, reach_mm: number): Polygon {
   const step = (all: Polygon, share: number): Polygon => all.map((p, i) => {
@@ -116,7 +118,7 @@ export function smoothed(line: Polygon, at: Vec2, reach_mm: number): Polygon {
   return step(step(line, 0.5), -0.52);
 }
 
-/// Whether the areas of two closed lines overlap and neither lies as a hole in the other.
+/// Whether a corner of one closed line lies within the other. True also if one line encloses the other.
 export const overlap = (a: Polygon, b: Polygon): boolean => {
   const inside = a.filter((p) => contains(b, p)).length, around = b.filter((p) => contains(a, p)).length;
   return inside > 0 || around > 0;

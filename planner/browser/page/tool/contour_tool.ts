@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The contour workbench: in a slice, contours are drawn, dragged, smoothed, erased, found around a pixel, taken from an
-// object, and copied to the next slices. Each is one change of a step `tile`, whose object both kernels make of them.
+// The contour workbench: in a slice, contours are drawn, dragged, smoothed, erased, found around a pixel,
+// taken from an object, and copied to the next slices. Each edit changes one step `tile`, from whose contours
+// both kernels make an object.
 import {add_step, edit, free_id, replace_step, try_to} from "../actions";
 import {button, Child, el} from "../base/html";
 import {dot_at, ink, line, text} from "../base/ink";
@@ -39,7 +40,7 @@ let drawn: {pane: Pane; points: Polygon; is_by_corners: boolean}|null = null;
 let held: {pane: Pane; step: Step; slices: Slice[]; contour: Polygon; index: number; before: Polygon; point: number}|null = null;
 let pointed: {pane: Pane; at: Vec2}|null = null;
 let last_pane: Pane|null = null;
-/// Changes run one after the other, because each starts from the step that the one before has made.
+/// Changes run one after the other, because each starts from the step that the previous one has made.
 let queue: Promise<unknown> = Promise.resolve();
 
 const slices_of = (step: Step): Slice[] => structuredClone((step.contours ?? []) as unknown as Slice[]);
@@ -59,7 +60,7 @@ function place_of(pane: Pane|null): Place|string {
   const view = view_text(view_of_plane(pane.setting.plane, pane.setting.tilt));
   const frame = frame_of(view);
   if (dot(frame.look, pane.frame.look) < 1 - 1e-9)
-    return "The head is held turned here: contours are drawn on the scan as it lies. Remove the head's position first.";
+    return "The head is repositioned here, and contours are drawn in the scan's own slices. Remove the step head_position first.";
   return {view, ...frame, position_mm: hundredth(dot(state.cross_mm, frame.look))};
 }
 const needed_place = (pane: Pane|null): Place|null => {
@@ -163,7 +164,7 @@ function take_hold(pane: Pane, at: Vec2): boolean {
   }
   const slices = slices_of(step);
   const here = slices.find((slice) => is_here(slice, place))!;
-  // If a piece is grabbed between its ends, it gets a point there.
+  // A contour that is grabbed between two points gets a new point there.
   let contour = mode === "drag" && reach_mm > 0 ? refined(here.polygons_mm[index]!, uv, reach_mm, reach_mm / 6) : here.polygons_mm[index]!;
   if (mode === "smooth") contour = refined(contour, uv, reach_mm, Math.max(0.3, reach_mm / 10));
   const on = nearest_on(contour, uv);
@@ -234,7 +235,7 @@ function take_over(): void {
   trace(place, {object}, `contours of ${object} at ${at_mm(place)}`);
 }
 
-/// The pane that was used last, or the first one that shows a slice.
+/// The pane with a slice that was used last; null if none was.
 const slice_pane = (): Pane|null => last_pane;
 
 /// Copies the slice's contours to the next slice and shows that slice.
@@ -396,8 +397,8 @@ function panel(): Child {
   const count = is_ours(step) ? slices_of(step).reduce((sum, slice) => sum + slice.polygons_mm.length, 0) : 0;
   return [
     el("div", {class: "presets", role: "group", "aria-label": "What the pointer does to contours"},
-       choice("Draw", "A drag draws a contour, or a stretch of one anew; clicks set corners, Enter closes", "draw"),
-       choice("Drag", "Drags a place of a contour, and what is near it", "drag"),
+       choice("Draw", "A drag draws a contour, or replaces a part of one; clicks set corners, Enter closes", "draw"),
+       choice("Drag", "Drags a point of a contour, and its neighbours", "drag"),
        choice("Smooth", "Smooths a contour along the drag", "smooth"),
        choice("Erase", "A click removes a contour", "erase"),
        choice("Seed", "A click finds the region of the slice around a pixel", "seed")),

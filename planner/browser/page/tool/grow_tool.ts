@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Region growing: a click sets a seed, and a drag from it the tolerance. The region that grows is shown meanwhile, and
-// is a step of the plan once it is accepted.
+// Region growing: a click sets a seed, and a drag from it sets the tolerance. The growing region is shown
+// meanwhile; when the person accepts it, it becomes a step of the plan.
 import {add_step, free_id, try_to} from "../actions";
 import {button, Child, el, slider} from "../base/html";
 import {dot_at, ink, label} from "../base/ink";
@@ -110,7 +110,7 @@ export const grow_tool: Tool = {
       return true;
     }
     if (is_elsewhere()) {
-      notify("Objects are made of the patient's scan: show it first.", "warning");
+      notify("Objects are made from the patient's scan: show it first.", "warning");
       return true;
     }
     const seed = seed_at(pane, at);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The piece that moves: which one it is, how it moves now, a motion tried, and one kept as a step.
+// The piece that moves: its object, its present motion, the preview of another motion, and the step that
+// stores it.
 import {add_steps, free_id, replace_step} from "../actions";
 import {directions, lps, motion_words} from "../base/anatomical";
 import {is_overlap, look_of} from "../drawn_objects";
@@ -102,7 +103,7 @@ export async function commit_motion(move: Motion): Promise<void> {
     const id = free_id(`${one.source}_moved`);
     const stays = others(one.source, id);
     const more: Step[] = [{id, do: "move", object: one.source, ...fields} as Step];
-    // The overlap of both, and last the operation's outcome, which the report shows.
+    // Adds the overlap and, last, the operation's outcome, which the report shows.
     if (stays.length)
       more.push(
           {

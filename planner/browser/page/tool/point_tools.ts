@@ -38,7 +38,7 @@ function landmark_at(pane: Pane, at: Vec2): {name: string; point: Vec3}|undefine
     return Math.hypot(p[0] - at[0], p[1] - at[1]) < near_px * pane.ratio;
   });
 }
-/// The point under the pointer. Beside the surfaces of a view there is no depth: the page shows a message and
+/// The point under the pointer. Where a view shows no surface there is no depth: the page shows a message and
 /// nothing is placed.
 export function place_at(pane: Pane, at: Vec2): Vec3|null {
   if (!pane.has_places) {
@@ -162,15 +162,14 @@ export async function guess_landmarks(): Promise<void> {
     next_guess();
 }
 
-/// Continues with the next guess, and shows its place in all panes. `placed` may still be open in the plan's
-/// state.
+/// Continues with the next guess and moves the cross-hair to it. `placed` may not be in the plan's state yet.
 function next_guess(placed = ""): void {
   const next = open_guesses().find((guess) => guess.name !== placed);
   landmark_name = next?.name ?? "";
   show_guess();
 }
 
-/// Selects the guess's landmark in the panel, and shows its place in all panes.
+/// Shows the guess of the next landmark in the panel, and moves the cross-hair to it.
 function show_guess(): void {
   const guess = current_guess();
   set(guess ? {tool: state.tool, cross_mm: hundredths(guess.point_mm)} : {tool: state.tool});

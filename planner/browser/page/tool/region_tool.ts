@@ -114,7 +114,7 @@ export const region_tool: Tool = {
       mask && target ?
           el("div", {class: "row"},
              button(
-                 "Cut inside", `Keeps the part of ${target} inside the mask. And the rest as a second object`,
+                 "Cut inside", `Makes the part of ${target} inside the mask an object. The rest becomes a second one`,
                  () => void cut(mask, target), {class: "primary"}),
              button(
                  "New mask", "Begins another mask. The next region you draw starts it",

@@ -18,7 +18,7 @@ export interface Tool {
   key: string;   // the key that chooses the tool
   cursor: string;
   is_pointed?: boolean;  // it works on positions: arrow keys move a position in the pane, and Space clicks it
-  down?(pointer: Pointer): boolean;  // returns true to capture the drag
+  down?(pointer: Pointer): boolean;  // returns true if the tool takes the drag
   move?(pointer: Pointer): void;
   up?(pointer: Pointer): void;
   cancel?(): void;  // a second finger came down: undoes what `down` did; without it, `up` is called
@@ -42,7 +42,7 @@ export function take_tool(name: string): void {
   if (name === state.tool) return;
   active_tool()?.left?.();
   set({tool: name});
-  // Its rows are in the inspector.
+  // The tool's rows are in the inspector.
   if (name !== "navigate") set({right_tab: "inspector"});
   active_tool()?.taken?.();
 }

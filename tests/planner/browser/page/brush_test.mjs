@@ -103,7 +103,7 @@ test('a stroke in a view lies on the surface, and a slab faces it', async () => 
 test('what is painted is a step of its own, whose findings state that it is not measured', async () => {
   await choose('Ball');
   await choose('Paint');
-  await one.page.getByText('No scan measures what is painted').waitFor();
+  await one.page.getByText('No scan shows the painted material').waitFor();
   await one.drag(view, [-20, 55], [20, 55]);
   await one.until(() => step('skull_erased_painted'), 'paint as a step');
   assert.equal(step('skull_erased_painted').mode, 'paint');

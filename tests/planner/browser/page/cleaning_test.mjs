@@ -68,7 +68,7 @@ test('a window that becomes a step proposes what cleans it, and nothing is done 
   await group('Keep the largest part').waitFor();
   await group('Remove the headrest').waitFor();
   await group('Clamp metal streaks').waitFor();
-  await one.page.getByText('None is done before you choose it').waitFor();
+  await one.page.getByText('Nothing is done before you choose one').waitFor();
   const words = await group('Keep the largest part').innerText();
   assert.match(words, /The other .* ha(s|ve) \d[\d.,\s]* cm³/);
   assert.match(await group('Remove the headrest').innerText(), /loses [\d.]+ cm³/);
@@ -108,7 +108,7 @@ test('one click makes a proposal an ordinary step, which undo takes back', async
   assert.deepEqual(plan().steps.map((each) => each.do), ['remove_headrest', 'window']);
   assert.equal(plan().steps[1].scan, plan().steps[0].id);
   await group('Keep the largest part').waitFor();
-  await one.page.getByText('None is done before you choose it').waitFor();
+  await one.page.getByText('Nothing is done before you choose one').waitFor();
   assert.equal(await group('Remove the headrest').count(), 0);
   assert.equal(await group('Clamp metal streaks').count(), 0, 'dismissed');
   await one.click(group('Keep the largest part').locator('[data-key="largest-do"]'));

@@ -67,7 +67,7 @@ after(async () => {
 
 test('a certified step lists its thin neck, with the volume beyond it, and a click shows the place', async () => {
   assert.equal(await section().count(), 0, 'nothing is listed before both kernels were compared');
-  assert.match(await certified(), /with a doubt/);
+  assert.match(await certified(), /with a warning/);
   const words = await section().innerText();
   const mm3 = Number(words.match(/([\d\s\u202f]+) mm³ near/)[1].replace(/\D/g, ''));
   assert.ok(Math.abs(mm3 - cubic_mm(8)) < 0.15 * cubic_mm(8), `${words}: the smaller ball`);

@@ -561,7 +561,7 @@ class Begun(unittest.TestCase):
         before = sorted(os.listdir(self.folder))
         with socket.create_server(("127.0.0.1", 0)) as taken:
             for said, why in ((["--port", taken.getsockname()[1]], "cannot listen there"),
-                              (["--listen", "nonsense"], "is no address"),
+                              (["--listen", "nonsense"], "is not an IP address"),
                               (["--token-file", "token"], "others may read"),
                               (["other.nrrd"], "name one plan or scan")):
                 with self.subTest(said=said):

@@ -227,7 +227,8 @@ class Identity(unittest.TestCase):
         named = dict(PLAN, scans={"ct": {"path": "x"}}, steps=[dict(PLAN["steps"][0], id="PlantedFamily_skull")])
         (self.folder / "named.plan.json").write_text(json.dumps(named))
         for words, cause in [
-                (["named.plan.json", *source, "--identity", "remove", "-o", "o"], "'plantedfamily', which the source states"),
+                (["named.plan.json", *source, "--identity", "remove", "-o", "o"],
+                 "'plantedfamily', which the source states about"),
                 (["named.plan.json", *source, "--pictures", self.at / "views", "-o", "o"], "the result of another plan"),
                 (["named.plan.json", *source, "--pictures", self.at, "-o", "o"], "holds no result.json"),
                 (["named.plan.json", *source, "-o", "o.dcm"], "give a folder"),

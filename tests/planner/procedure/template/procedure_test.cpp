@@ -82,8 +82,8 @@ TEST(Procedure, AnOptionAddsItsValuesAndStepsAndIsKnownByItsName) {
     });
   };
   EXPECT_EQ(parsed("b_mm", "two"), "");
-  EXPECT_NE(parsed("a_mm", "two").find("value 'a_mm' stands twice"), std::string::npos);
-  EXPECT_NE(parsed("b_mm", "one").find("step 'one' stands twice"), std::string::npos);
+  EXPECT_NE(parsed("a_mm", "two").find("value 'a_mm' is defined twice"), std::string::npos);
+  EXPECT_NE(parsed("b_mm", "one").find("step 'one' is defined twice"), std::string::npos);
 }
 
 TEST(Procedure, APlaceAlongTheHeadsDirectionsBecomesAPointOfTheScan) {
@@ -367,9 +367,9 @@ TEST(Procedure, AMirroredReconstructionFillsAHoleUpToItsGap) {
 }
 
 TEST(Procedure, AFlapTakesItsDonorsScanAndRefusesToDoWithout) {
-  EXPECT_NE(refusal("fibula_flap", head_input())
-                .find("lacks a scan: 'donor', the donor's scan: give it by --donor"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal("fibula_flap", head_input()).find("lacks a scan: 'donor', the donor's scan: add it by --donor"),
+      std::string::npos);
   ProcedureInput input = head_input();
   input.further_scans["donor"] = {{"path", "leg.nrrd"}};
   EXPECT_EQ(refusal("fibula_flap", input), "");
