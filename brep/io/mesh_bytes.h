@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,9 +24,27 @@ struct CellData {
   std::vector<std::string> part_names;
 };
 
+/// Writes a file in pieces, so that the whole need not be in memory.
+struct Sink {
+  std::ofstream& file;
+  std::string bytes{};
+
+  /// Writes the buffer if it is large; is called between items.
+  void let_go() {
+    if (bytes.size() >= (1u << 20)) flush();
+  }
+  void flush() {
+    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    bytes.clear();
+  }
+};
+
+/// Writes to a temporary file by `write` and renames it into place. Throws Error with path and reason.
+void replace_file(const std::filesystem::path& path, const std::function<void(Sink&)>& write);
+
 /// VTK's XML polydata with raw data appended: points and vertex data as doubles, normals in single precision.
 /// Normals are omitted if `cells` has numbers.
-std::string vtp_of(const Triangles& triangles, const VertexData& data, const CellData& cells = {});
+void write_vtp(const Triangles& triangles, const VertexData& data, const CellData& cells, Sink& sink);
 
 /// glTF 2.0, binary: single precision millimetres, and a node that transforms them to the format's metres
 /// with y to the head and z to the front. Scalars are not written.
@@ -40,7 +61,7 @@ std::string glb_of(const std::vector<glm::dvec3>& points_mm, const std::vector<G
 /// The extension in lower case, with its dot.
 std::string lower_extension(const std::filesystem::path& path);
 
-/// Writes to a temporary file and renames it into place. Throws Error with path and reason.
+/// As replace_file().
 void write_bytes(const std::filesystem::path& path, const std::string& bytes);
 
 /// Unit normals of the points: means of the surrounding triangles' normals, weighted by area. (0, 0, 1) if

@@ -39,21 +39,6 @@ void append_point(std::string& bytes, const glm::dvec3& p) {
   bytes += '\n';
 }
 
-/// Writes a file in pieces, so that the whole need not be in memory.
-struct Sink {
-  std::ofstream& file;
-  std::string bytes{};
-
-  /// Writes the buffer if it is large; is called between items.
-  void let_go() {
-    if (bytes.size() >= (1u << 20)) flush();
-  }
-  void flush() {
-    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    bytes.clear();
-  }
-};
-
 void write_stl(const Triangles& triangles, Sink& sink) {
   std::string& bytes = sink.bytes;
   bytes = "octotomy, binary STL, LPS millimetres, SPACE=LPS";
@@ -156,9 +141,28 @@ ErrorCode code_of(int number) {
                                    : "; check that its folder exists, may be written and has room"));
 }
 
-/// Writes to a temporary file by `write` and renames it into place.
-template <typename Write>
-void replace_file(const std::filesystem::path& path, const Write& write) {
+void check(const VertexData& data, std::size_t vertex_count) {
+  const auto fits = [&](std::size_t count) { return count == 0 || count == vertex_count; };
+  if (!fits(data.colours.size()) || !fits(data.scalars.size()))
+    throw std::invalid_argument("write_mesh: vertex data are for another number of vertices than " +
+                                std::to_string(vertex_count));
+  const bool is_word = !data.scalar_name.empty() &&
+                       std::all_of(data.scalar_name.begin(), data.scalar_name.end(),
+                                   [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+  if (!data.scalars.empty() && !is_word)
+    throw std::invalid_argument("write_mesh: '" + data.scalar_name + "' is not a name for scalars");
+}
+
+}  // namespace
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+void replace_file(const std::filesystem::path& path, const std::function<void(Sink&)>& write) {
   std::filesystem::path beside = path;
   beside += "." + std::to_string(::getpid()) + ".part";
   std::error_code ignored, error;
@@ -180,27 +184,6 @@ void replace_file(const std::filesystem::path& path, const Write& write) {
     std::filesystem::remove(beside, ignored);
     throw Error(code_of(error.value()), path.string() + ": cannot be replaced: " + error.message());
   }
-}
-
-void check(const VertexData& data, std::size_t vertex_count) {
-  const auto fits = [&](std::size_t count) { return count == 0 || count == vertex_count; };
-  if (!fits(data.colours.size()) || !fits(data.scalars.size()))
-    throw std::invalid_argument("write_mesh: vertex data are for another number of vertices than " +
-                                std::to_string(vertex_count));
-  const bool is_word = !data.scalar_name.empty() &&
-                       std::all_of(data.scalar_name.begin(), data.scalar_name.end(),
-                                   [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
-  if (!data.scalars.empty() && !is_word)
-    throw std::invalid_argument("write_mesh: '" + data.scalar_name + "' is not a name for scalars");
-}
-
-}  // namespace
-
-std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
 }
 
 void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
@@ -233,7 +216,7 @@ void write_mesh(const Triangles& triangles, const std::filesystem::path& path, c
   check(data, triangles.points_mm.size());
   if (extension == ".ply") return replace_file(path, [&](Sink& sink) { write_ply(triangles, data, sink); });
   if (extension == ".vtp")
-    return replace_file(path, [&](Sink& sink) { sink.bytes = vtp_of(triangles, data); });
+    return replace_file(path, [&](Sink& sink) { write_vtp(triangles, data, {}, sink); });
   if (extension == ".glb" && data.scalars.empty())
     return replace_file(path, [&](Sink& sink) { sink.bytes = glb_of(triangles, data); });
   if (!data.colours.empty() || !data.scalars.empty())

@@ -105,7 +105,10 @@ void write_parts(const PartedSurface& parted, const std::filesystem::path& path)
         throw std::invalid_argument("write_parts: part " + std::to_string(part) +
                                     " has no name or lies on both sides");
   const std::string extension = lower_extension(path);
-  if (extension == ".vtp") return write_bytes(path, vtp_of(parted.triangles, {}, cells_of(parted)));
+  if (extension == ".vtp")
+    return replace_file(path, [cells = cells_of(parted), &parted](Sink& sink) {
+      write_vtp(parted.triangles, {}, cells, sink);
+    });
   if (extension == ".obj") return write_bytes(path, obj_of(parted));
   if (extension != ".glb")
     throw Error(ErrorCode::Input, path.string() + ": several parts are written as .vtp, .obj or .glb");

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
 #include "brep/io/mesh_bytes.h"
 
 namespace octotomy::brep {
@@ -7,22 +12,31 @@ namespace {
 /// Arrays appended after the XML, each preceded by its length.
 class Appended {
  public:
-  /// The XML element that refers to an array. `write` appends the array to the bytes.
-  template <typename Write>
-  std::string array(const std::string& type, const std::string& name, int components, const Write& write) {
+  /// The XML element that refers to an array of `count` numbers. `write(add)` calls add(number) for each.
+  template <typename Number, typename Write>
+  std::string array(const std::string& type, const std::string& name, int components, std::size_t count,
+                    const Write& write) {
     std::string element = "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
                           std::to_string(components) + "\" format=\"appended\" offset=\"" +
-                          std::to_string(bytes_.size()) + "\"/>\n";
-    std::string values;
-    write(values);
-    append_little(bytes_, static_cast<std::uint64_t>(values.size()));
-    bytes_ += values;
+                          std::to_string(offset_) + "\"/>\n";
+    const std::uint64_t bytes = count * sizeof(Number);
+    offset_ += sizeof(bytes) + bytes;
+    arrays_.push_back([bytes, write](Sink& sink) {
+      append_little(sink.bytes, bytes);
+      write([&sink](Number number) {
+        append_little(sink.bytes, number);
+        sink.let_go();
+      });
+    });
     return element;
   }
-  const std::string& bytes() const { return bytes_; }
+  void write(Sink& sink) const {
+    for (const auto& array : arrays_) array(sink);
+  }
 
  private:
-  std::string bytes_;
+  std::uint64_t offset_ = 0;
+  std::vector<std::function<void(Sink&)>> arrays_;
 };
 
 /// The frame, as 3D Slicer reads it, and the names of the parts. Texts are stored as in VTK: character codes,
@@ -48,54 +62,52 @@ std::string field_data(const CellData& cells) {
 std::string cell_data(const CellData& cells, Appended& appended) {
   std::string xml;
   for (const auto& [name, numbers] : cells.numbers)
-    xml += appended.array("Int32", name, 1, [&numbers = numbers](std::string& values) {
-      for (const std::int32_t number : numbers) append_little(values, number);
-    });
+    xml +=
+        appended.array<std::int32_t>("Int32", name, 1, numbers.size(), [&numbers = numbers](const auto& add) {
+          for (const std::int32_t number : numbers) add(number);
+        });
   return xml.empty() ? xml : "<CellData>\n" + xml + "</CellData>\n";
 }
 
 }  // namespace
 
-std::string vtp_of(const Triangles& triangles, const VertexData& data, const CellData& cells) {
+void write_vtp(const Triangles& triangles, const VertexData& data, const CellData& cells, Sink& sink) {
+  const std::size_t points = triangles.points_mm.size(), faces = triangles.faces.size();
   Appended appended;
   std::string xml =
       "<?xml version=\"1.0\"?>\n<!-- octotomy, LPS millimetres -->\n"
       "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
       "<PolyData>\n" +
-      field_data(cells) + "<Piece NumberOfPoints=\"" + std::to_string(triangles.points_mm.size()) +
+      field_data(cells) + "<Piece NumberOfPoints=\"" + std::to_string(points) +
       "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
-      std::to_string(triangles.faces.size()) + "\">\n<PointData" +
-      (cells.numbers.empty() ? " Normals=\"Normals\"" : "") + ">\n";
+      std::to_string(faces) + "\">\n<PointData" + (cells.numbers.empty() ? " Normals=\"Normals\"" : "") +
+      ">\n";
+  const auto each_axis = [](const auto& vectors) {
+    return [&vectors](const auto& add) {
+      for (const auto& v : vectors)
+        for (int axis = 0; axis < 3; ++axis) add(v[axis]);
+    };
+  };
+  const std::vector<glm::vec3> normals =
+      cells.numbers.empty() ? vertex_normals(triangles) : std::vector<glm::vec3>();
   if (cells.numbers.empty())
-    xml += appended.array("Float32", "Normals", 3, [&](std::string& values) {
-      for (const glm::vec3& n : vertex_normals(triangles))
-        for (int axis = 0; axis < 3; ++axis) append_little(values, n[axis]);
-    });
+    xml += appended.array<float>("Float32", "Normals", 3, 3 * points, each_axis(normals));
   if (!data.colours.empty())
-    xml += appended.array("UInt8", "Colours", 3, [&](std::string& values) {
-      for (const glm::u8vec3& colour : data.colours)
-        for (int channel = 0; channel < 3; ++channel) append_little(values, colour[channel]);
-    });
+    xml += appended.array<std::uint8_t>("UInt8", "Colours", 3, 3 * points, each_axis(data.colours));
   if (!data.scalars.empty())
-    xml += appended.array("Float64", data.scalar_name, 1, [&](std::string& values) {
-      for (const double scalar : data.scalars) append_little(values, scalar);
+    xml += appended.array<double>("Float64", data.scalar_name, 1, points, [&](const auto& add) {
+      for (const double scalar : data.scalars) add(scalar);
     });
   xml += "</PointData>\n" + cell_data(cells, appended) + "<Points>\n";
-  xml += appended.array("Float64", "Points", 3, [&](std::string& values) {
-    for (const glm::dvec3& p : triangles.points_mm)
-      for (int axis = 0; axis < 3; ++axis) append_little(values, p[axis]);
-  });
+  xml += appended.array<double>("Float64", "Points", 3, 3 * points, each_axis(triangles.points_mm));
   xml += "</Points>\n<Polys>\n";
-  xml += appended.array("Int64", "connectivity", 1, [&](std::string& values) {
-    for (const auto& face : triangles.faces)
-      for (const std::uint32_t v : face) append_little(values, static_cast<std::int64_t>(v));
+  xml += appended.array<std::int64_t>("Int64", "connectivity", 1, 3 * faces, each_axis(triangles.faces));
+  xml += appended.array<std::int64_t>("Int64", "offsets", 1, faces, [faces](const auto& add) {
+    for (std::size_t f = 1; f <= faces; ++f) add(static_cast<std::int64_t>(3 * f));
   });
-  xml += appended.array("Int64", "offsets", 1, [&](std::string& values) {
-    for (std::size_t f = 1; f <= triangles.faces.size(); ++f)
-      append_little(values, static_cast<std::int64_t>(3 * f));
-  });
-  xml += "</Polys>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
-  return xml + appended.bytes() + "\n</AppendedData>\n</VTKFile>\n";
+  sink.bytes += xml + "</Polys>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
+  appended.write(sink);
+  sink.bytes += "\n</AppendedData>\n</VTKFile>\n";
 }
 
 }  // namespace octotomy::brep

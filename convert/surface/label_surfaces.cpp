@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
@@ -25,8 +26,8 @@
 //   highest corner. All cells are cut in the same way, so neighbours share whole triangles. A tetrahedron's
 //   triangles follow from which of its corners have equal labels. Triangles name their points by keys: a
 //   point lies on an edge between two labels, on a face between three, or in a tetrahedron between four.
-// 3 The keys of each plane of samples are sorted; the rank of a key is its point's number.
-// 4 The points are placed, and keys replaced by numbers.
+// 3 The keys of each plane of samples are marked, a bit each; the rank of a key is its point's number.
+// 4 The points are placed. The cells are cut again, and keys replaced by numbers.
 //
 // Why the surfaces are sound. Up to where its points lie, a label's region is the union of the dual cells of
 // its samples, which is a regular neighbourhood of the complex that they span, so its boundary is a closed
@@ -42,6 +43,36 @@ using Key = std::uint64_t;
 /// Codes of points at a sample. 8 d + e: the face with the corners 0, d and e, or the edge if d = 0, where
 /// corners are offsets x + 2y + 4z. From first_tetrahedron_code on: the six tetrahedra.
 constexpr std::uint32_t code_count = 128, first_tetrahedron_code = 64;
+
+/// The codes that occur, in ascending order, and the place of each among them: 7 edges, 12 faces and 6
+/// tetrahedra, so that a sample's points are the bits of one word.
+struct Codes {
+  std::vector<std::uint8_t> all;
+  std::array<std::uint8_t, code_count> place{};
+
+  Codes() {
+    for (std::uint32_t code = 1; code < first_tetrahedron_code + 6; ++code) {
+      const std::uint32_t d = code / 8, e = code % 8;
+      if (code < first_tetrahedron_code && (e == 0 || (d & e) != d || d == e)) continue;
+      place[code] = static_cast<std::uint8_t>(all.size());
+      all.push_back(static_cast<std::uint8_t>(code));
+    }
+  }
+};
+const Codes& codes() {
+  static const Codes made;
+  return made;
+}
+
+/// The points of a plane of samples: a word of marks per sample, and the number of points before it.
+struct PlanePoints {
+  std::vector<std::uint32_t> marks, before;
+
+  std::uint32_t rank(std::size_t sample, std::uint8_t place) const {
+    return before[sample] +
+           static_cast<std::uint32_t>(std::popcount(marks[sample] & ((std::uint32_t{1} << place) - 1)));
+  }
+};
 /// The least distance of a point from the ends of its edge, as a part of the edge.
 constexpr double least_part = 0.1;
 
@@ -188,18 +219,13 @@ class Extraction {
 
   brep::PartedSurface run() {
     count_faces(voxel::part_of(options_.progress, 0.0, 0.1));
-    find_faces(voxel::part_of(options_.progress, 0.1, 0.4));
-    number_points(voxel::part_of(options_.progress, 0.4, 0.6));
-    write(voxel::part_of(options_.progress, 0.6, 1.0));
+    number_points(voxel::part_of(options_.progress, 0.1, 0.4));
+    place_points(voxel::part_of(options_.progress, 0.4, 0.7));
+    write_faces(voxel::part_of(options_.progress, 0.7, 1.0));
     return std::move(made_);
   }
 
  private:
-  struct Face {
-    std::array<Key, 3> points;
-    brep::PartedSurface::Sides sides;
-  };
-
   void copy_labels(const voxel::Scene& scene) {
     std::vector<char> wanted(std::size_t{1} << 15, 0);
     for (const voxel::Label& label : voxel::labels(scene)) {
@@ -247,20 +273,16 @@ class Extraction {
     return {static_cast<int>(index % x), static_cast<int>(index / x % y), static_cast<int>(index / x / y)};
   }
 
-  /// Calls visit(z, cell, labels of its corners, pieces of a tetrahedron) for the six of each cell where
-  /// labels differ, in parallel by planes.
+  /// Calls visit(cell, labels of its corners, pieces of a tetrahedron) for the six of each cell of a layer
+  /// where labels differ.
   template <typename Visit>
-  void visit_pieces(const voxel::Progress& progress, const Visit& visit) const {
-    voxel::SharedProgress done(progress, faces_.size());
-    tbb::parallel_for(0, size_.z - 1, [&](int z) {
-      done.one_more();
-      for (int y = 0; y + 1 < size_.y; ++y)
-        for (int x = 0; x + 1 < size_.x; ++x) visit_cell(static_cast<std::size_t>(z), at(x, y, z), visit);
-    });
+  void visit_layer(std::size_t z, const Visit& visit) const {
+    for (int y = 0; y + 1 < size_.y; ++y)
+      for (int x = 0; x + 1 < size_.x; ++x) visit_cell(at(x, y, static_cast<int>(z)), visit);
   }
 
   template <typename Visit>
-  void visit_cell(std::size_t z, std::size_t cell, const Visit& visit) const {
+  void visit_cell(std::size_t cell, const Visit& visit) const {
     std::array<std::int16_t, 8> labels{};
     bool differ = false;
     for (std::size_t corner = 0; corner < 8; ++corner) {
@@ -270,16 +292,18 @@ class Extraction {
     if (!differ) return;
     for (std::size_t t = 0; t < 6; ++t) {
       const std::array<int, 4>& c = tetrahedra[t];
-      visit(z, cell, labels, pieces()[t][pattern_of(labels[c[0]], labels[c[1]], labels[c[2]], labels[c[3]])]);
+      visit(cell, labels, pieces()[t][pattern_of(labels[c[0]], labels[c[1]], labels[c[2]], labels[c[3]])]);
     }
   }
 
   /// Counts the triangles and throws, before they are allocated, if there are too many.
   void count_faces(const voxel::Progress& progress) {
-    faces_.resize(static_cast<std::size_t>(size_.z - 1));
-    std::vector<std::uint64_t> counts(faces_.size());
-    visit_pieces(progress, [&](std::size_t z, std::size_t, const auto&, const CellTriangles& found) {
-      counts[z] += found.size();
+    std::vector<std::uint64_t> counts(static_cast<std::size_t>(size_.z - 1));
+    voxel::SharedProgress done(progress, counts.size());
+    tbb::parallel_for(std::size_t{0}, counts.size(), [&](std::size_t z) {
+      done.one_more();
+      visit_layer(z,
+                  [&](std::size_t, const auto&, const CellTriangles& found) { counts[z] += found.size(); });
     });
     std::uint64_t count = 0;
     for (const std::uint64_t in_layer : counts) {
@@ -291,49 +315,42 @@ class Extraction {
                          "the labels' surfaces would have " + std::to_string(count) +
                              " triangles, more than 32-bit numbers can name: crop or resample the label map");
     // A surface has about half as many points as triangles, each with its key.
-    constexpr std::size_t face_bytes = sizeof(Face) + sizeof(std::array<std::uint32_t, 3>) +
+    constexpr std::size_t face_bytes = sizeof(std::array<std::uint32_t, 3>) +
                                        sizeof(brep::PartedSurface::Sides) +
                                        (sizeof(glm::dvec3) + sizeof(Key)) / 2;
     voxel::need_memory(source_, count, face_bytes,
                        "the " + std::to_string(count) + " triangles between its labels");
-    for (std::size_t z = 0; z < faces_.size(); ++z) faces_[z].reserve(counts[z]);
     first_face_.push_back(count);
   }
 
-  void find_faces(const voxel::Progress& progress) {
-    visit_pieces(
-        progress, [&](std::size_t z, std::size_t cell, const auto& labels, const CellTriangles& found) {
-          for (const CellTriangle& piece : found) {
-            Face face;
-            face.sides = {labels[piece.behind], labels[piece.front]};
-            for (std::size_t i = 0; i < 3; ++i)
-              face.points[i] = (cell + step_[piece.points[i].corner]) * code_count + piece.points[i].code;
-            // Triangles wind outward from their part; between two parts, outward from the part of lower
-            // number.
-            const bool turn =
-                face.sides.behind == 0 || (face.sides.front != 0 && face.sides.front < face.sides.behind);
-            if (turn) std::swap(face.sides.behind, face.sides.front);
-            if (turn == lattice_.right_handed()) std::swap(face.points[1], face.points[2]);
-            faces_[z].push_back(face);
-          }
-        });
+  std::size_t plane_size() const {
+    return static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y);
   }
 
   /// The keys of plane z are named by the cells above and below it.
   void number_points(const voxel::Progress& progress) {
-    const Key plane = Key{code_count} * static_cast<Key>(size_.x) * static_cast<Key>(size_.y);
     keys_.resize(static_cast<std::size_t>(size_.z));
     voxel::SharedProgress done(progress, keys_.size());
+    tbb::enumerable_thread_specific<std::vector<std::uint32_t>> scratch;
     tbb::parallel_for(std::size_t{0}, keys_.size(), [&](std::size_t z) {
       done.one_more();
-      std::vector<Key>& keys = keys_[z];
-      for (std::size_t layer = z == 0 ? 0 : z - 1; layer <= z && layer < faces_.size(); ++layer)
-        for (const Face& face : faces_[layer])
-          for (const Key key : face.points)
-            if (key / plane == z) keys.push_back(key);
-      std::sort(keys.begin(), keys.end());
-      keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-      keys.shrink_to_fit();
+      const std::size_t first = z * plane_size();
+      std::vector<std::uint32_t>& marks = scratch.local();
+      marks.assign(plane_size(), 0);
+      for (std::size_t layer = z == 0 ? 0 : z - 1; layer <= z && layer + 1 < keys_.size(); ++layer)
+        visit_layer(layer, [&](std::size_t cell, const auto&, const CellTriangles& found) {
+          for (const CellTriangle& piece : found)
+            for (const PointName& point : piece.points)
+              if (const std::size_t sample = cell + step_[point.corner] - first; sample < marks.size())
+                marks[sample] |= std::uint32_t{1} << codes().place[point.code];
+        });
+      std::size_t count = 0;
+      for (const std::uint32_t mark : marks) count += static_cast<std::size_t>(std::popcount(mark));
+      keys_[z].reserve(count);
+      for (std::size_t sample = 0; sample < marks.size(); ++sample)
+        for (std::uint32_t left = marks[sample]; left != 0; left &= left - 1)
+          keys_[z].push_back((first + sample) * code_count +
+                             codes().all[static_cast<std::size_t>(std::countr_zero(left))]);
     });
     std::uint64_t points = 0;  // no more than faces, because each point is a corner of at least three
     for (const std::vector<Key>& keys : keys_) {
@@ -345,29 +362,58 @@ class Extraction {
                          [&] { made_.sides.resize(first_face_.back()); });
   }
 
-  void write(const voxel::Progress& progress) {
-    const Key plane = Key{code_count} * static_cast<Key>(size_.x) * static_cast<Key>(size_.y);
-    voxel::SharedProgress done(progress, 2 * keys_.size());
+  void place_points(const voxel::Progress& progress) {
+    voxel::SharedProgress done(progress, keys_.size());
     tbb::parallel_for(std::size_t{0}, keys_.size(), [&](std::size_t z) {
       done.one_more();
       for (std::size_t i = 0; i < keys_[z].size(); ++i)
         // The copy has a border, so its indices are one larger.
         made_.triangles.points_mm[first_point_[z] + i] = lattice_.lps_mm(point_of(keys_[z][i]) - 1.0);
     });
-    tbb::parallel_for(std::size_t{0}, faces_.size(), [&](std::size_t z) {
+  }
+
+  /// Triangles wind outward from their part; between two parts, outward from the part of lower number.
+  void write_faces(const voxel::Progress& progress) {
+    voxel::SharedProgress done(progress, keys_.size() - 1);
+    tbb::enumerable_thread_specific<std::array<PlanePoints, 2>> scratch;
+    tbb::parallel_for(std::size_t{0}, keys_.size() - 1, [&](std::size_t z) {
       done.one_more();
-      for (std::size_t f = 0; f < faces_[z].size(); ++f) {
-        for (std::size_t i = 0; i < 3; ++i) {
-          const Key key = faces_[z][f].points[i];
-          const std::vector<Key>& keys = keys_[key / plane];
-          const auto rank = std::lower_bound(keys.begin(), keys.end(), key) - keys.begin();
-          made_.triangles.faces[first_face_[z] + f][i] =
-              static_cast<std::uint32_t>(first_point_[key / plane] + static_cast<std::uint64_t>(rank));
+      std::array<PlanePoints, 2>& planes = scratch.local();
+      for (std::size_t k = 0; k < 2; ++k) find_points(z + k, planes[k]);
+      const std::size_t first = z * plane_size();
+      std::size_t face = first_face_[z];
+      visit_layer(z, [&](std::size_t cell, const auto& labels, const CellTriangles& found) {
+        for (const CellTriangle& piece : found) {
+          brep::PartedSurface::Sides sides{labels[piece.behind], labels[piece.front]};
+          std::array<std::uint32_t, 3> corners{};
+          for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t sample = cell + step_[piece.points[i].corner] - first;
+            const std::size_t k = sample < plane_size() ? 0 : 1;
+            corners[i] = static_cast<std::uint32_t>(
+                first_point_[z + k] +
+                planes[k].rank(sample - k * plane_size(), codes().place[piece.points[i].code]));
+          }
+          const bool turn = sides.behind == 0 || (sides.front != 0 && sides.front < sides.behind);
+          if (turn) std::swap(sides.behind, sides.front);
+          if (turn == lattice_.right_handed()) std::swap(corners[1], corners[2]);
+          made_.triangles.faces[face] = corners;
+          made_.sides[face++] = sides;
         }
-        made_.sides[first_face_[z] + f] = faces_[z][f].sides;
-      }
-      faces_[z] = {};
+      });
     });
+  }
+
+  void find_points(std::size_t z, PlanePoints& points) const {
+    points.marks.assign(plane_size(), 0);
+    points.before.resize(plane_size());
+    for (const Key key : keys_[z])
+      points.marks[static_cast<std::size_t>(key / code_count) - z * plane_size()] |=
+          std::uint32_t{1} << codes().place[key % code_count];
+    std::uint32_t count = 0;
+    for (std::size_t sample = 0; sample < points.marks.size(); ++sample) {
+      points.before[sample] = count;
+      count += static_cast<std::uint32_t>(std::popcount(points.marks[sample]));
+    }
   }
 
   glm::dvec3 point_of(Key key) const {
@@ -432,7 +478,6 @@ class Extraction {
   std::vector<std::int16_t, voxel::LargeAllocator<std::int16_t>> labels_;
   std::array<std::size_t, 8> step_{};
   std::vector<double> weights_;
-  std::vector<std::vector<Face>> faces_;                 ///< by the plane of samples below
   std::vector<std::vector<Key>> keys_;                   ///< by the plane of the lowest sample
   std::vector<std::uint64_t> first_point_, first_face_;  ///< first number of each plane; of faces, the total
                                                          ///< at the end
@@ -441,7 +486,7 @@ class Extraction {
 
 /// Adds the surfaces of a layer. A part of `ranks` is the position of its label in the layer's labels, from 1;
 /// 0 is no label.
-void append(const voxel::LabelLayer& layer, const brep::PartedSurface& ranks, brep::PartedSurface& made) {
+void append(const voxel::LabelLayer& layer, brep::PartedSurface ranks, brep::PartedSurface& made) {
   const std::size_t first = made.triangles.points_mm.size();
   if (first + ranks.triangles.points_mm.size() > std::numeric_limits<std::uint32_t>::max())
     throw voxel::Error(voxel::ErrorCode::Resource,
@@ -450,14 +495,19 @@ void append(const voxel::LabelLayer& layer, const brep::PartedSurface& ranks, br
   const auto label_of = [&](std::int32_t rank) {
     return rank == 0 ? 0 : layer.labels[static_cast<std::size_t>(rank - 1)];
   };
-  made.triangles.points_mm.insert(made.triangles.points_mm.end(), ranks.triangles.points_mm.begin(),
-                                  ranks.triangles.points_mm.end());
-  for (std::array<std::uint32_t, 3> face : ranks.triangles.faces) {
-    for (std::uint32_t& corner : face) corner += static_cast<std::uint32_t>(first);
-    made.triangles.faces.push_back(face);
+  for (brep::PartedSurface::Sides& sides : ranks.sides)
+    sides = {label_of(sides.behind), label_of(sides.front)};
+  if (first == 0) {
+    made.triangles = std::move(ranks.triangles);
+    made.sides = std::move(ranks.sides);
+  } else {
+    for (std::array<std::uint32_t, 3>& face : ranks.triangles.faces)
+      for (std::uint32_t& corner : face) corner += static_cast<std::uint32_t>(first);
+    const auto add = [](const auto& from, auto& to) { to.insert(to.end(), from.begin(), from.end()); };
+    add(ranks.triangles.points_mm, made.triangles.points_mm);
+    add(ranks.triangles.faces, made.triangles.faces);
+    add(ranks.sides, made.sides);
   }
-  for (const brep::PartedSurface::Sides& sides : ranks.sides)
-    made.sides.push_back({label_of(sides.behind), label_of(sides.front)});
   for (const auto& [rank, name] : ranks.names) made.names[label_of(rank)] = name;
 }
 

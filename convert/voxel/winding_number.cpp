@@ -9,19 +9,18 @@
 #include <utility>
 #include <vector>
 
+#include "convert/voxel/cap.h"
 #include "convert/voxel/slab_triangles.h"
 #include "convert/voxel/winding_threshold.h"
 #include "voxel/space/shared_progress.h"
 
 // The winding number of an open surface S is that of S closed by a cap, less that of the cap. The passes:
-// 1 The rim of S: its edges with more triangles one way than the other, each as often as the excess. For any
-//   S, as many rim edges enter a vertex as leave it, so that the cone C from any apex over them closes S.
+// 1 The rim of S is filled by a cap C, see cap.h.
 // 2 Along each row of voxels, crossings of S + C by signs give the whole number n about each centre.
-// 3 A voxel is inside where n - w > 1/2, w the winding number of C. Away from C, w changes no faster than the
-//   law of Biot and Savart lets a current along the rim: |grad w| <= integral along it of 1 / (4 pi r^2). So
-//   if a cube of voxels contains no triangle of C, and w(centre) differs from every odd multiple of 1/2 by
-//   more than w can change within the cube, one whole number serves as the threshold of n for the whole cube.
-//   Other cubes are divided, from the universe down to single voxels.
+// 3 A voxel is inside where n - w > 1/2, w the winding number of C. Away from C, w is
+//   smooth. If a cube of voxels contains no triangle of C, and w(centre) differs from every odd multiple of
+//   1/2 by more than w can change within the cube, one whole number serves as the threshold of n for the whole
+//   cube. Other cubes are divided, from the universe down to single voxels.
 // 4 Between crossings of its 256 rows, a row of blocks of 16^3 voxels consists of stretches of one n; other
 //   blocks are made voxel by voxel. The octree is put together from above: a cube of one n and one threshold
 //   is Full or Empty.
@@ -33,6 +32,10 @@ namespace octotomy::convert {
 namespace {
 
 constexpr int row_count = slab_layers * slab_layers;  // of a row of blocks
+
+/// How far a cap leaves the rim's plane, in voxel edges. Not simple fractions, so that it lies in no plane of
+/// voxel centres.
+constexpr glm::dvec3 cap_offset_voxels{0.2718281828, 0.3141592653, 0.1414213562};
 
 /// A crossing of a row with the closed surface, before voxel x.
 struct Crossing {
@@ -259,14 +262,15 @@ voxel::Octree voxelise_by_winding_number(const voxel::Universe& universe, const 
                                          const voxel::Progress& progress) {
   progress.at(0.0);
   std::vector<Corners> surface = triangles_in_index_space(universe, triangles);
-  const Cap cap = cap_of(universe, triangles);
   const voxel::Lattice lattice = universe.lattice();
-  for (const auto& t : cap.triangles)
+  std::vector<std::array<glm::dvec3, 3>> cap =
+      cap_of(triangles, glm::dmat3(universe.lps_from_voxel) * cap_offset_voxels);
+  for (const auto& t : cap)
     surface.push_back({lattice.voxel(t[0]), lattice.voxel(t[1]), lattice.voxel(t[2])});
   const int side = universe.side();
   const SlabLists lists =
       sort_into_slabs(surface, side, [side](const Corners& corners) { return layers_cut(corners, side); });
-  const WindingThreshold threshold(universe, cap);
+  const WindingThreshold threshold(universe, std::move(cap));
   const int sign = lattice.right_handed() ? 1 : -1;
 
   WoundOctree wound(universe, threshold, progress.stop);

@@ -19,8 +19,8 @@ double winding_number(const brep::Triangles& triangles, const glm::dvec3& p_mm);
 /// inside out encloses nothing. A centre exactly on the surface is inside if the solid lies further along x,
 /// y or z. Throws voxel::Error (Geometry) if a triangle names no point or a point is not finite;
 /// voxel::Stopped. Parallel; same bits on any thread count. Cost: the triangles' footprint in the yz plane
-/// and the blocks of 16^3 voxels that they touch, in time and memory; not the universe. Holes add a cost: for
-/// each voxel near a rim or near the sheet across a hole, the number of edges of the rims.
+/// and the blocks of 16^3 voxels that they touch, in time and memory; not the universe. Holes add a cost:
+/// for each voxel near a rim or near the sheet across a hole, the logarithm of the number of edges of the rims.
 voxel::Octree voxelise_by_winding_number(const voxel::Universe& universe, const brep::Triangles& triangles,
                                          const voxel::Progress& progress = {});
 

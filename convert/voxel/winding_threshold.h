@@ -2,29 +2,23 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
-#include <utility>
+#include <stop_token>
 #include <vector>
 
-#include "brep/mesh/triangles.h"
 #include "convert/voxel/slab_triangles.h"
 #include "voxel/space/lattice.h"
 #include "voxel/space/progress.h"
+#include "voxel/tree/octree.h"
 
 namespace octotomy::convert {
 
 /// Share of the sphere about p that a triangle in LPS millimetres covers, positive seen from behind. Source:
 /// Van Oosterom, Strackee, "The solid angle of a plane triangle", IEEE TBME 30(2), 1983.
 double covered_share(const std::array<glm::dvec3, 3>& triangle_mm, const glm::dvec3& p_mm);
-
-/// The triangles that close a surface: a cone over each part of its rim. In LPS millimetres.
-struct Cap {
-  std::vector<std::array<glm::dvec3, 3>> triangles;
-  std::vector<std::array<glm::dvec3, 2>> edges;  ///< of the rim
-};
-Cap cap_of(const voxel::Universe& universe, const brep::Triangles& surface);
 
 /// Voxels whose centres are origin .. origin + side - 1 along each axis.
 struct Cube {
@@ -34,31 +28,48 @@ struct Cube {
 
 /// A voxel is inside if the surface's own winding number about its centre is more than 1/2. The surface
 /// together with its cap has a whole winding number there. The threshold is the least such number with which
-/// the voxel is inside: 1 away from holes. Cost of a cube: the cap's triangles.
+/// the voxel is inside: 1 away from holes. Cost of a cube: about log n for n triangles of the cap; n for a
+/// voxel about which the winding number is 1/2.
 class WindingThreshold {
  public:
-  WindingThreshold(const voxel::Universe& universe, const Cap& cap);
+  /// The cap is in LPS millimetres.
+  WindingThreshold(const voxel::Universe& universe, std::vector<std::array<glm::dvec3, 3>> cap);
 
   /// The threshold of all voxels of a cube; none unless it is proven to be the same for all.
   std::optional<int> in_cube(const Cube& cube) const;
 
-  /// Calls `decided(cube, number)` for cubes that together fill the given one, whose side is a power of 4.
+  /// Calls `decided(cube, number)` for cubes that together fill the given one, whose side is a power of 2.
   template <typename Decided>
   void divide(const Cube& cube, const Decided& decided) const {
     if (const std::optional<int> number = in_cube(cube)) return decided(cube, *number);
-    const int side = cube.side / 4;
-    for (int child = 0; child < 64; ++child)
-      divide({cube.origin + side * voxel::child_place(child), side}, decided);
+    const int side = cube.side / 2;
+    for (int child = 0; child < 8; ++child)
+      divide({cube.origin + side * glm::ivec3(child & 1, child >> 1 & 1, child >> 2), side}, decided);
   }
 
  private:
-  bool meets_cap(const Cube& cube) const;
-  bool may_change(const Cube& cube, const glm::dvec3& middle_mm, double share) const;
+  /// Triangles near each other. A leaf holds `count` of them from `first`; an inner node's children are the
+  /// next node and node `first`.
+  struct Cluster {
+    glm::dvec3 centre_mm{0.0};
+    double radius_mm = 0.0;  ///< of a ball around the centre that holds all corners
+    double area_mm2 = 0.0;
+    glm::dvec3 normal{0.0};  ///< sum of area vectors
+    glm::dmat3 moment{0.0};  ///< column j: sum of area vectors times coordinate j of (middle - centre)
+    std::uint32_t first = 0, count = 0;
+  };
+  /// The cap's winding number about the points of a ball: `middle` + `slope` (p - centre), within `error`.
+  struct Estimate {
+    double middle = 0.0, error = 0.0;
+    glm::dvec3 slope{0.0};  ///< per mm
+  };
+
+  Estimate estimate(const glm::dvec3& centre_mm, double reach_mm, double tolerance) const;
+  void add(const Cluster& cluster, const glm::dvec3& centre_mm, Estimate& sum) const;
 
   voxel::Lattice lattice_;
-  const Cap& cap_;
-  std::vector<Corners> in_voxels_;                         ///< the cap's triangles, voxel numbers
-  std::vector<std::pair<glm::dvec3, glm::dvec3>> bounds_;  ///< lower and upper corners of their boxes
+  std::vector<std::array<glm::dvec3, 3>> cap_;  ///< in the order of the leaves
+  std::vector<Cluster> clusters_;
 };
 
 /// A universe's thresholds in cubes of 4^h voxels a side. A cube with different thresholds is divided, down

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Octree to mesh and mesh to octree, and the same work in VTK and OpenVDB.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
+#include "brep/mesh/winding_number.h"
 #include "convert/surface/isosurface.h"
 #include "convert/voxel/voxelise.h"
+#include "convert/voxel/winding_number.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/picture_plane.h"
 #include "tests/bench/subjects.h"
@@ -121,6 +125,43 @@ void run_voxelise(benchmark::State& state, int side) {
   state.counters["triangles"] = static_cast<double>(solid.triangles.faces.size());
 }
 
+/// The skull's surface without its lowest quarter and without one triangle in 1,000.
+brep::Triangles open_skull(int side) {
+  brep::Triangles surface = convert::isosurface(voxel::grey_octree_of(universe(side), head_on_universe(side)),
+                                                bone_hu, std::numeric_limits<double>::infinity());
+  const double lowest_mm = universe(side).lattice().lps_mm(glm::dvec3(0.25 * side)).z;
+  std::vector<std::array<std::uint32_t, 3>> kept;
+  for (std::size_t i = 0; i < surface.faces.size(); ++i)
+    if (i % 1000 != 0 && surface.points_mm[surface.faces[i][0]].z > lowest_mm)
+      kept.push_back(surface.faces[i]);
+  surface.faces = std::move(kept);
+  return surface;
+}
+
+void run_voxelise_open(benchmark::State& state, int side) {
+  const brep::Triangles surface = open_skull(side);
+  std::uint64_t voxels = 0;
+  for (auto _ : state) voxels = convert::voxelise_by_winding_number(universe(side), surface).voxel_count();
+  state.counters["voxels"] = static_cast<double>(voxels);
+  state.counters["triangles"] = static_cast<double>(surface.faces.size());
+}
+
+/// The same voxels by sums over a tree of the triangles, within 0.05, at every centre.
+void run_winding_tree(benchmark::State& state, int side) {
+  const brep::Triangles surface = open_skull(side);
+  const voxel::Lattice lattice = universe(side).lattice();
+  std::vector<glm::dvec3> centres_mm;
+  for (int z = 0; z < side; ++z)
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) centres_mm.push_back(lattice.lps_mm(glm::dvec3(x, y, z)));
+  std::ptrdiff_t voxels = 0;
+  for (auto _ : state) {
+    const std::vector<double> winds = brep::WindingTree(surface).at(centres_mm);
+    voxels = std::count_if(winds.begin(), winds.end(), [](double w) { return w > 0.5; });
+  }
+  state.counters["voxels"] = static_cast<double>(voxels);
+}
+
 #if defined(OCTOTOMY_HAS_OPENVDB)
 void run_openvdb(benchmark::State& state, int side) {
   const brep::Triangles solid = ball(side);
@@ -157,6 +198,11 @@ void register_doors() {
 #endif
     }
   add("voxelise/ball/512", [](benchmark::State& state) { run_voxelise(state, 512); });
+  for (const int side : {128, 256}) {
+    const std::string what = "voxelise/open_skull/" + std::to_string(side);
+    add(what, [=](benchmark::State& state) { run_voxelise_open(state, side); });
+    add("reference/winding_tree/" + what, [=](benchmark::State& state) { run_winding_tree(state, side); });
+  }
 #if defined(OCTOTOMY_HAS_OPENVDB)
   add("peer/openvdb/voxelise/ball/512", [](benchmark::State& state) { run_openvdb(state, 512); });
 #endif

@@ -6,6 +6,41 @@
 #include <cmath>
 
 namespace octotomy::verify {
+namespace {
+
+/// Filters along each axis in turn. combine(made, count, source) makes `count` adjacent samples, source(k) those
+/// at k - reach samples along the axis, k = 0 .. 2 reach. Samples beyond the border repeat those of the border.
+/// Rows along x are worked on as a whole, or, along y and z, side by side, so that memory is read in order.
+template <typename Values, typename Combine>
+void filter(const SampleGrid& grid, Values& values, std::size_t reach, const Combine& combine) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto length = static_cast<std::size_t>(grid.dims[axis]);
+    const std::size_t width = axis == 0 ? 1 : static_cast<std::size_t>(grid.dims.x),
+                      stride = grid.stride(axis);
+    tbb::parallel_for(0, axis == 2 ? grid.dims.y : grid.dims.z, [&](int i) {
+      thread_local Values before;
+      before.resize((length + 2 * reach) * width);
+      for (int j = 0; j < (axis == 0 ? grid.dims.y : 1); ++j) {
+        const auto first =
+            values.begin() + static_cast<std::ptrdiff_t>(axis == 2 ? grid.at(0, i, 0) : grid.at(0, j, i));
+        for (std::size_t k = 0; k < length + 2 * reach; ++k) {
+          const std::size_t from = std::clamp(k, reach, length + reach - 1) - reach;
+          std::copy_n(first + static_cast<std::ptrdiff_t>(from * stride), width,
+                      before.begin() + static_cast<std::ptrdiff_t>(k * width));
+        }
+        if (axis == 0) {
+          combine(&*first, length, [&](std::size_t k) { return before.data() + k; });
+          continue;
+        }
+        for (std::size_t to = 0; to < length; ++to)
+          combine(&*(first + static_cast<std::ptrdiff_t>(to * stride)), width,
+                  [&](std::size_t k) { return before.data() + (to + k) * width; });
+      }
+    });
+  }
+}
+
+}  // namespace
 
 SampleValues blurred(const SampleGrid& grid, SampleValues values, double deviation) {
   const auto reach = static_cast<std::size_t>(std::ceil(3.5 * deviation));
@@ -16,51 +51,35 @@ SampleValues blurred(const SampleGrid& grid, SampleValues values, double deviati
     sum += weights[i] = static_cast<float>(std::exp(-0.5 * off * off / (deviation * deviation)));
   }
   for (float& weight : weights) weight = static_cast<float>(weight / sum);
-  for (int axis = 0; axis < 3; ++axis)
-    each_row(grid, axis, [&](std::size_t first, std::size_t stride, std::size_t length) {
-      thread_local std::vector<float> line;
-      line.resize(length + 2 * reach);
-      for (std::size_t i = 0; i < length; ++i) line[i + reach] = values[first + i * stride];
-      std::fill_n(line.begin(), reach, line[reach]);
-      std::fill_n(line.end() - static_cast<std::ptrdiff_t>(reach), reach, line[length + reach - 1]);
-      for (std::size_t i = 0; i < length; ++i) {
-        float value = 0.0F;
-        for (std::size_t k = 0; k < weights.size(); ++k) value += weights[k] * line[i + k];
-        values[first + i * stride] = value;
-      }
-    });
+  filter(grid, values, reach, [&](float* made, std::size_t count, const auto& source) {
+    std::fill_n(made, count, 0.0F);
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      const float weight = weights[k], *from = source(k);
+      for (std::size_t i = 0; i < count; ++i) made[i] += weight * from[i];
+    }
+  });
   return values;
 }
 
 void grow(const SampleGrid& grid, SampleMask& mask, std::size_t reach) {
-  for (int axis = 0; axis < 3; ++axis)
-    each_row(grid, axis, [&](std::size_t first, std::size_t stride, std::size_t length) {
-      thread_local SampleMask line;
-      line.assign(length, 0);
-      std::size_t until = 0;  // one beyond the reach of the last set sample
-      for (std::size_t i = 0; i < length; ++i)
-        if (mask[first + i * stride] != 0) {
-          for (std::size_t k = std::max(until, i > reach ? i - reach : 0);
-               k < std::min(length, i + reach + 1); ++k)
-            line[k] = 1;
-          until = i + reach + 1;
-        }
-      for (std::size_t i = 0; i < length; ++i) mask[first + i * stride] = line[i];
-    });
+  filter(grid, mask, reach, [reach](std::uint8_t* made, std::size_t count, const auto& source) {
+    for (std::size_t k = 0; k <= 2 * reach; ++k) {
+      const std::uint8_t* from = source(k);
+      for (std::size_t i = 0; i < count; ++i) made[i] |= from[i];
+    }
+  });
 }
 
 SampleValues extremes(const SampleGrid& grid, SampleValues values, std::size_t reach, bool highest) {
-  for (int axis = 0; axis < 3; ++axis)
-    each_row(grid, axis, [&](std::size_t first, std::size_t stride, std::size_t length) {
-      thread_local std::vector<float> line;
-      line.resize(length);
-      for (std::size_t i = 0; i < length; ++i) line[i] = values[first + i * stride];
-      for (std::size_t i = 0; i < length; ++i) {
-        const auto from = line.begin() + static_cast<std::ptrdiff_t>(i - std::min(i, reach));
-        const auto end = line.begin() + static_cast<std::ptrdiff_t>(std::min(length, i + reach + 1));
-        values[first + i * stride] = highest ? *std::max_element(from, end) : *std::min_element(from, end);
-      }
-    });
+  filter(grid, values, reach, [reach, highest](float* made, std::size_t count, const auto& source) {
+    for (std::size_t k = 0; k <= 2 * reach; ++k) {
+      const float* from = source(k);
+      if (highest)
+        for (std::size_t i = 0; i < count; ++i) made[i] = from[i] > made[i] ? from[i] : made[i];
+      else
+        for (std::size_t i = 0; i < count; ++i) made[i] = from[i] < made[i] ? from[i] : made[i];
+    }
+  });
   return values;
 }
 

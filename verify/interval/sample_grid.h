@@ -41,20 +41,6 @@ Sum by_planes(const SampleGrid& grid, const PerPlane& per_plane) {
   return whole;
 }
 
-/// Runs `along(first, stride, length)` for each row along an axis, in parallel.
-template <typename Along>
-void each_row(const SampleGrid& grid, int axis, const Along& along) {
-  const int outer = axis == 2 ? grid.dims.y : grid.dims.z, inner = axis == 0 ? grid.dims.y : grid.dims.x;
-  tbb::parallel_for(0, outer, [&](int i) {
-    for (int j = 0; j < inner; ++j) {
-      const std::size_t first = axis == 0   ? grid.at(0, j, i)
-                                : axis == 1 ? grid.at(j, 0, i)
-                                            : grid.at(j, i, 0);
-      along(first, grid.stride(axis), static_cast<std::size_t>(grid.dims[axis]));
-    }
-  });
-}
-
 /// A Gaussian blur with a deviation in samples along each axis. Beyond the border, samples repeat those of
 /// the border.
 SampleValues blurred(const SampleGrid& grid, SampleValues values, double deviation);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -117,8 +118,13 @@ std::vector<Label> labels(const Scene& scene) {
   std::visit(
       [&](const auto& samples) {
         auto last = found.end();
+        double last_value = std::numeric_limits<double>::quiet_NaN();  // most samples repeat the one before
         for (const auto sample : samples) {
           const auto value = static_cast<double>(sample);
+          if (value == last_value) {
+            ++last->second.samples;
+            continue;
+          }
           if (scene.padding && value == *scene.padding) continue;
           const std::optional<int> number = label_of(value);
           if (!number)
@@ -128,6 +134,7 @@ std::vector<Label> labels(const Scene& scene) {
                                (value > most_label ? ": give its labels smaller numbers" : ""));
           if (last == found.end() || last->first != *number)
             last = found.emplace(*number, Label{*number}).first;
+          last_value = value;
           ++last->second.samples;
           last->second.off = std::max(last->second.off, std::abs(value - *number));
         }
@@ -251,7 +258,12 @@ std::vector<LabelLayer> label_layers(const Scene& scene) {
       const std::size_t area = samples.size() / static_cast<std::size_t>(scene.lattice.dims.z);
       std::visit(
           [&](const auto& from) {
-            for (std::size_t i = area * static_cast<std::size_t>(z), end = i + area; i < end; ++i) {
+            for (std::size_t i = area * static_cast<std::size_t>(z), first = i, end = i + area; i < end;
+                 ++i) {
+              if (i > first && from[i] == from[i - 1]) {
+                samples[i] = samples[i - 1];
+                continue;
+              }
               const auto own = rank.find(label_of(from[i]).value_or(0));
               samples[i] = own == rank.end() ? std::int16_t{0} : own->second;
             }

@@ -225,16 +225,23 @@ class Voxels:
                       np.maximum(np.abs(rows // side - at[2]) - 0.5, 0)])
         return math.sqrt(min(best, float(((d * size[:, None]) ** 2).sum(axis=0).min())))
 
-    def slice(self, z):
-        """The voxels of a slice as truth values, y then x."""
+    def slice(self, z, low=0, high=None):
+        """The voxels of rows low .. high - 1 of a slice as truth values, y then x."""
         side = self.universe.side
-        size = side * (side + 1)
-        first, end = np.searchsorted(self.borders, [z * size, (z + 1) * size])
-        borders = self.borders[first:end] - z * size
-        edges = np.zeros(size, dtype=np.int8)
+        high = side if high is None else high
+        begin, stop = ((z * side + row) * (side + 1) for row in (low, high))
+        first, end = np.searchsorted(self.borders, [begin, stop])
+        borders = self.borders[first:end] - begin
+        edges = np.zeros(stop - begin, dtype=np.int8)
         edges[borders[0::2]] = 1
         edges[borders[1::2]] -= 1
-        return np.cumsum(edges, dtype=np.int8).reshape(side, side + 1)[:, :side].astype(bool)
+        return np.cumsum(edges, dtype=np.int8).reshape(high - low, side + 1)[:, :side].astype(bool)
+
+    def in_slice(self, z):
+        """The number of a slice's voxels."""
+        size = self.universe.side * (self.universe.side + 1)
+        borders = self.borders[slice(*np.searchsorted(self.borders, [z * size, (z + 1) * size]))]
+        return int((borders[1::2] - borders[0::2]).sum())
 
     def has(self, voxels):
         side = self.universe.side
@@ -1232,22 +1239,29 @@ class Checker:
         for name, planes in zip(names, drawn):
             wrong, uneven = 0, 0.0
             for plane in shown:
-                # Where edges along y begin and end; summed along y, the edges; summed along x, what they enclose.
-                edges = np.zeros((side + 1, side + 1), dtype=np.int32)
+                loops = []
                 for points in planes.get(plane, []):
                     a = np.rint(points[:, :2] + 0.5).astype(np.int64)
-                    b = np.roll(a, -1, axis=0)
                     uneven = max(uneven, float(np.abs(points[:, :2] + 0.5 - a).max()), float(np.ptp(points[:, 2])))
-                    if a.min() < 0 or a.max() > side or ((a != b).sum(axis=1) > 1).any():
+                    if a.min() < 0 or a.max() > side or ((a != np.roll(a, -1, axis=0)).sum(axis=1) > 1).any():
                         raise ValueError("a contour does not follow the voxels' edges")
+                    loops.append(a)
+                low = np.min([a.min(axis=0) for a in loops], axis=0) if loops else np.zeros(2, np.int64)
+                high = np.max([a.max(axis=0) for a in loops], axis=0) if loops else low
+                # Where edges along y begin and end; summed along y, the edges; summed along x, what they enclose. Odd
+                # sums alone count, so bytes suffice.
+                edges = np.zeros((high - low + 1)[::-1], dtype=np.uint8)
+                for a in loops:
+                    b = np.roll(a, -1, axis=0)
                     upright = a[:, 0] == b[:, 0]
-                    a, b = a[upright], b[upright]
-                    np.add.at(edges, (np.minimum(a, b)[:, 1], a[:, 0]), 1)
-                    np.add.at(edges, (np.maximum(a, b)[:, 1], a[:, 0]), -1)
-                inside = np.cumsum(np.cumsum(edges, axis=0), axis=1)[:side, :side] % 2 == 1
+                    for end in (a[upright] - low, b[upright] - low):
+                        np.add.at(edges, (end[:, 1], end[:, 0]), 1)
+                inside = np.bitwise_xor.accumulate(np.bitwise_xor.accumulate(edges & 1, axis=0), axis=1)[:-1, :-1] > 0
                 # An image half way between two slices shows either.
                 slices = {min(max(math.floor(plane + 0.5 + d), 0), side - 1) for d in (-0.01, 0.01)}
-                wrong += min(int((inside != self.voxels[name].slice(z)).sum()) for z in slices)
+                held = {z: self.voxels[name].slice(z, low[1], high[1])[:, low[0]:high[0]] for z in slices}
+                wrong += min(int((inside != voxels).sum()) + self.voxels[name].in_slice(z) - int(voxels.sum())
+                             for z, voxels in held.items())
             self.findings.claim(wrong == 0 and uneven <= 0.01 and len(planes) > 0,
                                 f"dicom/{row['path']}: its contours of {name} enclose its voxels on {len(planes)} planes, "
                                 f"but for {wrong}")
