@@ -56,7 +56,7 @@ export function open_second_screen(pane: number): void {
   window.open(`/${location.search}#screen=${number}&pane=${pane}`, `octotomy-${number}-${pane}`, "popup,width=1200,height=900");
 }
 
-/// Sends the followed values to second windows; those of a first window that was loaded again find it, too.
+/// Sends the followed values to second windows. The number outlives a reload of the first window, so that they still follow it.
 function lead(number: string): void {
   if (channel) return;
   channel = new BroadcastChannel(`octotomy-${number}`);

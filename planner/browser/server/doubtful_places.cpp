@@ -135,7 +135,7 @@ void add_metal(const voxel::Scene& scene, std::vector<Place>& places) {
       {"metal",
        three_figures(mm3) + " mm\u00b3 in " + std::to_string(metal.slices) +
            (metal.slices == 1 ? " slice are" : " slices are") + " as dense as metal (" + grouped(from, 0) +
-           " HU or more): streaks may cross bone there; 'clamp_streaks' lessens them",
+           " HU or more): look whether streaks cross bone; 'clamp_streaks' lessens them",
        metal.at_mm, "axial", [from](const glm::dvec3&, double sample) { return sample >= from; }});
 }
 

@@ -31,8 +31,8 @@ bool is_ray_shading(const Json& said) {
   return std::any_of(names.begin(), names.end(), [&](const std::string& name) { return shading == name; });
 }
 
-/// What a window that may only look is told instead of `said`, a state of the plan or a part of it: file names in place of
-/// paths, because folders may be named after patients.
+/// A state of the plan, or a part of it, for a window that may only look: with file names in place of paths, because
+/// folders may be named after patients.
 Json without_folders(Json said) {
   const auto shorten = [](Json& value) {
     if (!value.is_object() || !value.contains("path") || !value["path"].is_string()) return;
