@@ -42,7 +42,8 @@ for (const [width, height] of [[390, 844], [820, 1180], [1024, 768], [1600, 900]
       const one = await PlannerWindow.open(server.url, { size: { width, height }, theme });
       try {
         await one.at_rest();
-        await one.command('Cephalometric measures with norms');
+        await one.tab('Movement');
+        await one.click(one.page.locator('[data-key="cephalometry"]'));
         const dialog = one.page.locator('dialog.cephalometry');
         await dialog.locator('img').waitFor();
         if (process.env.OCTOTOMY_PICTURES) await one.page.screenshot({ path: path.join(process.env.OCTOTOMY_PICTURES, `cephalometry_${width}_${theme}.png`) });

@@ -90,6 +90,8 @@ test('a second window shows one pane large and follows the plan, the looks and a
     // No key is lost, however fast they come.
     await one.until(() => one.plan(plan_path).steps.some((step) => step.by?.up_mm === -3), 'six times half a millimetre in the plan', 30000);
     await one.press('Escape');
+    await second.page.locator('.pane:not([hidden]) canvas').dblclick();
+    assert.equal(await second.page.locator('.pane:not([hidden])').count(), 1);
     // Its own view is turned without the first one's.
     const in_first = await one.setting(1);
     await second.page.keyboard.press('1');
