@@ -69,6 +69,13 @@ std::string with_signature(const std::string& text, const Signature& signature) 
   return json_text(plan, 2) + "\n";
 }
 
+std::map<std::string, std::string> sums_of_scans(const Plan& plan) {
+  std::map<std::string, std::string> sums;
+  for (const auto& [name, scan] : plan.scans)
+    if (std::filesystem::exists(scan_path(plan, scan))) sums[name] = sha256_of_path(scan_path(plan, scan));
+  return sums;
+}
+
 std::vector<std::string> changed_since(const Signature& signature, const std::string& text,
                                        const std::map<std::string, std::string>& sums) {
   std::vector<std::string> changed;

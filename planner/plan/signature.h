@@ -33,6 +33,9 @@ Signature sign(const Plan& plan, const std::string& by, const std::string& as, c
 /// The plan's text with one more signature.
 std::string with_signature(const std::string& text, const Signature& signature);
 
+/// The SHA-256 of each scan whose file exists, by the plan's names. Cost: reads the scans' files.
+std::map<std::string, std::string> sums_of_scans(const Plan& plan);
+
 /// The parts that have changed since: "the plan", "scan ct"; empty if the signature is valid. Ignores scans
 /// that `sums` does not name.
 std::vector<std::string> changed_since(const Signature& signature, const std::string& text,

@@ -4,7 +4,7 @@
 import {objects_of_plan} from "./drawn_objects";
 import {makes_measurement, makes_scan} from "./operations";
 import {Hello, Measured, Measurement, PlanState, Step} from "./protocol";
-import {first_scan, kept_view, leave_plan, leave_scan, notify, PaneSetting, set, State, state, steps, usual_panes} from "./state";
+import {first_scan, kept_view, leave_plan, leave_scan, may_edit, notify, PaneSetting, set, shows_one_pane, State, state, steps, usual_panes} from "./state";
 import {add, scaled, Vec3} from "./base/vector";
 import {Refusal, Wire} from "./wire";
 
@@ -47,28 +47,37 @@ const next_greeting = (): Promise<void> => new Promise((resolve) => waiting_for_
 /// Resolves once the server has sent its first message to this page.
 export const first_greeting = (): Promise<void> => state.hello ? Promise.resolve() : next_greeting();
 
-/// Shows a plan's state. For a newly opened plan, also restores how this browser last showed it, or fits the
-/// panes.
-export function take_plan(plan: PlanState|null): void {
+/// Takes over a plan's state. For another plan, also restores how this browser last showed it, or fits the panes.
+/// `is_opened`: the person has opened it, so it is shown. Otherwise the start page stays in sight, and what
+/// arrives meanwhile is the state of the plan that was left, or of one that another window has opened.
+export function take_plan(plan: PlanState|null, is_opened = false): void {
   if (!plan) {
     leave_plan();
     return set({plan: null, page: "start"});
   }
-  const is_new = plan.path !== state.plan?.path || state.page === "start";
+  const is_unseen = state.page === "start" && !is_opened && may_edit();
+  const is_new = plan.path !== state.plan?.path || (state.page === "start" && !is_unseen);
   if (!is_new && has_other_scan(plan)) leave_scan();
-  if (!is_new)
-    return set({
+  if (!is_new) {
+    const is_edited = plan.edit !== state.plan?.edit;
+    set({
       plan: {...plan, measurements: plan.measurements ?? known_measurements(plan)},
       jobs: plan.jobs ?? state.jobs
     });
+    // The window that edits evaluates what it shows; this one may show other objects.
+    if (is_edited && !may_edit()) void evaluate();
+    return;
+  }
   leave_plan();
+  if (is_unseen) return set({plan, jobs: plan.jobs ?? []});
   const kept = kept_view(plan);
   const before: Partial<State> = kept ? {...kept, panes: with_usual(kept.panes)} : fitted(plan);
-  const needs_audit = kept ? kept.page === "audit" : plan.plan.steps.length <= 1 && plan.history.length <= 1;
+  const needs_audit = !may_edit() ? false : kept ? kept.page === "audit" : plan.plan.steps.length <= 1 && plan.history.length <= 1;
   set({
     ...before,
     plan,
     page: needs_audit ? "audit" : "plan",
+    ...(shows_one_pane ? {maximised: 0, active_pane: 0} : {}),
     jobs: plan.jobs ?? []
   });
   void evaluate();
@@ -114,9 +123,9 @@ export async function greet(): Promise<void> {
   set({hello, link: "open"});
   // The program was restarted without the plan that this window shows. The plan's file and history are on the
   // disk.
-  const plan =
-      hello.plan_state ?? (state.plan && await try_to<PlanState>("open", {path: state.plan.path}, let_go));
-  if (plan) take_plan(plan);
+  const plan = hello.plan_state ??
+      (state.plan && may_edit() ? await try_to<PlanState>("open", {path: state.plan.path}, let_go) : null);
+  if (plan) take_plan(plan, !state.plan);
   const waiting = waiting_for_greeting;
   waiting_for_greeting = [];
   for (const go_on of waiting) go_on();
@@ -127,13 +136,16 @@ export async function open_plan(what: {path?: string; phantom?: string; series?:
   const key = busy("Opening");
   const plan = await try_to<PlanState>("open", what);
   done(key);
-  // The event `plan` may have arrived before this greeting.
-  if (plan && state.plan === null) take_plan(plan);
+  if (plan) take_plan(plan, true);
 }
 
 // Sends a change of the plan. If the connection breaks, sends it once more, unless `is_done` shows that the
 // change was made and only its answer was lost.
 async function change(word: string, fields: object, is_done: () => boolean): Promise<PlanState|null> {
+  if (!may_edit()) {
+    notify("This window only shows the plan.", "warning");
+    return null;
+  }
   return try_to<PlanState>(word, fields, async () => {
     await next_greeting();
     return is_done() ? state.plan : try_to<PlanState>(word, fields, let_go);

@@ -11,7 +11,8 @@ import {guess_landmarks} from "./tool/point_tools";
 import {cut_selected} from "./tool/region_tool";
 import {new_step} from "./panel/schema_form";
 import {operations} from "./operations";
-import {hide_patient, notify, selected_step, set, state, steps, step_of, usual_panes} from "./state";
+import {hide_patient, may_edit, notify, selected_step, set, shows_one_pane, state, steps, step_of, usual_panes} from "./state";
+import {open_second_screen} from "./second_screen";
 import {change_theme} from "./base/theme";
 import {all_tools, take_tool} from "./tool/tool";
 import {plane_names, view_names} from "./base/view_frame";
@@ -34,6 +35,10 @@ export const dialogs = {
   report: (): void => undefined,
   outcome: (): void => undefined,
   screenshot: (): void => undefined,
+  link: (): void => undefined,
+  merge: (): void => undefined,
+  sign: (): void => undefined,
+  cephalometry: (): void => undefined,
   tour: (): void => undefined,
 };
 
@@ -130,15 +135,101 @@ export function clear_compare(): void {
   for (const pane of all_panes()) pane.want(false);
 }
 
+/// Commands that only change how this window looks at the plan.
+function looking_commands(): Command[] {
+  const of_a_pane: Command[] = [
+    {name: "Fit all panes", key: "0", run: fit_all},
+    ...view_names.map(
+        (view, index) =>
+            ({name: `View: ${view}`, key: String(index + 1), run: () => show_in(state.active_pane, view)})),
+    ...plane_names.map((plane, index) => ({
+                         name: `Slice: ${plane}`,
+                         key: index < 3 ? String(index + 7) : "o",
+                         run: () => show_in(state.active_pane, plane)
+                       })),
+  ];
+  if (shows_one_pane) return of_a_pane;
+  return [
+    {
+      name: "Cephalometric measures with norms",
+      says: "Before and after the plan, with the tracing on the radiograph.",
+      run: () => dialogs.cephalometry()
+    },
+    {
+      name: "Compare in colours",
+      says: "Colours the selected object by its distance from another.",
+      key: "c",
+      run: compare_selected
+    },
+    {
+      name: "Contact map",
+      says: "Colours two objects, such as the jaws, by their distance to each other.",
+      key: "t",
+      run: map_contacts
+    },
+    {
+      name: "Cut plane",
+      says: "Hides everything on one side of a plane, to show the inside.",
+      key: "k",
+      run: switch_cut_plane
+    },
+    {name: "Show the scan's audit", run: () => dialogs.audit()},
+    {
+      name: state.hides_patient ? "Show the patient" : "Hide the patient",
+      says: "Hides or shows name, number and dates on every screen of this browser and in new reports.",
+      run: () => hide_patient(!state.hides_patient)
+    },
+    {name: "Screenshot of the panes", run: () => dialogs.screenshot()},
+    ...of_a_pane,
+    {
+      name: "Four views",
+      key: "shift+1",
+      run: () => {
+        set({panes: usual_panes(), maximised: null});
+        fit_all();
+      }
+    },
+    {
+      name: "Views and slices",
+      says: "One view and three slices.",
+      key: "shift+2",
+      run: () => {
+        show_in(0, "anterior");
+        show_in(1, "sagittal");
+        show_in(2, "axial");
+        show_in(3, "coronal");
+        set({maximised: null});
+      }
+    },
+    {
+      name: "Next pane",
+      key: "n",
+      run: () => {
+        const next = (state.active_pane + 1) % 4;
+        set({active_pane: next});
+        all_panes()[next]?.canvas.focus();
+      }
+    },
+    {
+      name: "Enlarge the pane",
+      key: "m",
+      run: () => set({maximised: state.maximised === null ? state.active_pane : null})
+    },
+  ];
+}
+
 export function all_commands(): Command[] {
-  const has_plan = state.plan !== null;
-  const list: Command[] = [
-    {name: "Open a scan or plan", key: "ctrl+o", run: () => dialogs.open()},
-    {name: "Guided tour: a Le Fort I in seven steps", run: () => dialogs.tour()},
+  const always: Command[] = [
     {name: "Keys and help", key: "?", run: () => dialogs.help()},
     {name: "Dark or light", says: "Changes between the dark and the light page.", run: change_theme},
   ];
-  if (!has_plan) return list;
+  if (!may_edit()) return state.plan ? [...looking_commands(), ...always] : always;
+  const list: Command[] = [
+    {name: "Open a scan or plan", key: "ctrl+o", run: () => dialogs.open()},
+    {name: "Guided tour: a Le Fort I in seven steps", run: () => dialogs.tour()},
+    ...always,
+  ];
+  if (!state.plan) return list;
   return [
     ...all_tools().map((tool) => ({
                          name: `Tool: ${tool.title}`,
@@ -151,6 +242,16 @@ export function all_commands(): Command[] {
     {name: "New branch", says: "Begins a branch for changes, so that the present plan stays as it is.", run: () => void new_branch()},
     {name: "Name this version", run: () => void name_version()},
     {name: "Save", key: "ctrl+s", run: () => void save()},
+    {
+      name: "Merge with another plan",
+      says: "Takes over what somebody else has changed in a copy of this plan.",
+      run: () => dialogs.merge()
+    },
+    {
+      name: "Signatures",
+      says: "Who has approved the plan, what has changed since, and a new signature.",
+      run: () => dialogs.sign()
+    },
     {
       name: "Load the plan's file again",
       says: "Records changes that another program has made to the file as an edit.",
@@ -180,33 +281,9 @@ export function all_commands(): Command[] {
     },
     {name: "Mirror the selected object", run: mirror_selected},
     {
-      name: "Compare in colours",
-      says: "Colours the selected object by its distance from another.",
-      key: "c",
-      run: compare_selected
-    },
-    {
-      name: "Contact map",
-      says: "Colours two objects, such as the jaws, by their distance to each other.",
-      key: "t",
-      run: map_contacts
-    },
-    {
-      name: "Cut plane",
-      says: "Hides everything on one side of a plane, to show the inside.",
-      key: "k",
-      run: switch_cut_plane
-    },
-    {
       name: "Radiograph and landmarks (cephalometry)",
       says: "Shows the left view as a radiograph in true scale.",
       run: show_cephalometry
-    },
-    {name: "Show the scan's audit", run: () => dialogs.audit()},
-    {
-      name: state.hides_patient ? "Show the patient" : "Hide the patient",
-      says: "Hides or shows name, number and dates on every screen of this browser and in new reports.",
-      run: () => hide_patient(!state.hides_patient)
     },
     {
       name: "Export",
@@ -219,51 +296,18 @@ export function all_commands(): Command[] {
       says: "Compares the plan with a scan after the operation: achieved movements, with intervals.",
       run: () => dialogs.outcome()
     },
+    {
+      name: "Link to look at this plan",
+      says: "For a colleague, who follows the plan and cannot change it.",
+      run: () => dialogs.link()
+    },
+    {
+      name: "Show the pane in a second window",
+      says: "For another screen: one pane, large, that follows this window.",
+      run: () => open_second_screen(state.active_pane)
+    },
     {name: "Report", says: "Writes the report with every certificate.", run: () => dialogs.report()},
-    {name: "Screenshot of the panes", run: () => dialogs.screenshot()},
-    {name: "Fit all panes", key: "0", run: fit_all},
-    {
-      name: "Four views",
-      key: "shift+1",
-      run: () => {
-        set({panes: usual_panes(), maximised: null});
-        fit_all();
-      }
-    },
-    {
-      name: "Views and slices",
-      says: "One view and three slices.",
-      key: "shift+2",
-      run: () => {
-        show_in(0, "anterior");
-        show_in(1, "sagittal");
-        show_in(2, "axial");
-        show_in(3, "coronal");
-        set({maximised: null});
-      }
-    },
-    ...view_names.map(
-        (view, index) =>
-            ({name: `View: ${view}`, key: String(index + 1), run: () => show_in(state.active_pane, view)})),
-    ...plane_names.map((plane, index) => ({
-                         name: `Slice: ${plane}`,
-                         key: index < 3 ? String(index + 7) : "o",
-                         run: () => show_in(state.active_pane, plane)
-                       })),
-    {
-      name: "Next pane",
-      key: "n",
-      run: () => {
-        const next = (state.active_pane + 1) % 4;
-        set({active_pane: next});
-        all_panes()[next]?.canvas.focus();
-      }
-    },
-    {
-      name: "Enlarge the pane",
-      key: "m",
-      run: () => set({maximised: state.maximised === null ? state.active_pane : null})
-    },
+    ...looking_commands(),
     {
       name: "Remove the selected step",
       run: () => {

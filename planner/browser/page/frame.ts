@@ -6,7 +6,7 @@ import {certify_all, compare_selected, dialogs, map_contacts, mirror_selected, n
 import {button, Child, el, fill} from "./base/html";
 import {icon, IconName, is_icon} from "./base/icons";
 import {cut_selected} from "./tool/region_tool";
-import {dismiss, set, state, watch} from "./state";
+import {dismiss, may_edit, set, shows_one_pane, state, watch} from "./state";
 import {patient_button} from "./panel/patient";
 import {change_theme} from "./base/theme";
 import {active_tool, all_tools, take_tool} from "./tool/tool";
@@ -16,12 +16,21 @@ export function make_bar(host: HTMLElement): void {
     const plan = state.plan;
     const act = (name: IconName, label: string, tip: string, run: () => void, more = {}): Child => button(
         [icon(name, 16), el("span", {class: "label"}, label)], tip, run, {"aria-label": label, ...more});
+    const brand: Child[] = [el("span", {class: "logo"}), el("b", {}, "Octotomy")];
+    const name = plan ? el(state.page === "plan" ? "h1" : "span", {class: "plan-name", title: plan.path}, plan.name) : null;
+    const always = [
+      button(icon("theme", 17), "Dark or light", change_theme, {class: "ghost"}),
+      button(icon("help", 17), "Keys and help. ?", () => dialogs.help(), {class: "ghost"})
+    ];
+    if (!may_edit())
+      return fill(
+          host, el("span", {class: "brand row"}, brand), name,
+          plan ? patient_button() : null, shows_one_pane ? null : el("span", {class: "tag"}, "to look only"),
+          el("span", {class: "spring"}), shows_one_pane ? null : always);
     fill(
         host,
-        button(
-            [el("span", {class: "logo"}), el("b", {}, "Octotomy")], "Start page", () => set({page: "start"}),
-            {class: "brand ghost"}),
-        plan ? el(state.page === "plan" ? "h1" : "span", {class: "plan-name", title: plan.path}, plan.name) : null,
+        button(brand, "Start page", () => set({page: "start"}), {class: "brand ghost", "aria-label": "Octotomy, start page"}),
+        name,
         plan ? patient_button() : null,
         plan ? button(
                    [icon("branch", 14), plan.branch], "New branch. This branch keeps the plan as it is",
@@ -52,10 +61,22 @@ export function make_bar(host: HTMLElement): void {
         plan ? act("report", "Report", "Report. Writes every number with its certificate",
                    () => dialogs.report(), {class: "primary"}) :
                null,
-        button(icon("theme", 17), "Dark or light", change_theme, {class: "ghost"}),
-        button(icon("help", 17), "Keys and help. ?", () => dialogs.help(), {class: "ghost"}));
+        plan && state.hello?.view_token ?
+            button(icon("share", 17), "A link to look at this plan, for a colleague", () => dialogs.link(), {class: "ghost"}) :
+            null,
+        always);
   };
-  watch(["plan", "page", "hides_patient"], again);
+  watch(["plan", "page", "hides_patient", "hello"], again);
+  again();
+}
+
+/// Gives the page the layout of what its window may do.
+export function follow_access(): void {
+  const again = (): void => {
+    document.body.classList.toggle("looks-only", !may_edit());
+    document.body.classList.toggle("one-pane", shows_one_pane);
+  };
+  watch(["hello"], again);
   again();
 }
 

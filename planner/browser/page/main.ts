@@ -5,12 +5,15 @@ import {evaluate, greet, take_plan, use_wire} from "./actions";
 import {command_of, dialogs} from "./commands";
 import {objects_of_plan} from "./drawn_objects";
 import {open_picker, take_drops} from "./dialog/files";
-import {make_bar, make_lost, make_notices, make_rail, make_status} from "./frame";
+import {follow_access, make_bar, make_lost, make_notices, make_rail, make_status} from "./frame";
 import {el} from "./base/html";
 import {make_inspector} from "./panel/inspector";
 import {marks_tool} from "./tool/marks_tool";
 import {move_tool} from "./tool/move_tool";
+import {open_cephalometry} from "./dialog/cephalometry_dialog";
+import {open_merge} from "./dialog/merge_dialog";
 import {open_outcome} from "./dialog/outcome_dialog";
+import {open_signatures} from "./dialog/sign_dialog";
 import {grow_tool} from "./tool/grow_tool";
 import {brush_tool} from "./tool/brush_tool";
 import {contour_tool} from "./tool/contour_tool";
@@ -18,7 +21,7 @@ import {island_tool} from "./tool/island_tool";
 import {open_help, open_palette} from "./dialog/palette";
 import {make_panes, reconnected, take_picture} from "./pane/pane_grid";
 import {use_picture_asker} from "./pane/panes";
-import {open_audit, open_export, take_screenshot, write_report} from "./dialog/plan_dialogs";
+import {open_audit, open_export, open_link, take_screenshot, write_report} from "./dialog/plan_dialogs";
 import {angle_tool, arch_tool, distance_tool, landmark_tool, segment_tool, surface_tool} from "./tool/point_tools";
 import {open_procedure} from "./dialog/procedure_dialog";
 import {Job, Json, Measurement, Notice, ObjectState, PlanState, ScanState} from "./protocol";
@@ -27,6 +30,7 @@ import {make_start} from "./dialog/start_page";
 import {notify, set, state, watch} from "./state";
 import {close_menu, make_lists} from "./panel/step_lists";
 import {follow_theme} from "./base/theme";
+import {begin_screen} from "./second_screen";
 import {register_tools, take_tool, Tool} from "./tool/tool";
 import {attach_tips} from "./base/tool_tip";
 import {make_tour, start_tour} from "./dialog/tour";
@@ -155,10 +159,16 @@ Object.assign(dialogs, {
   report: () => void write_report(),
   outcome: open_outcome,
   screenshot: take_screenshot,
+  link: open_link,
+  merge: open_merge,
+  sign: () => void open_signatures(),
+  cephalometry: () => void open_cephalometry(),
   tour: () => void start_tour(),
 });
 follow_theme();
+begin_screen();
 make_page();
+follow_access();
 follow_keys();
 let shown_ids = "";
 watch(["looks"], () => {

@@ -173,6 +173,8 @@ export interface Schema {
 }
 export interface Hello {
   version: string;
+  may_edit: boolean;    // false: this window only shows the plan
+  view_token?: string;  // that of pages which only show the plan, if the server has them
   plan_state: PlanState|null;
   schema: Schema;
   procedures: ProcedureSays[];

@@ -165,6 +165,11 @@ const first: State = {
   evaluations: 0,
 };
 
+/// Whether this is a second window, which shows one pane large and follows the first (second_screen.ts).
+export const shows_one_pane = new URLSearchParams(location.hash.slice(1)).has("screen");
+/// Whether this window may change the plan. The server refuses the others whatever their page requests.
+export const may_edit = (): boolean => !shows_one_pane && state.hello?.may_edit !== false;
+
 type Key = keyof State;
 export const state: State = first;
 const watchers: {keys: Set<Key>; call: () => void}[] = [];
@@ -248,7 +253,7 @@ const kept: Key[] = [
 ];
 
 function keep(): void {
-  if (!state.plan || state.page === "start") return;
+  if (!state.plan || state.page === "start" || shows_one_pane) return;
   const view: Partial<Record<Key, unknown>> = {};
   for (const key of kept) view[key] = state[key];
   localStorage.setItem(`octotomy:${state.plan.path}`, JSON.stringify({...view, scans_then: mark_of_scans(state.plan)}));
@@ -262,7 +267,7 @@ const mark_of_scans = (plan: PlanState): string =>
 /// scans.
 export function kept_view(plan: PlanState): Partial<State>|null {
   const text = localStorage.getItem(`octotomy:${plan.path}`);
-  if (!text) return null;
+  if (!text || shows_one_pane) return null;
   try {
     const {scans_then, ...view} = JSON.parse(text) as Partial<State>&{scans_then?: string};
     const scans_now = mark_of_scans(plan);

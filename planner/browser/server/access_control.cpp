@@ -106,17 +106,25 @@ std::optional<std::string> AccessControl::refusal_of_host(const Caller& caller) 
   return "this server is not called '" + caller.host + "': open the address that it printed";
 }
 
-std::optional<std::string> AccessControl::refusal(const Caller& caller) const {
-  if (auto why = refusal_of_host(caller)) return why;
-  if (!caller.origin.empty() && caller.origin != "http://" + caller.host)
-    return "the request comes from a page of another site: open the address that the server printed";
-  if (!are_equal(caller.token, token_))
-    return "the address lacks the server's token: open the address that the server printed";
+std::optional<Access> AccessControl::access_of(const Caller& caller) const {
+  if (are_equal(caller.token, token_)) return Access::Edit;
+  if (view_token_ && are_equal(caller.token, *view_token_)) return Access::View;
   return {};
 }
 
-std::optional<std::string> AccessControl::refusal_of_action(const Caller& caller) const {
-  if (auto why = refusal(caller)) return why;
+std::optional<std::string> AccessControl::refusal(const Caller& caller, Access needed) const {
+  if (auto why = refusal_of_host(caller)) return why;
+  if (!caller.origin.empty() && caller.origin != "http://" + caller.host)
+    return "the request comes from a page of another site: open the address that the server printed";
+  const std::optional<Access> access = access_of(caller);
+  if (!access) return "the address lacks the server's token: open the address that the server printed";
+  if (needed == Access::Edit && *access == Access::View)
+    return "this address only shows the plan: files are neither sent nor received here";
+  return {};
+}
+
+std::optional<std::string> AccessControl::refusal_of_action(const Caller& caller, Access needed) const {
+  if (auto why = refusal(caller, needed)) return why;
   if (caller.origin.empty()) return "the request has no Origin header";
   return {};
 }

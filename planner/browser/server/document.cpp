@@ -119,10 +119,21 @@ void need_short_names(const std::vector<NamedPoint>& landmarks, const std::vecto
 Document::Document(const std::filesystem::path& path, const Folders& folders)
     : path_(path), folders_(folders) {
   // Refuses an invalid plan, or one that reads forbidden files, before a history is begun.
-  need_files_within(Json(read_json(path_)), path_.parent_path(), folders_);
-  need_readable_files(read_plan(path_), folders_);
+  other(path_);
   history_ = std::make_unique<PlanHistory>(path_);
   read_again();
+}
+
+Plan Document::other(const std::filesystem::path& path) const {
+  // Refuses files that the page may not read before they are read.
+  need_files_within(Json(read_json(path)), path.parent_path(), folders_);
+  Plan plan = read_plan(path);
+  need_readable_files(plan, folders_);
+  return plan;
+}
+
+Plan Document::plan_at(std::int64_t edit) const {
+  return readable(history_->text_of(edit));
 }
 
 void Document::read_again() {
@@ -220,8 +231,7 @@ void Document::name_version(const std::string& name) {
 }
 
 Json Document::difference_of(std::int64_t a, std::int64_t b) const {
-  const auto plan_of = [&](std::int64_t edit) { return readable(history_->text_of(edit)); };
-  const PlanDifference found = difference(plan_of(a), plan_of(b));
+  const PlanDifference found = difference(plan_at(a), plan_at(b));
   Json json = planner::to_json(found);
   json["rows"] = Json::array();
   std::istringstream text(text_of(found));

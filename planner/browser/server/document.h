@@ -24,6 +24,11 @@ class Document {
   std::shared_ptr<const Plan> plan() const { return plan_; }
   Json json() const { return Json::parse(plan_->text); }
 
+  /// A state of the history as a plan. Throws as parsed() does, and std::runtime_error if there is none.
+  Plan plan_at(std::int64_t edit) const;
+  /// The plan of another file, for a comparison. Throws as read_plan() does; voxel::Error, Input, if it reads files in no open
+  /// folder.
+  Plan other(const std::filesystem::path& path) const;
   /// Parses JSON as a plan of this document's folder without recording it. Throws as parse_plan() does;
   /// voxel::Error, Input, if a scan or a file that a step reads is in no open folder.
   Plan parsed(const Json& json) const;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "planner/browser/server/access_control.h"
 #include "planner/operation/table/json.h"
 
 // Messages over a page's WebSocket.
@@ -21,9 +22,10 @@ struct Message {
 
 /// A request of a page.
 struct Request {
-  std::int64_t id = 0;  ///< 0 if absent
-  std::string what;     ///< the value of "do"
-  Json said;            ///< the whole object
+  std::int64_t id = 0;           ///< 0 if absent
+  std::string what;              ///< the value of "do"
+  Json said;                     ///< the whole object
+  Access access = Access::Edit;  ///< of the window that sent it
 };
 
 /// The largest depth of a request's JSON.

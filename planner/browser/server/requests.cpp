@@ -5,11 +5,15 @@
 #include <chrono>
 #include <tuple>
 
+#include "planner/browser/server/cephalometry_request.h"
 #include "planner/browser/server/contour_request.h"
+#include "planner/browser/server/doubtful_places.h"
+#include "planner/browser/server/merge_request.h"
 #include "planner/browser/server/new_files.h"
 #include "planner/browser/server/new_plan.h"
 #include "planner/browser/server/object_requests.h"
 #include "planner/browser/server/pane_fields.h"
+#include "planner/browser/server/signature_request.h"
 #include "planner/operation/file/output_path.h"
 #include "planner/operation/file/path_checks.h"
 #include "planner/operation/table/nearest_name.h"
@@ -63,15 +67,18 @@ Json procedures_json() {
   return list;
 }
 
-Json hello(Session& session, const Json&, const Watched&) {
+Json hello(Session& session, const Json&, const Watched& watched) {
   Json tissues = Json::array(), folders = Json::array();
   for (const voxel::Tissue& tissue : voxel::tissues())
     tissues.push_back({{"name", std::string(tissue.name)},
                        {"low", tissue.low ? Json(*tissue.low) : Json(nullptr)},
                        {"high", tissue.high ? Json(*tissue.high) : Json(nullptr)},
                        {"source", std::string(tissue.source)}});
-  for (const fs::path& folder : session.folders.opened()) folders.push_back(folder.string());
+  const bool may_edit = watched.access == Access::Edit;
+  if (may_edit)
+    for (const fs::path& folder : session.folders.opened()) folders.push_back(folder.string());
   return {{"version", OCTOTOMY_VERSION},
+          {"may_edit", may_edit},
           {"units", {{"length", "mm"}, {"angle", "deg"}, {"frame", "LPS"}}},
           {"plan_state", session.state()},
           {"schema", plan_schema()},
@@ -211,6 +218,8 @@ Json save(Session& session, const Json& said, const Watched&) {
 
 Json evaluate(Session& session, const Json& said, const Watched& watched) {
   const bool certify = said.value("certify", false);
+  if (certify && watched.access == Access::View)
+    throw voxel::Error(voxel::ErrorCode::Input, "this window only shows the plan: it cannot certify");
   const Snapshot made = session.evaluate(said.value("objects", std::vector<std::string>{}), certify, watched);
   const Json state = session.state();
   return {
@@ -473,7 +482,7 @@ Json diff(Session& session, const Json& said, const Watched&) {
 
 const std::vector<RequestKind>& request_kinds() {
   static const std::vector<RequestKind> all{
-      {"hello", Lane::Session, false, hello},
+      {"hello", Lane::Session, false, hello, false, true},
       {"open", Lane::Long, true, open},
       {"list", Lane::Session, false, list},
       {"series", Lane::Long, false, series},
@@ -491,24 +500,30 @@ const std::vector<RequestKind>& request_kinds() {
        change([](Document& document, const Json& said) { document.begin_branch(said.at("name")); })},
       {"name_version", Lane::Session, true,
        change([](Document& document, const Json& said) { document.name_version(said.at("name")); })},
-      {"diff", Lane::Session, false, diff},
+      {"diff", Lane::Session, false, diff, false, true},
       {"procedure", Lane::Session, true, procedure},
       {"acts_on", Lane::Session, false, acts_on},
       {"landmark", Lane::Session, true, place_landmark},
       {"find_landmarks", Lane::Long, false, find_landmarks},
       {"command", Lane::Session, false, command_of_step},
-      {"evaluate", Lane::Evaluate, false, evaluate, true},
+      {"evaluate", Lane::Evaluate, false, evaluate, true, true},
       {"overlap", Lane::Overlap, false, overlap},
       {"part", Lane::Long, false, part},
       {"try", Lane::Long, false, try_steps},
       {"trace", Lane::Long, false, trace_contours},
       {"measure", Lane::Long, false, measure},
-      {"movement", Lane::Long, false, movement},
+      {"movement", Lane::Long, false, movement, false, true},
       {"mesh_audit", Lane::Long, false, mesh_audit},
       {"certify", Lane::Long, false, certify, true},
       {"export", Lane::Long, false, export_file},
       {"report", Lane::Long, false, report},
       {"outcome", Lane::Long, false, outcome},
+      {"cephalometry", Lane::Long, false, cephalometry, false, true},
+      {"doubtful_places", Lane::Long, false, doubtful_places},
+      {"try_merge", Lane::Session, false, try_merge},
+      {"merge", Lane::Session, true, merge_plan},
+      {"signatures", Lane::Long, false, signatures},
+      {"sign", Lane::Long, true, sign_plan},
   };
   return all;
 }

@@ -23,6 +23,9 @@ struct RequestKind {
   bool changes_plan = false;  ///< the answer is the plan's state, which is sent to all windows
   std::function<Json(Session& session, const Json& said, const Watched& watched)> answer;
   bool changes_objects = false;  ///< the plan's state is sent to all windows
+  /// Whether windows that may only look are answered too. Such a request changes no plan, names no file or
+  /// folder and writes nothing.
+  bool may_view = false;
 };
 
 const std::vector<RequestKind>& request_kinds();

@@ -76,7 +76,8 @@ Caller caller_of(const http::request<Body>& request, const Target& target) {
 /// One page's socket. Exists as long as one of its operations is pending.
 class Socket : public std::enable_shared_from_this<Socket> {
  public:
-  Socket(beast::tcp_stream stream, Context& context) : stream_(std::move(stream)), context_(context) {}
+  Socket(beast::tcp_stream stream, Context& context, Access access)
+      : stream_(std::move(stream)), context_(context), access_(access) {}
 
   void run(const http::request<http::string_body>& request) {
     beast::get_lowest_layer(stream_).expires_never();
@@ -86,11 +87,12 @@ class Socket : public std::enable_shared_from_this<Socket> {
       if (failed) return;
       const std::weak_ptr<Socket> weak = self;
       const auto executor = self->stream_.get_executor();
-      self->window_ = self->context_.service.open_window([weak, executor](Message message) {
+      const auto send_to = [weak, executor](Message message) {
         net::post(executor, [weak, message = std::make_shared<Message>(std::move(message))] {
           if (const auto socket = weak.lock()) socket->send(message);
         });
-      });
+      };
+      self->window_ = self->context_.service.open_window(send_to, self->access_);
       self->read();
     });
   }
@@ -142,6 +144,7 @@ class Socket : public std::enable_shared_from_this<Socket> {
 
   beast::websocket::stream<beast::tcp_stream> stream_;
   Context& context_;
+  Access access_;
   beast::flat_buffer buffer_;
   std::deque<std::shared_ptr<Message>> queue_;
   std::size_t unsent_ = 0;
@@ -195,28 +198,29 @@ class Connection : public std::enable_shared_from_this<Connection> {
       return why.has_value();
     };
     if (target.path == "/upload" && request.method() == http::verb::post) {
-      if (!refused(context_.access.refusal_of_action(caller))) upload(target);
+      if (!refused(context_.access.refusal_of_action(caller, Access::Edit))) upload(target);
       return;
     }
     if (request.method() != http::verb::get || parser_->content_length().value_or(0) > 0) {
-      if (!refused(context_.access.refusal(caller)))
+      if (!refused(context_.access.refusal(caller, Access::View)))
         refuse(http::status::method_not_allowed, "only GET is answered at this address");
       return;
     }
     if (target.path == "/socket") {
-      if (refused(context_.access.refusal_of_action(caller))) return;
+      if (refused(context_.access.refusal_of_action(caller, Access::View))) return;
       http::request<http::string_body> upgrade(request.base());
       if (!beast::websocket::is_upgrade(upgrade))
         return refuse(http::status::bad_request, "a WebSocket is expected");
-      return std::make_shared<Socket>(std::move(stream_), context_)->run(upgrade);
+      return std::make_shared<Socket>(std::move(stream_), context_, *context_.access.access_of(caller))
+          ->run(upgrade);
     }
     if (auto named = file_of(target)) {
-      if (!refused(context_.access.refusal({caller.host, caller.origin, named->token})))
+      if (!refused(context_.access.refusal({caller.host, caller.origin, named->token}, Access::Edit)))
         send_file(named->name);
       return;
     }
     const std::string path = target.path == "/" ? "/index.html" : target.path;
-    if (refused(path == "/index.html" ? context_.access.refusal(caller)
+    if (refused(path == "/index.html" ? context_.access.refusal(caller, Access::View)
                                       : context_.access.refusal_of_host(caller)))
       return;
     for (const PageFile& file : page_files())
@@ -377,15 +381,17 @@ void Server::run(Service& service, Session& session, const std::stop_token& stop
   std::vector<std::string> hosts{name + ":" + port};
   if (address.is_loopback()) hosts.push_back("localhost:" + port);
   if (address.is_unspecified()) hosts.clear();
-  Context context{service, session, AccessControl(options_.token, hosts)};
+  Context context{service, session, AccessControl(options_.token, hosts, options_.view_token)};
   // The connections are destroyed together with `opened`, before the objects that they reference.
   const std::unique_ptr<Port> opened = std::move(port_);
   net::io_context& io = opened->io;
   accept(opened->acceptor, context);
   const std::stop_callback end(stop, [&io] { io.stop(); });
-  if (options_.ready)
-    options_.ready("http://" + (address.is_unspecified() ? std::string("127.0.0.1") : name) + ":" + port +
-                   "/?token=" + options_.token);
+  if (options_.ready) {
+    const std::string page =
+        "http://" + (address.is_unspecified() ? std::string("127.0.0.1") : name) + ":" + port + "/?token=";
+    options_.ready(page + options_.token, options_.view_token ? page + *options_.view_token : "");
+  }
   while (!stop.stop_requested() && !io.stopped()) {
     try {
       io.run();

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 
@@ -14,8 +15,10 @@ struct ServerOptions {
   std::string address = "127.0.0.1";  ///< address of the interface on which to listen
   int port = 0;                       ///< 0: a free one
   std::string token;
-  /// Called once with the page's address, including the token, when it can be opened.
-  std::function<void(const std::string& url)> ready;
+  std::optional<std::string> view_token;  ///< of pages that may only look; none: there are none
+  /// Called once when the page can be opened, with its address, including the token, and with that of pages
+  /// that may only look; the latter is empty if there are none.
+  std::function<void(const std::string& url, const std::string& view_url)> ready;
 };
 
 /// A server that listens before it runs: callers wait in the meantime, and an unavailable address is detected

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <utility>
 
 #include "planner/browser/server/slice_pane.h"
@@ -30,6 +31,33 @@ bool is_ray_shading(const Json& said) {
   return std::any_of(names.begin(), names.end(), [&](const std::string& name) { return shading == name; });
 }
 
+/// A state of the plan, or a part of it, for a window that may only look: with file names in place of paths, because
+/// folders may be named after patients.
+Json without_folders(Json said) {
+  const auto shorten = [](Json& value) {
+    if (!value.is_object() || !value.contains("path") || !value["path"].is_string()) return;
+    value["path"] = std::filesystem::path(value["path"].get<std::string>()).filename().string();
+  };
+  const auto shorten_all = [&](Json& parent, const char* key) {
+    if (const auto list = parent.find(key); list != parent.end())
+      for (Json& value : *list) shorten(value);
+  };
+  if (!said.is_object()) return said;
+  shorten(said);
+  shorten_all(said, "scans");
+  if (const auto plan = said.find("plan"); plan != said.end() && plan->is_object()) {
+    shorten_all(*plan, "scans");
+    shorten_all(*plan, "steps");
+  }
+  if (const auto state = said.find("plan_state"); state != said.end()) *state = without_folders(*state);
+  return said;
+}
+
+[[noreturn]] void refuse_viewer(const std::string& what) {
+  throw voxel::Error(voxel::ErrorCode::Input,
+                     "this window only shows the plan: it may not request '" + what + "'");
+}
+
 /// Runs work and passes every exception to `refuse`.
 template <typename Work, typename Refuse>
 void guarded(const Work& work, const Refuse& refuse) noexcept {
@@ -48,7 +76,8 @@ void guarded(const Work& work, const Refuse& refuse) noexcept {
 
 }  // namespace
 
-Service::Service(Session& session, LineOf line_of) : session_(session), line_of_(std::move(line_of)) {
+Service::Service(Session& session, LineOf line_of, std::optional<std::string> view_token)
+    : session_(session), line_of_(std::move(line_of)), view_token_(std::move(view_token)) {
   for (const Lane lane : {Lane::Session, Lane::Evaluate, Lane::Certify, Lane::Overlap, Lane::Long})
     lanes_[lane] = std::make_unique<LaneQueue>(lane != Lane::Session && lane != Lane::Long);
   for (Drawing& drawing : drawings_)
@@ -59,10 +88,11 @@ Service::~Service() {
   lanes_.clear();
 }
 
-std::uint64_t Service::open_window(Send send_to) {
+std::uint64_t Service::open_window(Send send_to, Access access) {
   const std::lock_guard lock(mutex_);
   auto window = std::make_shared<Window>();
   window->send = std::move(send_to);
+  window->access = access;
   windows_[++last_window_] = std::move(window);
   return last_window_;
 }
@@ -86,17 +116,26 @@ void Service::send(std::uint64_t window, Message message) {
   if (const auto found = find(window)) found->send(std::move(message));
 }
 
-void Service::tell_all(const Message& message) {
+void Service::tell_all(const std::string& name, const Json& said) {
   std::map<std::uint64_t, std::shared_ptr<Window>> all;
   {
     const std::lock_guard lock(mutex_);
     all = windows_;
   }
-  for (const auto& [id, window] : all) window->send(message);
+  const Message message = event(name, said);
+  std::optional<Message> shortened;
+  for (const auto& [id, window] : all) {
+    if (window->access == Access::Edit) {
+      window->send(message);
+      continue;
+    }
+    if (!shortened) shortened = event(name, without_folders(said));
+    window->send(*shortened);
+  }
 }
 
 void Service::tell_plan() {
-  tell_all(event("plan", {{"plan_state", session_.state()}}));
+  tell_all("plan", {{"plan_state", session_.state()}});
 }
 
 void Service::receive(std::uint64_t window, const std::string& text) {
@@ -105,6 +144,9 @@ void Service::receive(std::uint64_t window, const std::string& text) {
       [&] {
         Request request = parse_request(text);
         id = request.id;
+        const auto sender = find(window);
+        if (sender == nullptr) return;
+        request.access = sender->access;
         take(window, std::move(request));
       },
       [&](const std::exception& error) { refuse(window, id, error); });
@@ -139,6 +181,8 @@ void Service::take(std::uint64_t window, Request request) {
     const int number = said.value("pane", 0);
     if (number < 0 || number > 15) throw voxel::Error(voxel::ErrorCode::Input, "pane: must be 0 to 15");
     const bool is_moving = said.value("dragging", false);
+    // A preview evaluates steps that are not in the plan, which may read other files.
+    if (request.access == Access::View && said.contains("preview")) refuse_viewer("preview");
     const bool is_along_rays = said.value("kind", "view") != "slice" && is_ray_shading(said);
     // Answers the pane's older request before the newer one can be drawn, so that a pane's answers are in
     // order. If the pane changes to the other kind of picture, its requests for the earlier kind are dropped.
@@ -152,7 +196,9 @@ void Service::take(std::uint64_t window, Request request) {
   const bool certifies = request_kind.lane == Lane::Evaluate && said.value("certify", false);
   const auto of_window = find(window);
   if (of_window == nullptr) return;
-  if (of_window->waiting >= most_waiting)
+  const bool may_edit = request.access == Access::Edit;
+  if (!may_edit && !request_kind.may_view) refuse_viewer(request.what);
+  if (of_window->waiting >= (may_edit ? most_waiting : most_waiting_of_viewer))
     throw voxel::Error(voxel::ErrorCode::Resource, "too many requests wait for their answers");
   ++of_window->waiting;
   const auto asked = std::make_shared<const Request>(std::move(request));
@@ -172,7 +218,8 @@ void Service::answer(std::uint64_t window, const Request& request, const Request
   Clock::time_point told{};
   bool was_told = false;
   const Clock::time_point start = Clock::now();
-  Watched watched{stop, [&](const std::string& doing, double share) {
+  Watched watched{stop,
+                  [&](const std::string& doing, double share) {
                     if (Clock::now() - told < tell_every) return;
                     told = Clock::now();
                     was_told = true;
@@ -183,18 +230,22 @@ void Service::answer(std::uint64_t window, const Request& request, const Request
                                             {"share", share},
                                             {"left_s", share > 0.02 ? Json(spent_s * (1.0 - share) / share)
                                                                     : Json(nullptr)}}));
-                  }};
+                  },
+                  request.access};
   guarded(
       [&] {
         Json ok = request_kind.answer(session_, request.said, watched);
         if (request_kind.changes_plan) {
           Json state = session_.state();
-          tell_all(event("plan", {{"plan_state", state}}));
+          tell_all("plan", {{"plan_state", state}});
           if (ok.is_object()) state.update(ok);
           ok = std::move(state);
         }
-        if (request_kind.lane == Lane::Evaluate) tell_all(event("objects", ok));
+        if (request_kind.lane == Lane::Evaluate) tell_all("objects", ok);
         if (request_kind.changes_objects) tell_plan();
+        if (request.access == Access::View) ok = without_folders(std::move(ok));
+        if (request.what == "hello" && request.access == Access::Edit && view_token_)
+          ok["view_token"] = *view_token_;
         send(window, answer_to(request.id, ok));
       },
       [&](const std::exception& error) { refuse(window, request.id, error); });

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -29,14 +30,17 @@ class Service {
   /// Sends a message to a window's socket; may be called from any thread and must not block.
   using Send = std::function<void(Message message)>;
 
-  /// `line_of` formats error messages.
-  Service(Session& session, LineOf line_of);
+  /// `line_of` formats error messages. `view_token`, if there is one, is passed to windows that may edit, for
+  /// their links to pages that may only look.
+  Service(Session& session, LineOf line_of, std::optional<std::string> view_token = {});
   ~Service();
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;
 
   const LineOf& line_of() const { return line_of_; }
-  std::uint64_t open_window(Send send);
+  /// A window with Access::View gets the plan without paths of folders, and answers only to requests that
+  /// look at it.
+  std::uint64_t open_window(Send send, Access access);
   void close_window(std::uint64_t window);
   /// Receives a window's message; it is answered later.
   void receive(std::uint64_t window, const std::string& text);
@@ -44,13 +48,17 @@ class Service {
  private:
   /// The largest number of waiting requests per window; a page has far fewer.
   static constexpr int most_waiting = 500;
+  /// That of a window that may only look, so that it cannot hold up those that edit.
+  static constexpr int most_waiting_of_viewer = 8;
   struct Window {
     Send send;
+    Access access = Access::Edit;
     std::atomic<int> waiting{0};
   };
   std::shared_ptr<Window> find(std::uint64_t window);
   void send(std::uint64_t window, Message message);
-  void tell_all(const Message& message);
+  /// Sends an event to all windows; to those that may only look without paths of folders.
+  void tell_all(const std::string& name, const Json& said);
   void tell_plan();
   void take(std::uint64_t window, Request request);
   void answer(std::uint64_t window, const Request& request, const RequestKind& request_kind,
@@ -68,6 +76,7 @@ class Service {
 
   Session& session_;
   LineOf line_of_;
+  std::optional<std::string> view_token_;
   std::mutex mutex_;
   std::map<std::uint64_t, std::shared_ptr<Window>> windows_;
   std::uint64_t last_window_ = 0;

@@ -21,10 +21,11 @@
 
 namespace octotomy::planner::serve {
 
-/// The stop token and progress function of a task.
+/// The stop token and progress function of a task, and what the window that requested it may do.
 struct Watched {
   std::stop_token stop;
   std::function<void(const std::string& doing, double share)> progress;
+  Access access = Access::Edit;
 };
 
 /// The last evaluation of a plan. It is immutable, so that pictures can be drawn from it while the plan

@@ -144,6 +144,7 @@ struct ViewPane::Drawing {
   Render render;
   glm::vec3 background{1.0f};
   bool is_moving = false;
+  Access access = Access::Edit;      ///< of the window that shows it
   bool is_of_plan = true;            ///< a plan's `render` step can draw the same picture
   std::optional<double> stereo_deg;  ///< angle between the eyes of a picture for red and cyan glasses
   std::vector<voxel::DrawnObject> objects;
@@ -235,7 +236,9 @@ struct ViewPane::Drawing {
     if (is_of_plan) {
       header["step"] = {{"do", "render"}};
       header["step"].update(print_fields(find_operation("render")->fields, &render));
-      if (objects.size() == 1) header["command"] = command_of(*snapshot.plan, render, last);
+      // A command names the scan's folder.
+      if (objects.size() == 1 && access == Access::Edit)
+        header["command"] = command_of(*snapshot.plan, render, last);
     }
     std::vector<float> depth(picture.depth_mm.size());
     std::vector<std::uint16_t> object(picture.object.size());
@@ -373,6 +376,7 @@ Message ViewPane::draw(Session& session, const Request& request, double most_ms,
   drawing.render = render_of(said);
   if (!drawing.snapshot.evaluation) throw std::runtime_error("no plan is open");
   drawing.is_moving = said.value("dragging", false);
+  drawing.access = request.access;
   drawing.stereo_deg = number_of(said, "stereo_deg");
   if (drawing.stereo_deg) {
     if (!(*drawing.stereo_deg >= 0.1 && *drawing.stereo_deg <= 30.0))

@@ -10,7 +10,6 @@
 #include "planner/plan/history.h"
 #include "planner/plan/merge.h"
 #include "planner/plan/rebase.h"
-#include "planner/plan/sha256.h"
 #include "planner/plan/signature.h"
 #include "voxel/space/write_whole.h"
 
@@ -163,9 +162,7 @@ int sign_plan(const Program& program, const SignText& text) {
     else
       voxel::write_whole(text.plan, signed_text);
   }
-  std::map<std::string, std::string> sums;
-  for (const auto& [name, scan] : plan.scans)
-    if (fs::exists(scan_path(plan, scan))) sums[name] = sha256_of_path(scan_path(plan, scan));
+  const std::map<std::string, std::string> sums = sums_of_scans(plan);
   Json json = answer({});
   json["path"] = text.plan.string();
   json["signatures"] = Json::array();

@@ -30,7 +30,7 @@ struct ServeText {
   std::vector<fs::path> paths;
   serve::ServerOptions options;
   fs::path token_file;
-  bool open = false;
+  bool open = false, share = false;
 };
 
 /// Starts the desktop's browser; does nothing if there is none. The URL contains the token and every user can
@@ -86,12 +86,18 @@ int run(Program& program, ServeText& text) {
   // Checks everything that can be refused before a plan is written.
   const std::optional<fs::path> beginning = beginning_of(text.paths);
   text.options.token = text.token_file.empty() ? serve::new_token() : serve::token_in(text.token_file);
+  if (text.share)
+    text.options.view_token =
+        text.token_file.empty() ? serve::new_token() : serve::token_in(text.token_file.string() + ".view");
   std::optional<voxel::UnfinishedFolder> closed_folder;
-  text.options.ready = [&](const std::string& url) {
+  text.options.ready = [&](const std::string& url, const std::string& view_url) {
     Json json = answer({});
     json.erase("timings_ms");
     json["url"] = url;
-    const std::string line = program.json ? json_text(json) + "\n" : "Open " + url + "\nCtrl-C ends it.\n";
+    if (!view_url.empty()) json["view_url"] = view_url;
+    const std::string to_look = view_url.empty() ? "" : "To look only: " + view_url + "\n";
+    const std::string line =
+        program.json ? json_text(json) + "\n" : "Open " + url + "\n" + to_look + "Ctrl-C ends it.\n";
     std::fputs(line.c_str(), stdout);
     std::fflush(stdout);
     if (text.open)
@@ -105,7 +111,7 @@ int run(Program& program, ServeText& text) {
   for (const fs::path& path : text.paths) session.folders.open(path);
   if (beginning && serve::is_plan(*beginning)) allow_reading_of(read_plan(*beginning), session.folders);
   if (beginning) session.open(*beginning, {program.stop.get_token(), program.progress()});
-  serve::Service service(session, line_of);
+  serve::Service service(session, line_of, text.options.view_token);
   server.run(service, session, program.stop.get_token());
   // The watch started shortly before or after this verb.
   constexpr std::chrono::duration<double> margin{0.1};
@@ -130,6 +136,10 @@ void add_serve(Program& program) {
                   "Stores the address's token in this file: with the same --port, open pages reconnect to a "
                   "restarted server");
   verb.add_flag("--open", text->open, "Opens the desktop's browser");
+  verb.add_flag(
+      "--share", text->share,
+      "Prints a second address, with a token of its own, whose pages show the open plan as it changes "
+      "and change nothing. With --token-file FILE, its token is stored in FILE.view");
   verb.add_option("--listen", text->options.address,
                   "Address of another interface, so that other machines reach the server; default 127.0.0.1");
 }

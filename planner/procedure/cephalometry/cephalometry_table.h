@@ -17,13 +17,14 @@ struct CephalometryRow {
   std::optional<CephalometricValue> before, after, change;
   std::optional<double> norm, deviation;
   std::string source;
+  std::optional<std::string> norm_of;
 };
 constexpr auto members_of(const CephalometryRow&) {
   using R = CephalometryRow;
   return std::tuple(member("name", &R::name), member("says", &R::says), member("unit", &R::unit),
                     member("before", &R::before), member("after", &R::after), member("change", &R::change),
                     member("norm", &R::norm), member("deviation", &R::deviation),
-                    member("source", &R::source));
+                    member("source", &R::source), member_if_any("norm_of", &R::norm_of));
 }
 
 /// A measure that cannot be computed.

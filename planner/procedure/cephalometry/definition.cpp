@@ -59,10 +59,12 @@ std::vector<std::string> words_of(const SortedJson& list, const std::string& whe
 class Reader {
  public:
   Cephalometry read(const SortedJson& root) {
-    check_keys(root, "cephalometry", {"cephalometry", "says", "landmarks", "measures"});
+    check_keys(root, "cephalometry", {"cephalometry", "says", "landmarks", "sources", "measures"});
     made_.name = word_of(need(root, "cephalometry", ""), "cephalometry");
     made_.says = word_of(need(root, "says", ""), "says");
     for (const SortedJson& entry : need(root, "landmarks", "")) add_landmark(entry);
+    if (root.contains("sources"))
+      for (const SortedJson& entry : root["sources"]) add_source(entry);
     for (const SortedJson& entry : need(root, "measures", "")) add_measure(entry);
     return std::move(made_);
   }
@@ -77,6 +79,15 @@ class Reader {
     need_known(landmark.mean_of, landmarks_, where + ", mean_of");
     if (!landmarks_.insert(landmark.name).second) refuse(where, "'" + landmark.name + "' is defined twice");
     made_.landmarks.push_back(std::move(landmark));
+  }
+
+  void add_source(const SortedJson& entry) {
+    const std::string where = "sources[" + std::to_string(made_.sources.size()) + "]";
+    check_keys(entry, where, {"name", "says"});
+    CephalometricSource source{word_of(need(entry, "name", where), where),
+                               word_of(need(entry, "says", where), where)};
+    if (!sources_.insert(source.name).second) refuse(where, "'" + source.name + "' is defined twice");
+    made_.sources.push_back(std::move(source));
   }
 
   void add_measure(const SortedJson& entry) {
@@ -105,7 +116,10 @@ class Reader {
     need_known(measure.of, measures_, where + ", of");
     if (entry.contains("norm")) measure.norm = number_of(entry["norm"], where + ", norm");
     if (entry.contains("deviation")) measure.deviation = number_of(entry["deviation"], where + ", deviation");
-    if (entry.contains("source")) measure.source = word_of(entry["source"], where + ", source");
+    if (entry.contains("source")) {
+      measure.source = word_of(entry["source"], where + ", source");
+      if (!sources_.empty()) need_known({measure.source}, sources_, where + ", source");
+    }
     if (!measures_.insert(measure.name).second) refuse(where, "'" + measure.name + "' is defined twice");
     made_.measures.push_back(std::move(measure));
   }
@@ -119,7 +133,7 @@ class Reader {
   }
 
   Cephalometry made_;
-  std::set<std::string> landmarks_, measures_;
+  std::set<std::string> landmarks_, sources_, measures_;
 };
 
 }  // namespace

@@ -34,7 +34,7 @@ struct CephalometricMeasure {
   std::vector<std::string> points;  ///< landmarks
   std::vector<std::string> of;      ///< measures, for Difference and Share
   std::optional<double> norm, deviation;
-  std::string source;  ///< source of the norm
+  std::string source;  ///< source of the norm; one of Cephalometry::sources, if there are any
 
   const char* unit() const;
 };
@@ -46,8 +46,15 @@ struct CephalometricLandmark {
   std::vector<std::string> mean_of;
 };
 
+/// A publication of norms, and the people whom its norms describe.
+struct CephalometricSource {
+  std::string name;  ///< "Downs 1948"
+  std::string says;
+};
+
 struct Cephalometry {
   std::string name, says;
+  std::vector<CephalometricSource> sources;
   std::vector<CephalometricLandmark> landmarks;
   std::vector<CephalometricMeasure> measures;
 };
@@ -57,7 +64,7 @@ using LandmarkPlaces = std::map<std::string, glm::dvec3>;
 /// Adds each landmark that was not placed but is the mean of landmarks that are known.
 LandmarkPlaces with_means(const Cephalometry& definitions, LandmarkPlaces points);
 
-/// Throws std::runtime_error with the position in the text for an unknown key, kind, landmark or measure (a
+/// Throws std::runtime_error with the position in the text for an unknown key, kind, landmark, source or measure (a
 /// measure must be defined before it is used), or a wrong number of points.
 Cephalometry parse_cephalometry(const std::string& json);
 /// Reads definitions: those of the program by their name, or a file that ends in .json. Throws

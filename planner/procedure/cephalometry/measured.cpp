@@ -256,6 +256,12 @@ class Placing {
   Points before_mm_, after_mm_;
 };
 
+std::optional<std::string> norm_of(const Cephalometry& definitions, const CephalometricMeasure& measure) {
+  for (const CephalometricSource& source : definitions.sources)
+    if (source.name == measure.source) return source.says;
+  return {};
+}
+
 Values changes(const Values& before, const Values& after) {
   Values made(before.size());
   for (std::size_t i = 0; i < made.size(); ++i) made[i] = after[i] - before[i];
@@ -291,8 +297,11 @@ CephalometricResults measured(const Cephalometry& definitions, const std::vector
   CephalometricResults results;
   results.lacking = chart.lacking();
   for (std::size_t i = 0; i < before.size(); ++i) {
-    CephalometricResult result{
-        *chart.measures()[i].definition, {before[i], of_before.half_width(i, before[i])}, {}, {}};
+    CephalometricResult result{*chart.measures()[i].definition,
+                               norm_of(definitions, *chart.measures()[i].definition),
+                               {before[i], of_before.half_width(i, before[i])},
+                               {},
+                               {}};
     if (moves) {
       result.after = {after[i], of_after.half_width(i, after[i])};
       result.change = {change[i], of_change.half_width(i, change[i])};
@@ -304,9 +313,9 @@ CephalometricResults measured(const Cephalometry& definitions, const std::vector
 
 Json to_json(const CephalometricResults& results, const LandmarkDoubt& doubt) {
   CephalometryTable table{{}, {}, doubt.deviation_mm, verify::claimed_coverage};
-  for (const auto& [measure, before, after, change] : results.measured)
+  for (const auto& [measure, norm_of, before, after, change] : results.measured)
     table.measures.push_back({measure.name, measure.says, measure.unit(), before, after, change, measure.norm,
-                              measure.deviation, measure.source});
+                              measure.deviation, measure.source, norm_of});
   for (const auto& [name, landmarks] : results.lacking) table.lacking.push_back({name, landmarks});
   return print_record(table);
 }

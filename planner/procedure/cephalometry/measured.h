@@ -19,6 +19,8 @@ struct CephalometricValue {
 };
 struct CephalometricResult {
   CephalometricMeasure measure;
+  std::optional<std::string>
+      norm_of;  ///< the people whom the norm describes; none if its source is not described
   CephalometricValue before;
   /// None if nothing moved. A landmark's error is the same before and after, so a change is more accurate
   /// than either value.
@@ -44,7 +46,7 @@ CephalometricResults measured(const Cephalometry& definitions, const std::vector
                               const glm::dmat3& lps_from_head, const LandmarkDoubt& doubt = {});
 
 /// {"measures": [{"name", "says", "unit", "before": {"value", "half_width"}, "after", "change", "norm",
-/// "deviation", "source"}], "lacking": [{"name", "landmarks"}], "landmark_deviation_mm", "coverage"}.
+/// "deviation", "source", "norm_of"}], "lacking": [{"name", "landmarks"}], "landmark_deviation_mm", "coverage"}.
 nlohmann::ordered_json to_json(const CephalometricResults& results, const LandmarkDoubt& doubt);
 
 }  // namespace octotomy::planner

@@ -2,7 +2,7 @@
 // The report's table of movements, and the cephalometric one.
 import {Child, el} from "../../browser/page/base/html";
 import {grouped} from "../../browser/page/base/numbers";
-import {Row, section, soft, table} from "./elements";
+import {list, Row, section, soft, table} from "./elements";
 import {png_figure} from "./pictures";
 import {CephalometryTable, Displacement, Result} from "./result";
 
@@ -37,15 +37,18 @@ export function cephalometry(of: CephalometryTable|null, cephalogram: string): C
     return [
       `${row.name}, ${row.unit === "deg" ? "°" : row.unit}`, el("span", {class: "soft"}, row.says), interval(row.before),
       interval(row.after), interval(row.change, true),
-      row.norm === null ? "–" : `${grouped(row.norm, 1)} ± ${grouped(row.deviation, 1)}`
+      row.norm === null ? "–" : `${grouped(row.norm, 1)} ± ${grouped(row.deviation, 1)}`,
+      el("span", {class: "soft"}, row.source)
     ];
   });
+  const described = new Map(of.measures.flatMap((row) => row.norm_of ? [[row.source, row.norm_of] as const] : []));
   return section(
       "Cephalometry",
       cephalogram && el("div", {class: "pictures two"}, png_figure(
           cephalogram, "The radiograph from the right with landmarks and lines of the lateral measures",
           "Radiograph in true scale; pale: the patient, orange: planned.")),
-      table(["Measure", "", "#before", "#planned", "#change", "#norm"], rows),
+      table(["Measure", "", "#before", "#planned", "#change", "#norm", "source"], rows),
       soft(`After each ±, what landmarks placed to ${grouped(of.landmark_deviation_mm, 1)} mm (standard deviation along ` +
-           "each axis) leave open in 99 of 100 cases; after each norm, its standard deviation among people."));
+           "each axis) leave open in 99 of 100 cases; after each norm, its standard deviation among the people of its source."),
+      list([...described].map(([source, people]) => `${source}: ${people}.`)));
 }

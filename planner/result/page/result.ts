@@ -41,8 +41,9 @@ export interface CephalometryTable {
   landmark_deviation_mm: number;
   measures: {
     name: string; says: string; unit: string; before: Cephalometric; after: Cephalometric; change: Cephalometric;
-    norm: Maybe<number>; deviation: Maybe<number>;
+    norm: Maybe<number>; deviation: Maybe<number>; source: string; norm_of?: string;
   }[];
+  lacking?: {name: string; landmarks: string[]}[];
 }
 
 export interface Contact {

@@ -43,6 +43,8 @@ const paths = {
   export: "M12 15V3M8 7l4-4 4 4M5 13v7h14v-7",
   report: "M6 3h9l4 4v14H6zM9 13l2 2 4-5",
   camera: "M4 8h4l2-3h4l2 3h4v11H4zM12 16.500a3.500 3.500 0 100-7 3.500 3.500 0 000 7z",
+  screen: "M3 5h18v11H3zM9 20h6M12 16v4",
+  share: "M6 14a2 2 0 100-4 2 2 0 000 4zM17 7a2 2 0 100-4 2 2 0 000 4zM17 21a2 2 0 100-4 2 2 0 000 4zM8 11l7-5M8 13l7 5",
   maximise: "M4 9V4h5M20 9V4h-5M4 15v5h5M20 15v5h-5",
   trash: "M5 7h14M10 7V4h4v3M7 7l1 13h8l1-13",
   copy: "M8 8h11v12H8zM5 16V4h11",

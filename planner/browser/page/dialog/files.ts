@@ -4,7 +4,7 @@ import {busy, done, first_greeting, open_plan, token, try_to} from "../actions";
 import {open_dialog} from "../base/dialog";
 import {button, Child, el} from "../base/html";
 import {icon} from "../base/icons";
-import {notify, set, state} from "../state";
+import {may_edit, notify, set, state} from "../state";
 
 interface Entry {
   name: string;
@@ -134,7 +134,10 @@ interface Given {
 
 /// Takes files and folders that are dropped anywhere on the page.
 export function take_drops(): void {
+  // Rows of the page are dragged, too.
+  const has_files = (event: DragEvent): boolean => event.dataTransfer?.types.includes("Files") === true;
   addEventListener("dragover", (event) => {
+    if (!has_files(event)) return;
     event.preventDefault();
     document.body.classList.add("dropping");
   });
@@ -142,8 +145,10 @@ export function take_drops(): void {
     if (!event.relatedTarget) document.body.classList.remove("dropping");
   });
   addEventListener("drop", (event) => {
+    if (!has_files(event)) return;
     event.preventDefault();
     document.body.classList.remove("dropping");
+    if (!may_edit()) return notify("This window only shows the plan.", "warning");
     // Both lists are empty once the event has ended.
     const items = [...event.dataTransfer?.items ?? []].filter((item) => item.kind === "file").map((item) => {
       return {entry: item.webkitGetAsEntry(), file: item.getAsFile()};

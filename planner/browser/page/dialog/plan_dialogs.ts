@@ -8,6 +8,7 @@ import {icon} from "../base/icons";
 import {makes_body} from "../operations";
 import {all_panes} from "../pane/pane_grid";
 import {audit_rows} from "../panel/audit";
+import {doubtful_places} from "../panel/doubtful_places";
 import {scan_facts} from "./start_page";
 import {notify, state, step_of} from "../state";
 
@@ -127,7 +128,30 @@ export async function write_report(): Promise<void> {
 export function open_audit(): void {
   const dialog = open_dialog("The scan's audit", "audit-dialog");
   dialog.refill(
-      (state.plan?.scans ?? []).map((scan) => [el("h3", {}, scan.name), audit_rows(scan.audit), scan_facts(scan)]));
+      (state.plan?.scans ?? []).map((scan) => [
+        el("h3", {}, scan.name), doubtful_places(scan.name, dialog.close), audit_rows(scan.audit), scan_facts(scan)
+      ]));
+}
+
+/// The link for a colleague, whose page follows the plan and cannot change it.
+export function open_link(): void {
+  const dialog = open_dialog("A link to look at this plan", "link-dialog");
+  const given = state.hello?.view_token;
+  if (!given)
+    return dialog.refill(el(
+        "p", {class: "says"}, "This program was started without such a link. End it, and start it with ",
+        el("code", {class: "path"}, "octotomy serve --share"), "."));
+  const link = `${location.origin}/?token=${given}`;
+  const field = el("input", {value: link, readOnly: true, "aria-label": "Link", name: "link"});
+  dialog.refill(
+      el("p", {class: "says"},
+         "Whoever opens this link sees the open plan with its patient, follows every change, and can change nothing. " +
+             "It ends when the program ends."),
+      field,
+      el("div", {class: "row end"}, button([icon("copy", 15), "Copy"], "Copies the link", () => {
+           field.select();
+           void navigator.clipboard.writeText(link).then(() => notify("The link is on the clipboard."), () => undefined);
+         }, {class: "primary"})));
 }
 
 /// The panes as they are shown, in one PNG.

@@ -2,6 +2,7 @@
 // The start page, and the page with a scan's audit, which is shown before the plan.
 import {open_plan, try_to} from "../actions";
 import {audit_rows} from "../panel/audit";
+import {doubtful_places} from "../panel/doubtful_places";
 import {grouped} from "../base/numbers";
 import {dialogs} from "../commands";
 import {patient_button, patient_facts} from "../panel/patient";
@@ -9,7 +10,7 @@ import {file_chooser, most_upload_words} from "./files";
 import {button, Child, el, fill} from "../base/html";
 import {icon, IconName} from "../base/icons";
 import {ScanState} from "../protocol";
-import {set, state, watch} from "../state";
+import {may_edit, set, state, watch} from "../state";
 import {take_tool} from "../tool/tool";
 import {start_tour} from "./tour";
 
@@ -32,6 +33,11 @@ export function make_start(host: HTMLElement): void {
 }
 
 function start(): Child {
+  if (!may_edit())
+    return el(
+        "main", {class: "start"},
+        el("header", {}, el("h1", {}, el("span", {class: "logo"}), "Octotomy"),
+           el("p", {role: "status"}, "No plan is open. This page shows one as soon as it is opened.")));
   const is_opening = state.jobs.some((job) => job.what === "Opening");
   return el(
       "main", {class: "start"},
@@ -87,7 +93,7 @@ function recent_plans(): Child {
 
 /// Requests the plans of the opened folders, and refills the page if they have changed.
 async function look_for_recent(): Promise<void> {
-  if (state.page !== "start" || !state.hello) return;
+  if (state.page !== "start" || !state.hello || !may_edit()) return;
   const answer = await try_to<{plans: RecentPlan[]}>("recent");
   const before = JSON.stringify(recent);
   recent = answer?.plans ?? [];
@@ -129,7 +135,8 @@ function audit_page(): Child {
       "main", {class: "start audit-page"},
       el("header", {}, el("h1", {}, headline),
          el("p", {}, "The audit checks what a plan relies on: orientation, spacing, units, gaps.")),
-      el("section", {class: "card wide"}, audit_rows(scan.audit), scan_facts(scan)),
+      el("section", {class: "card wide"}, doubtful_places(scan.name, () => undefined), audit_rows(scan.audit),
+         scan_facts(scan)),
       el("div", {class: "row"},
          button(
              "Continue", "Continue to the planner",

@@ -6,7 +6,8 @@ import {button, Child, el, fill} from "../base/html";
 import {icon} from "../base/icons";
 import {change_pane, Pane} from "./panes";
 import {FrameHeader} from "../protocol";
-import {first_scan, on_leaving_plan, PaneSetting, set, shown_scan, State, state, watch} from "../state";
+import {first_scan, on_leaving_plan, PaneSetting, set, shown_scan, shows_one_pane, State, state, watch} from "../state";
+import {open_second_screen} from "../second_screen";
 import {active_tool, take_tool} from "../tool/tool";
 import {Vec2, Vec3} from "../base/vector";
 import {plane_names, PlaneName, turned, view_names, ViewName} from "../base/view_frame";
@@ -192,11 +193,16 @@ function head_of(pane: Pane): Child {
     setting.only ? about(`${setting.only.replace(/_/g, " ")} alone`) : null,
     shading,
     el("span", {class: "spring"}),
-    button(
+    shows_one_pane ? null : [
+      button(
+          icon("screen", 14), "Show in a second window, for another screen", () => open_second_screen(pane.index),
+          {class: "ghost small to-screen"}),
+      button(
         icon("maximise", 14),
         state.maximised === null ? "Enlarge this pane. Double click does it too" : "Show four panes",
         () => set({maximised: state.maximised === null ? pane.index : null, active_pane: pane.index}),
         {class: "ghost small"}),
+    ],
   ];
 }
 

@@ -283,6 +283,7 @@ export class Pane {
   private redraw_now(): void {
     this.is_dirty = false;
     this.canvas.setAttribute("aria-busy", String(this.is_busy));
+    this.canvas.dataset.picture = this.picture ? String(this.picture.header.id) : "";
     const context = this.canvas.getContext("2d", {alpha: false});
     if (!context) return;
     const [width, height] = this.size;

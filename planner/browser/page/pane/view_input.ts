@@ -5,7 +5,7 @@ import {mirror_from, MirrorDrag} from "./mirror_plane";
 import {tilt_from} from "./oblique";
 import type {Pane} from "./panes";
 import {change_pane} from "./panes";
-import {set, shown_scan, state} from "../state";
+import {set, shown_scan, shows_one_pane, state} from "../state";
 import {Pointer, Tool, active_tool} from "../tool/tool";
 import {Vec2, Vec3, add, dot, hundredths, scaled} from "../base/vector";
 import {turned} from "../base/view_frame";
@@ -155,7 +155,7 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
   canvas.addEventListener("dblclick", (event) => {
     const tool = active_tool();
     if (tool?.double?.({pane, at: at_of(event)})) return;
-    if (state.tool === "navigate") set({maximised: state.maximised === null ? pane.index : null});
+    if (state.tool === "navigate" && !shows_one_pane) set({maximised: state.maximised === null ? pane.index : null});
   });
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
   canvas.addEventListener(

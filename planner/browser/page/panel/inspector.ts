@@ -18,7 +18,7 @@ import {numbers} from "./numbers_panel";
 import {Step} from "../protocol";
 import {result_rows} from "./result_rows";
 import {step_form} from "./schema_form";
-import {selected_step, set, state, watch} from "../state";
+import {may_edit, selected_step, set, state, watch} from "../state";
 import {active_tool, take_tool} from "../tool/tool";
 import {compare_card, cut_plane_card} from "../pane/view_cards";
 
@@ -73,7 +73,7 @@ function inspector(): Child {
                {class: "primary"}),
            button("Cancel", "Adds nothing", () => set({draft_step: null}))))];
   const step = selected_step();
-  const motion =
+  const motion = !may_edit() ? null :
       step?.do === "move" || state.tool === "move" || (step && is_piece(step)) ? movement_fields() : null;
   return [
     tool_card(), state.cut_plane ? cut_plane_card() : null, state.compare ? compare_card() : null, motion,
@@ -83,7 +83,7 @@ function inspector(): Child {
 
 const hint = (): Child => (
     state.tool === "navigate" ? el("p", {class: "says empty"},
-                                   "Select a step on the left, or take a tool. Ctrl K finds every command.") :
+                                   may_edit() ? "Select a step on the left, or take a tool. Ctrl K finds every command." : "Select a step to read it.") :
                                 null);
 
 function tool_card(): Child {
@@ -112,11 +112,11 @@ function step_card(step: Step, has_motion: boolean): Child {
       found && found.value !== null ? el("p", {class: "reading"}, el("b", {}, measured_text(found)), ` ${found.says ?? ""}`) : null,
       found && found.value === null && found.sentence ? el("p", {class: "says"}, found.sentence) : null,
       object?.findings?.map((finding) => el("p", {class: "sentence warn"}, finding)),
-      mirror_rows(step), cleaning_rows(step), neck_rows(step), live_rows(step), result_rows(step),
+      may_edit() ? [mirror_rows(step), cleaning_rows(step), neck_rows(step), live_rows(step)] : null, result_rows(step),
       certificate ? el("p", {class: `sentence ${certificate.verdict.toLowerCase()}`}, certificate.sentence) :
                     null,
-      step_form(
+      el("div", {class: "panel-rows", inert: !may_edit()}, step_form(
           step, (next) => void replace_step(step.id, next, `${step.id} changed`),
-          has_motion ? ["by", "turn"] : []),
-      mesh_audit(step));
+          has_motion ? ["by", "turn"] : [])),
+      may_edit() ? mesh_audit(step) : null);
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // How far each piece and landmark moves, in words.
 import {try_to} from "../actions";
-import {Child, el} from "../base/html";
+import {button, Child, el} from "../base/html";
+import {dialogs} from "../commands";
 import {moves_object} from "../operations";
 import {on_leaving_plan, set, state, steps} from "../state";
 
@@ -34,9 +35,14 @@ export async function fetch_movement(): Promise<void> {
 }
 
 export function movement(): Child {
+  const face = state.plan?.landmarks.length ?
+      button(
+          "Cephalometry", "Cephalometry. Shows measures of the face with norms, before and after, and their tracing",
+          () => dialogs.cephalometry(), {"data-key": "cephalometry"}) :
+      null;
   if (!movements.size)
-    return el("p", {class: "says empty"}, "No piece moves yet. Select a piece and press G to move it.");
-  return [...movements].map(
+    return [face, el("p", {class: "says empty"}, "No piece moves yet. Select a piece and press G to move it.")];
+  return [face, ...[...movements].map(
       ([id, rows]) =>
           el("table", {class: "numbers"}, el("caption", {}, id.replace(/_/g, " ")),
              el("tbody", {}, rows.map((row) => [
@@ -46,7 +52,7 @@ export function movement(): Child {
                                mark.name,
                                mark.since_scan ? `${mark.words}; since the scan ${mark.since_scan.words}` :
                                                  mark.words))
-                ]))));
+                ]))))];
 }
 const row_of = (name: string, words: string): Child =>
     el("tr", {}, el("th", {scope: "row"}, name.replace(/_/g, " ")), el("td", {class: "words-cell"}, words));

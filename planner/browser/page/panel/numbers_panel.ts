@@ -10,7 +10,7 @@ import {grouped} from "../base/numbers";
 import {makes_body} from "../operations";
 import {show_place} from "../pane/pane_grid";
 import {Measurement} from "../protocol";
-import {set, state, step_of, steps} from "../state";
+import {may_edit, set, state, step_of, steps} from "../state";
 import {step_words} from "./step_lists";
 import {Vec3} from "../base/vector";
 
@@ -28,7 +28,7 @@ export function numbers(): Child {
   return [
     el("section", {class: "card"},
        el("h3", {}, "Certificates", el("span", {class: "spring"}),
-          button(
+          !may_edit() ? null : button(
               [icon("certify", 15), "Certify"], "Certify. Computes all objects in both kernels and compares them",
               () => void certify_all(), {class: "primary"})),
        el("p", {class: "says"},
@@ -44,7 +44,7 @@ export function numbers(): Child {
              },
              el("th", {scope: "row"}, object.id.replace(/_/g, " "),
                 is_overlap(step, all) && !object.id.includes("overlap") ? el("small", {}, " overlap") : null,
-                is_overlap(step, all) && (object.volume?.value ?? 0) > 0 ?
+                may_edit() && is_overlap(step, all) && (object.volume?.value ?? 0) > 0 ?
                     button(
                         "Show", `Shows the largest part of ${object.id} in all panes`,
                         (event) => {

@@ -3,14 +3,14 @@
 import {change_history, try_to} from "../actions";
 import {motion_words} from "../base/anatomical";
 import {badge} from "./certificate_badge";
-import {copy_command, name_version, new_branch, put_step_at, remove_step} from "../commands";
+import {copy_command, dialogs, name_version, new_branch, put_step_at, remove_step} from "../commands";
 import {look_of, object_ids} from "../drawn_objects";
 import {makes_body, makes_scan, makes_shape} from "../operations";
-import {button, Child, el, fill, fill_tabs} from "../base/html";
+import {Attributes, button, Child, el, fill, fill_tabs} from "../base/html";
 import {icon} from "../base/icons";
 import {show_scan} from "../pane/pane_grid";
 import {Json, Motion, ObjectState, Step} from "../protocol";
-import {ObjectLook, on_leaving_plan, set, shown_scan, state, steps, watch} from "../state";
+import {may_edit, ObjectLook, on_leaving_plan, set, shown_scan, state, steps, watch} from "../state";
 
 const object_of = (id: string): ObjectState|undefined =>
     state.plan?.objects.find((object) => object.id === id);
@@ -35,7 +35,7 @@ export function make_lists(host: HTMLElement): void {
             state.left_tab === "steps" ? step_rows() :
                                          history());
   };
-  watch(["plan", "looks", "selected", "left_tab", "scan"], again);
+  watch(["plan", "looks", "selected", "left_tab", "scan", "hello"], again);
 }
 
 /// Chooses the scan that the panes show, if the plan has several.
@@ -156,7 +156,8 @@ function step_rows(): Child {
       return el(
           "div", {
             class: `item step${state.selected === step.id ? " selected" : ""}`,
-            onclick: () => set({selected: step.id, right_tab: "inspector"})
+            onclick: () => set({selected: step.id, right_tab: "inspector"}),
+            ...(may_edit() ? drag_of(step, index) : {})
           },
           el("div", {class: "item-line"},
              makes_shape(step) ? el("span", {class: "chip", style: `background:${look_of(step.id).colour}`}) :
@@ -165,12 +166,57 @@ function step_rows(): Child {
                 {type: "button", class: "name", "aria-current": state.selected === step.id ? "step" : null},
                 step.id.replace(/_/g, " ")),
              makes_body(step) ? badge(step.id, object?.certificate, object?.volume) : null,
-             makes_shape(step) ? eye(step.id) : null, step_menu(step)),
+             makes_shape(step) ? eye(step.id) : null, may_edit() ? step_menu(step) : null),
           el("p", {class: "words"}, el("b", {}, step.do.replace(/_/g, " ")), " ", step_words(step)),
           error_of(step) ? el("p", {class: "error"}, error_of(step)) : null);
     }),
     steps().length ? null : el("p", {class: "says"}, "No step yet."),
   ];
+}
+
+// The step that is dragged to another place, as long as it is.
+let dragged: string|null = null;
+const drop_classes = ["before-here", "behind-here"] as const;
+
+/// Attributes by which a row is dragged to another place, and takes another one before or behind it.
+function drag_of(step: Step, index: number): Attributes {
+  const row_of = (event: DragEvent): HTMLElement => event.currentTarget as HTMLElement;
+  const is_behind = (event: DragEvent): boolean => {
+    const box = row_of(event).getBoundingClientRect();
+    return event.clientY > box.top + box.height / 2;
+  };
+  const clear = (event: DragEvent): void => row_of(event).classList.remove(...drop_classes);
+  return {
+    draggable: "true",
+    ondragstart: (event: DragEvent) => {
+      dragged = step.id;
+      row_of(event).classList.add("dragged");
+      event.dataTransfer?.setData("text/plain", step.id);
+      if (event.dataTransfer) event.dataTransfer.effectAllowed = "move";
+    },
+    ondragend: (event: DragEvent) => {
+      dragged = null;
+      row_of(event).classList.remove("dragged");
+    },
+    ondragover: (event: DragEvent) => {
+      if (dragged === null || dragged === step.id) return;
+      event.preventDefault();
+      event.stopPropagation();  // the page itself takes dropped files
+      clear(event);
+      row_of(event).classList.add(drop_classes[is_behind(event) ? 1 : 0]);
+    },
+    ondragleave: clear,
+    ondrop: (event: DragEvent) => {
+      clear(event);
+      if (dragged === null) return;
+      event.preventDefault();
+      event.stopPropagation();
+      const from = steps().findIndex((one) => one.id === dragged);
+      // Its own place is empty while it is elsewhere.
+      const to = index + (is_behind(event) ? 1 : 0);
+      put_step_at(dragged, from < to ? to - 1 : to);
+    },
+  };
 }
 
 // The step whose menu is open. The menu stays open when the list is refilled.
@@ -215,6 +261,7 @@ function step_menu(step: Step): Child {
 let diff_rows: {from: number; rows: string[]}|null = null;
 on_leaving_plan(() => {
   step_of_menu = "";
+  dragged = null;
   diff_rows = null;
 });
 
@@ -222,12 +269,14 @@ function history(): Child {
   const plan = state.plan;
   if (!plan) return null;
   return [
-    el("div", {class: "row"},
+    !may_edit() ? null : el("div", {class: "row"},
        button(
            [icon("branch", 15), "New branch"],
            "New branch. Changes go to a new branch; the present plan stays on this one", () => void new_branch()),
-       button("Name version", "Names this state, so that you find it again", () => void name_version())),
-    plan.branches.length > 1 ?
+       button("Name version", "Names this state, so that you find it again", () => void name_version()),
+       button("Merge", "Merge with another plan. Takes over what somebody else has changed", () => dialogs.merge()),
+       button("Sign", "Sign. Shows who has approved the plan, and what has changed since", () => dialogs.sign())),
+    plan.branches.length > 1 && may_edit() ?
         el("label", {class: "field"}, el("span", {}, "Branch"),
            el("select", {
              "data-key": "branch",
@@ -246,6 +295,7 @@ function history(): Child {
              el("button", {
                type: "button",
                class: "name",
+               disabled: !may_edit(),
                "data-tip": is_now ? "The present state" : "Go to this state",
                onclick: () => void change_history("go_to", {where: String(one.id)})
              },

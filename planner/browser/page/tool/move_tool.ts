@@ -6,7 +6,7 @@ import {dot_at, ink, text} from "../base/ink";
 import type {Pane} from "../pane/panes";
 import {centre_of, commit_motion, current, piece, pivot_mm, preview_motion} from "./piece_motion";
 import {Difference, Motion, Step} from "../protocol";
-import {notify, set, state} from "../state";
+import {notify, on_leaving_plan, set, state} from "../state";
 import {Tool} from "./tool";
 import {add, dot, scaled, Vec2, Vec3} from "../base/vector";
 
@@ -44,6 +44,27 @@ function turn_in(pane: Pane): {turn: Turn; sign: number} {
   };
   const best = turns.reduce((one, other) => (Math.abs(size(other)) > Math.abs(size(one)) ? other : one));
   return {turn: best, sign: Math.sign(size(best)) || 1};
+}
+
+/// The motion that keys have asked for and that the plan does not have yet. Keys repeat faster than edits are answered.
+let keyed: {source: string; move: Motion}|null = null;
+let is_writing = false;
+on_leaving_plan(() => { keyed = null; });
+
+/// Writes the newest such motion into the plan, one edit after the other.
+async function write_keyed(): Promise<void> {
+  if (is_writing) return;
+  is_writing = true;
+  try {
+    while (keyed && piece()?.source === keyed.source) {
+      const {move}: {move: Motion} = keyed;
+      await commit_motion(move);
+      if (keyed?.move === move) break;
+    }
+  } finally {
+    keyed = null;
+    is_writing = false;
+  }
 }
 
 export const move_tool: Tool = {
@@ -89,9 +110,11 @@ export const move_tool: Tool = {
       b: ["forward_mm", -0.5],
     };
     const hit = event.ctrlKey || event.metaKey ? undefined : keys[event.key];
-    if (!hit || !piece() || current().points) return false;
-    const move = current();
-    void commit_motion({...move, by: {...move.by, [hit[0]]: (move.by?.[hit[0]] ?? 0) + hit[1]}});
+    const one = piece();
+    if (!hit || !one || current().points) return false;
+    const move = keyed?.source === one.source ? keyed.move : current();
+    keyed = {source: one.source, move: {...move, by: {...move.by, [hit[0]]: (move.by?.[hit[0]] ?? 0) + hit[1]}}};
+    void write_keyed();
     return true;
   },
   left() {

@@ -3,7 +3,7 @@
 // own navigation.
 import type {Child} from "../base/html";
 import type {Pane} from "../pane/panes";
-import {on_leaving_plan, set, state} from "../state";
+import {may_edit, on_leaving_plan, set, state} from "../state";
 import {Vec2} from "../base/vector";
 
 export interface Pointer {
@@ -39,7 +39,7 @@ export function register_tools(more: Tool[]): void {
 export const active_tool = (): Tool|undefined => tools.find((tool) => tool.name === state.tool);
 
 export function take_tool(name: string): void {
-  if (name === state.tool) return;
+  if (name === state.tool || (name !== "navigate" && !may_edit())) return;
   active_tool()?.left?.();
   set({tool: name});
   // The tool's rows are in the inspector.

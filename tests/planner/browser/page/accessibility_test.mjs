@@ -3,13 +3,12 @@
 // contrast of at least 4.5 of all text. Nothing reaches out of windows of four widths.
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
-import { createRequire } from 'node:module';
 import os from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { PlannerWindow, lay_phantom, start_server } from './planner_window.mjs';
+import { beside, violations } from './screen_checks.mjs';
 
-const axe = fs.readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'octotomy-accessibility-'));
 const jaw = [{ view: 'anterior', polygons_mm: [[[-40, -60], [40, -60], [40, -25], [-40, -25]]] }, { view: 'left', polygons_mm: [[[-90, -60], [-20, -60], [-20, -25], [-90, -25]]] }];
 
@@ -49,24 +48,6 @@ const screens = {
     .map((name) => [name, (one) => one.command(name)])),
 };
 
-/// Violations as lines: the rule, what it says, and the first elements.
-async function violations(one, screen) {
-  const { violations: found } = await one.page.evaluate(async (source) => {
-    if (!window.axe) (0, eval)(source);
-    return window.axe.run(document, { resultTypes: ['violations'] });
-  }, axe).catch(() => one.page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] })));
-  return found.map((one_of) => `${screen}: ${one_of.id}: ${one_of.help}: ${one_of.nodes.slice(0, 4).map((node) => `${node.target.join(' ')} ${node.any[0]?.message ?? ''}`).join('; ')}`);
-}
-
-/// What reaches out of the window and cannot be scrolled into it.
-const beside = (screen) => [...document.querySelectorAll('button, select, input, h1, h2, p, table')].flatMap((each) => {
-  const box = each.getBoundingClientRect();
-  if (!box.width || !each.checkVisibility({ visibilityProperty: true }) || (box.left >= -1 && box.right <= innerWidth + 1)) return [];
-  for (let around = each.parentElement; around && around !== document.body; around = around.parentElement)
-    if (['auto', 'scroll'].includes(getComputedStyle(around).overflowX) && around.scrollWidth > around.clientWidth) return [];
-  return each.matches('.unseen, .unseen *') ? [] : [`${screen}: ${each.tagName} ${each.className} "${each.textContent.trim().slice(0, 30)}" from ${box.left} to ${box.right}`];
-});
-
 for (const [width, height] of [[390, 844], [820, 1180], [1024, 768], [1440, 900]])
   test(`nothing reaches out of a window of ${width} pixels`, async () => {
     const server = await start_server(folder);
@@ -102,7 +83,6 @@ for (const theme of ['light', 'dark'])
     const server = await start_server(folder);
     const one = await PlannerWindow.open(server.url, { theme });
     try {
-      await one.page.evaluate(axe); // the page's policy allows no other script
       const found = [];
       await one.page.locator('.start .offers').waitFor();
       if (await one.page.locator('.recent').count() === 0) await one.page.waitForTimeout(300);

@@ -5,7 +5,7 @@
 //   OCTOTOMY_MONKEY_PLANS=200 OCTOTOMY_MONKEY_SEED=1 node --test monkey_test.mjs
 // Plan number i has the seed SEED + i, so that OCTOTOMY_MONKEY_PLANS=1 OCTOTOMY_MONKEY_SEED=17 clicks plan 17 again.
 import assert from 'node:assert/strict';
-import { execFileSync, spawnSync } from 'node:child_process';
+import { spawnSync } from 'node:child_process';
 import fs from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
@@ -286,7 +286,10 @@ function plan_for(step) {
 async function compare_picture(what) {
   await one.at_rest();
   const pane = await shown_pane();
-  const frame = one.frames.filter(({ header }) => header.pane === pane).pop();
+  // The newest picture that came may no longer be shown: a pane without objects forgets it.
+  const id = await one.page.locator('.pane canvas').nth(pane).getAttribute('data-picture');
+  const frame = one.frames.find(({ header }) => header.pane === pane && String(header.id) === id);
+  assert.ok(frame || !id, `${what}: pane ${pane} shows picture ${id}, which is not among the newest ones`);
   const is_empty = frame?.header.step?.do === 'render' && !frame.header.objects.length;
   if (!frame?.header.step || is_empty) return;
   const drawing = path.join(folder, 'drawing.plan.json'), out = path.join(folder, 'drawn');
@@ -294,7 +297,8 @@ async function compare_picture(what) {
   const drawn_by = (described) => {
     fs.writeFileSync(drawing, JSON.stringify(described));
     fs.rmSync(out, { recursive: true, force: true });
-    execFileSync(program, ['run', drawing, '-o', out, '--certify', 'never'], { stdio: 'ignore' });
+    const { status, stderr } = spawnSync(program, ['run', drawing, '-o', out, '--certify', 'never'], { encoding: 'utf8' });
+    assert.ok(status === 0 || status === 1, `${what}: the plan that draws pane ${pane} ends with ${status}: ${stderr.slice(-600)} ${JSON.stringify(described)}`);
     return fs.readFileSync(path.join(out, 'monkey_view.png'));
   };
   // The whole plan may need another universe.

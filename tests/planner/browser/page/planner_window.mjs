@@ -24,7 +24,7 @@ export function lay_phantom(folder, voxel_mm = 1) {
   else execFileSync(program, ['phantom', 'head', '--voxel', `${voxel_mm}`, '-o', laid]);
 }
 
-/// Starts `octotomy serve` in a folder; answers its URL, and stop().
+/// Starts `octotomy serve` in a folder; answers its URL, that of pages which only look (with --share), and stop().
 export function start_server(folder, more = []) {
   const child = spawn(program, ['serve', ...more], { cwd: folder, stdio: ['ignore', 'pipe', 'pipe'] });
   let said = '';
@@ -32,7 +32,7 @@ export function start_server(folder, more = []) {
     child.stdout.on('data', (data) => {
       said += data;
       const url = said.match(/http:\S+/);
-      if (url) resolve({ url: url[0], process: child, stop: () => child.kill() });
+      if (url) resolve({ url: url[0], view_url: said.match(/To look only: (http:\S+)/)?.[1], process: child, stop: () => child.kill() });
     });
     child.stderr.on('data', (data) => { said += data; });
     child.on('exit', (status) => reject(new Error(`octotomy serve ended with ${status}: ${said}`)));

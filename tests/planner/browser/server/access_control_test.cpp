@@ -16,7 +16,7 @@ const AccessControl access("0123", {"127.0.0.1:80", "localhost:80"});
 
 TEST(AccessControl, LetsItsOwnPageInAndNoOther) {
   const Caller own{"127.0.0.1:80", "http://127.0.0.1:80", "0123"};
-  EXPECT_FALSE(access.refusal_of_action(own));
+  EXPECT_FALSE(access.refusal_of_action(own, Access::Edit));
   for (const Caller& wrong :
        {Caller{"evil.example:80", "http://evil.example:80", "0123"},
         Caller{"127.0.0.1:80", "http://evil.example", "0123"},
@@ -24,15 +24,34 @@ TEST(AccessControl, LetsItsOwnPageInAndNoOther) {
         Caller{"127.0.0.1:80", "", "0123"}, Caller{"", "http://", "0123"}, Caller{own.host, own.origin, ""},
         Caller{own.host, own.origin, "012"}, Caller{own.host, own.origin, "01230"},
         Caller{own.host, own.origin, "0124"}})
-    EXPECT_TRUE(access.refusal_of_action(wrong)) << wrong.host << " " << wrong.origin << " " << wrong.token;
+    EXPECT_TRUE(access.refusal_of_action(wrong, Access::Edit))
+        << wrong.host << " " << wrong.origin << " " << wrong.token;
 }
 
 TEST(AccessControl, ABrowserSaysNoOriginWhenItOpensThePage) {
-  EXPECT_FALSE(access.refusal({"localhost:80", "", "0123"}));
-  EXPECT_TRUE(access.refusal({"localhost:80", "http://evil.example", "0123"}));
-  EXPECT_TRUE(access.refusal({"localhost:80", "", "4567"}));
+  EXPECT_FALSE(access.refusal({"localhost:80", "", "0123"}, Access::Edit));
+  EXPECT_TRUE(access.refusal({"localhost:80", "http://evil.example", "0123"}, Access::Edit));
+  EXPECT_TRUE(access.refusal({"localhost:80", "", "4567"}, Access::Edit));
   EXPECT_FALSE(access.refusal_of_host({"localhost:80", "", ""}));
   EXPECT_TRUE(access.refusal_of_host({"localhost:81", "", ""}));
+}
+
+TEST(AccessControl, AViewTokenOpensThePageAndItsSocketAndNoMore) {
+  const AccessControl shared("0123", {"localhost:80"}, "4567");
+  const Caller viewer{"localhost:80", "http://localhost:80", "4567"};
+  const Caller editor{"localhost:80", "http://localhost:80", "0123"};
+  EXPECT_FALSE(shared.refusal(viewer, Access::View));
+  EXPECT_FALSE(shared.refusal_of_action(viewer, Access::View));
+  EXPECT_TRUE(shared.refusal(viewer, Access::Edit));
+  EXPECT_TRUE(shared.refusal_of_action(viewer, Access::Edit));
+  EXPECT_FALSE(shared.refusal_of_action(editor, Access::View));
+  EXPECT_FALSE(shared.refusal_of_action(editor, Access::Edit));
+  EXPECT_EQ(shared.access_of(viewer), Access::View);
+  EXPECT_EQ(shared.access_of(editor), Access::Edit);
+  // Without a view token, no other token is one, not even an empty one.
+  for (const char* token : {"", "4567"})
+    EXPECT_FALSE(access.access_of({"localhost:80", "http://localhost:80", token})) << token;
+  EXPECT_TRUE(shared.refusal({"localhost:80", "", ""}, Access::View));
 }
 
 TEST(AccessControl, AFileIsNamedBehindTheTokenSoThatItsLinksKeepIt) {
@@ -40,8 +59,10 @@ TEST(AccessControl, AFileIsNamedBehindTheTokenSoThatItsLinksKeepIt) {
   ASSERT_TRUE(file);
   EXPECT_EQ(file->token, "0123");
   EXPECT_EQ(file->name, "report/a b.html");
-  EXPECT_TRUE(access.refusal({"localhost:80", "", file_of(parse_target("/file/a.stl"))->token}));
-  EXPECT_TRUE(access.refusal({"localhost:80", "", file_of(parse_target("/file//a.stl?token=0123"))->token}));
+  EXPECT_TRUE(
+      access.refusal({"localhost:80", "", file_of(parse_target("/file/a.stl"))->token}, Access::Edit));
+  EXPECT_TRUE(access.refusal({"localhost:80", "", file_of(parse_target("/file//a.stl?token=0123"))->token},
+                             Access::Edit));
   EXPECT_FALSE(file_of(parse_target("/index.html")));
 }
 

@@ -726,6 +726,126 @@ class Begun(unittest.TestCase):
         self.assertEqual((folder / "mesh.ele").read_text(), "of somebody else")
 
 
+class Shared(unittest.TestCase):
+    """A server with a second address, which only shows the plan."""
+
+    KINDS = {
+        "open": {"path": "head.nrrd"}, "list": {}, "series": {"path": "."}, "recent": {}, "save": {"path": "copy.plan.json"},
+        "edit": {"what": "a cut", "add": {"step": BOX}}, "undo": {}, "redo": {}, "go_to": {"where": "1"},
+        "branch": {"name": "b"}, "name_version": {"name": "v"}, "procedure": {"name": "le_fort_i", "landmarks": {}},
+        "acts_on": {"name": "le_fort_i"}, "landmark": {"name": "a", "point": [0, 0, 0], "snap": False},
+        "find_landmarks": {"object": "skull"}, "command": {"step": "skull"}, "overlap": {"object": "skull", "with": []},
+        "part": {"object": "skull"}, "try": {"steps": [BOX]}, "trace": {}, "measure": {"kind": "volume", "object": "skull"},
+        "mesh_audit": {"path": "other.stl"}, "certify": {"object": "skull"},
+        "export": {"object": "skull", "path": "a.stl"}, "report": {}, "outcome": {"path": "head.nrrd"},
+        "merge": {"path": "other.plan.json"}, "try_merge": {"path": "other.plan.json"}, "signatures": {}, "doubtful_places": {"scan": "ct"}, "sign": {"role": "surgeon", "name": "A"}}
+
+    def setUp(self):
+        kept = tempfile.TemporaryDirectory()
+        self.addCleanup(kept.cleanup)
+        self.folder = pathlib.Path(kept.name).resolve()
+        octotomy(self.folder, "phantom", "head", "-o", "head.nrrd", "--voxel", "4")
+        (self.folder / "other.plan.json").write_text(json.dumps({"octotomy_plan": 1, "scans": {"ct": {"path": "head.nrrd"}}, "steps": []}))
+        self.server = Server(PROGRAM, self.folder, "head.nrrd", "--share")
+        self.addCleanup(self.server.kill)
+        self.editor = Window(self.server)
+        self.viewer = Window(self.server, token=self.server.view_token)
+        self.addCleanup(self.editor.close)
+        self.addCleanup(self.viewer.close)
+        self.assertEqual(self.viewer.status, 101)
+        self.editor.ask("edit", what="a window", add={"step": {"id": "skull", "do": "window", "scan": "ct", "low": 300}})
+        self.editor.ask("evaluate")
+
+    def files(self):
+        return {path: (path.stat().st_mtime_ns, path.read_bytes() if path.is_file() else None)
+                for path in self.folder.rglob("*")}
+
+    def test_every_request_that_changes_or_names_something_is_refused(self):
+        before, state = self.files(), self.editor.ask("hello")["plan_state"]
+        for what, said in self.KINDS.items():
+            with self.assertRaisesRegex(RuntimeError, "input: this window only shows the plan", msg=what):
+                self.viewer.ask(what, **said)
+        with self.assertRaisesRegex(RuntimeError, "input: this window only shows the plan"):
+            self.viewer.ask("evaluate", certify=True)
+        # A preview may have steps that read files; a moved piece is one, too.
+        for preview in ({"object": "a", "steps": [{"do": "import", "path": "other.stl"}]},
+                        {"object": "skull", "move": {"by": {"left_mm": 5}}}, None):
+            with self.assertRaisesRegex(RuntimeError, "input: this window only shows the plan"):
+                self.viewer.ask("pane", pane=0, size=[40, 30], objects=[{"id": "skull"}], preview=preview)
+        self.assertEqual(self.editor.ask("hello")["plan_state"], state)
+        self.assertEqual(self.files(), before)
+        # The same requests, from a window that may edit, are refused for other reasons or answered.
+        for what in ("list", "recent", "save"):
+            self.editor.ask(what)
+
+    def test_its_token_opens_the_page_and_neither_files_nor_uploads(self):
+        report = self.editor.ask("report")["file"]
+        own, view = self.server.token, self.server.view_token
+        self.assertNotEqual(own, view)
+        self.assertEqual(self.server.http(f"/?token={view}")[0], 200)
+        self.assertEqual(self.server.http(f"/file/{own}/{report}")[0], 200)
+        before = self.files()
+        self.assertEqual(self.server.http(f"/file/{view}/{report}")[0], 403)
+        status, _, body = self.server.http(f"/upload?token={view}&name=a.txt", "POST", b"x",
+                                           Origin=f"http://{self.server.host}:{self.server.port}")
+        self.assertEqual((status, self.files()), (403, before))
+        self.assertIn(b"only shows the plan", body)
+        for wrong in ({"token": ""}, {"token": view[:-1]}, {"token": own[:16] + view[16:]},
+                      {"token": view, "origin": "http://evil.example"}, {"token": view, "origin": ""}):
+            window = Window(self.server, **wrong)
+            self.assertEqual(window.status, 403, wrong)
+            window.close()
+
+    def test_it_follows_the_plan_and_learns_no_folder_and_no_other_token(self):
+        hello = self.viewer.ask("hello")
+        self.assertEqual((hello["may_edit"], hello["folders"]), (False, []))
+        self.editor.ask("edit", what="a cut", add={"step": BOX})
+        self.editor.ask("evaluate")
+        self.assertEqual(self.viewer.ask("evaluate", objects=["skull"])["scans"][0]["path"], "head.nrrd")
+        steps = [event["plan_state"]["plan"]["steps"] for event in self.viewer.events if event["event"] == "plan"]
+        self.assertEqual([step["id"] for step in steps[-1]], ["bone", "skull", "cut"])
+        header, parts = self.viewer.ask("pane", pane=0, size=[60, 40], objects=[{"id": "skull"}], dragging=False)
+        self.assertEqual(header["objects"], ["skull"])
+        self.assertTrue(parts["png"])
+        _, own = self.editor.ask("pane", pane=0, size=[60, 40], objects=[{"id": "skull"}], dragging=False)
+        self.assertEqual(parts["png"], own["png"])
+        told = json.dumps([hello, self.viewer.events, header])
+        for secret in (str(self.folder), self.server.token, self.server.view_token):
+            self.assertNotIn(secret, told)
+        edits = self.editor.ask("hello")
+        self.assertEqual((edits["may_edit"], edits["view_token"]), (True, self.server.view_token))
+
+    def test_a_viewer_that_floods_leaves_the_editor_its_answers(self):
+        waiting = {self.viewer.post("movement", object="skull") for _ in range(200)}
+        self.assertGreater(self.editor.ask("part", object="skull")["parts"], 0)
+        answers = []
+        while waiting:
+            answer = self.viewer.receive()
+            if answer.get("id") in waiting:
+                waiting.remove(answer["id"])
+                answers.append(answer)
+        self.assertTrue(any("too many requests" in answer.get("error", {}).get("message", "") for answer in answers))
+
+    def test_without_share_there_is_no_second_address(self):
+        with tempfile.TemporaryDirectory() as folder:
+            alone = Server(PROGRAM, folder)
+            self.addCleanup(alone.kill)
+            self.assertIsNone(alone.view_token)
+            window = Window(alone)
+            self.assertNotIn("view_token", window.ask("hello"))
+            window.close()
+
+    def test_both_tokens_outlive_a_restart_in_files_of_their_owner(self):
+        tokens = []
+        for _ in range(2):
+            again = Server(PROGRAM, self.folder, "--share", "--token-file", self.folder / "token")
+            tokens.append((again.token, again.view_token))
+            again.kill()
+        self.assertEqual(tokens[0], tokens[1])
+        for name in ("token", "token.view"):
+            self.assertEqual((self.folder / name).stat().st_mode & 0o777, 0o600)
+
+
 class Killed(unittest.TestCase):
     def test_a_killed_server_loses_no_edit_that_it_told(self):
         with tempfile.TemporaryDirectory() as name:

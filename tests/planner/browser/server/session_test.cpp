@@ -46,6 +46,94 @@ TEST_F(SessionTest, AScanBeginsAPlanOfItsBoneInTheWorkingFolder) {
   EXPECT_EQ(session_->snapshot().evaluation->loaded.size(), 1u) << "slices need the samples";
 }
 
+TEST(Requests, AWindowThatOnlyLooksMayRequestTheseAndNoneThatChangesThePlan) {
+  std::vector<std::string> open;
+  for (const RequestKind& request_kind : request_kinds()) {
+    if (!request_kind.may_view) continue;
+    open.push_back(request_kind.name);
+    EXPECT_FALSE(request_kind.changes_plan) << request_kind.name;
+  }
+  EXPECT_EQ(open, (std::vector<std::string>{"hello", "diff", "evaluate", "movement", "cephalometry"}));
+}
+
+TEST_F(SessionTest, AMergeTakesTheOthersChangesOrNamesWhatBothChanged) {
+  session_->open(folder_ / "ball.nrrd", {});
+  const fs::path other = folder_ / "other.plan.json", mine = folder_ / "ball.plan.json";
+  const auto request = [&](const char* name, const Json& said) {
+    return find_request_kind(name).answer(*session_, said, {});
+  };
+  fs::copy_file(mine, other);
+  // Both go on from the same state: one adds a step, the other changes the window.
+  Json theirs = Json::parse(tests::bytes_of(other));
+  const std::string bone = theirs["steps"][0]["id"];
+  theirs["steps"][0]["low"] = 7.0;
+  std::ofstream(other) << theirs;
+  add({{"id", "twin"}, {"do", "combine"}, {"expression", bone}});
+  const Json tried = request("try_merge", {{"path", "other.plan.json"}});
+  EXPECT_EQ(tried["base"], 1);
+  EXPECT_EQ(tried["conflicts"], Json::array());
+  ASSERT_EQ(tried["rows"].size(), 1u) << tried;
+  EXPECT_NE(tried["rows"][0].get<std::string>().find("low"), std::string::npos) << tried;
+  EXPECT_EQ(session_->state()["edit"], 2) << "a trial changes nothing";
+  request("merge", {{"path", "other.plan.json"}});
+  EXPECT_EQ(session_->state()["plan"]["steps"].size(), 2u);
+  EXPECT_EQ(session_->state()["plan"]["steps"][0]["low"], 7.0);
+  EXPECT_EQ(session_->state()["history"][2]["what"], "merged with other");
+  // The same value, changed twice.
+  Json own = session_->state()["plan"]["steps"][0];
+  own["low"] = 9.0;
+  session_->with_document([&](Document& document) {
+    document.edit({{"replace", {{"id", bone}, {"step", own}}}});
+  });
+  theirs["steps"][0]["low"] = 8.0;
+  std::ofstream(other) << theirs;
+  const Json conflicts = request("try_merge", {{"path", "other.plan.json"}, {"base", 3}})["conflicts"];
+  ASSERT_EQ(conflicts.size(), 1u) << conflicts;
+  EXPECT_EQ(conflicts[0]["field"], "low");
+  try {
+    request("merge", {{"path", "other.plan.json"}, {"base", 1}});
+    FAIL();
+  } catch (const voxel::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("low"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(session_->state()["edit"], 4);
+  // The other plan's paths are no permissions.
+  theirs["steps"].push_back({{"id", "names"}, {"do", "landmarks"}, {"file", "/etc/passwd"}});
+  std::ofstream(other) << theirs;
+  for (const char* name : {"try_merge", "merge"}) {
+    try {
+      request(name, {{"path", "other.plan.json"}});
+      FAIL();
+    } catch (const std::exception& error) {
+      EXPECT_NE(std::string(error.what()).find("no folder that is open"), std::string::npos) << error.what();
+    }
+    EXPECT_THROW(request(name, {{"path", "/etc/hostname"}}), voxel::Error);
+  }
+}
+
+TEST_F(SessionTest, ASignatureHoldsUntilThePlanOrItsScanChanges) {
+  session_->open(folder_ / "ball.nrrd", {});
+  const auto request = [&](const char* name, const Json& said) {
+    return find_request_kind(name).answer(*session_, said, {});
+  };
+  EXPECT_EQ(request("signatures", {})["signatures"], Json::array());
+  for (const Json& wrong :
+       {Json{{"by", ""}}, Json{{"by", "a\nb"}}, Json{{"by", std::string(300, 'a')}}, Json::object()})
+    EXPECT_ANY_THROW(request("sign", wrong)) << wrong;
+  EXPECT_EQ(session_->state()["edit"], 1);
+  const Json made =
+      request("sign", {{"by", "A. Reader"}, {"as", "second reader"}, {"note", "read"}})["signatures"];
+  ASSERT_EQ(made.size(), 1u);
+  EXPECT_EQ(made[0]["by"], "A. Reader");
+  EXPECT_EQ(made[0]["changed_since"], Json::array());
+  EXPECT_EQ(session_->state()["history"][1]["what"], "signed by A. Reader");
+  add({{"id", "twin"}, {"do", "combine"}, {"expression", session_->state()["plan"]["steps"][0]["id"]}});
+  EXPECT_EQ(request("signatures", {})["signatures"][0]["changed_since"], Json::array({"the plan"}));
+  voxel::write_scene(tests::ball_scene(7.0, 24), folder_ / "ball.nrrd");
+  EXPECT_EQ(request("signatures", {})["signatures"][0]["changed_since"],
+            Json::array({"the plan", "scan ct"}));
+}
+
 TEST_F(SessionTest, APlanOfAnotherScanIsLeftAlone) {
   std::ofstream(folder_ / "ball.plan.json") << "{}";
   session_->open(folder_ / "ball.nrrd", {});

@@ -19,7 +19,9 @@ class Server:
         line = self.process.stdout.readline()
         if not line:
             raise RuntimeError(self.process.stderr.read())
-        self.url = json.loads(line)["url"]
+        said = json.loads(line)
+        self.url = said["url"]
+        self.view_token = said["view_url"].partition("token=")[2] if "view_url" in said else None
         parts = urllib.parse.urlsplit(self.url)
         self.host, self.port = parts.hostname, parts.port
         self.token = urllib.parse.parse_qs(parts.query)["token"][0]

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/procedure/cephalometry/definition.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include "tests/file_bytes.h"
@@ -25,8 +26,17 @@ TEST(CephalometricDefinition, TheProgramsOwnReadAndNameWhereTheirNormsComeFrom) 
     const Cephalometry read = read_cephalometry(name);
     EXPECT_EQ(read.name, name);
     EXPECT_GT(read.measures.size(), 20u);
-    for (const CephalometricMeasure& measure : read.measures)
+    for (const CephalometricMeasure& measure : read.measures) {
       EXPECT_EQ(measure.norm.has_value(), measure.deviation.has_value()) << measure.name;
+      EXPECT_EQ(measure.norm.has_value(), !measure.source.empty()) << measure.name;
+    }
+    // Each source describes people, and is that of a measure.
+    for (const CephalometricSource& source : read.sources) {
+      EXPECT_GT(source.says.size(), 20u) << source.name;
+      EXPECT_TRUE(std::any_of(read.measures.begin(), read.measures.end(),
+                              [&](const CephalometricMeasure& one) { return one.source == source.name; }))
+          << source.name;
+    }
   }
 }
 
@@ -49,6 +59,22 @@ TEST(CephalometricDefinition, RefusalsNameThePlaceAndTheNearestName) {
             std::string::npos);
   EXPECT_NE(refusal("7").find("measures[0]"), std::string::npos);
   EXPECT_THROW(parse_cephalometry("{"), std::runtime_error);
+}
+
+TEST(CephalometricDefinition, ASourceThatIsNotListedIsRefusedWhereSourcesAre) {
+  const std::string begin = R"({"cephalometry": "own", "says": "s", "landmarks": [{"name": "a", "says": "s"},
+      {"name": "b", "says": "s"}], )";
+  const std::string measure =
+      R"("measures": [{"name": "d", "says": "s", "kind": "distance", "points": ["a", "b"], "source": "Down 1948"}]})";
+  EXPECT_EQ(parse_cephalometry(begin + measure).measures.front().source, "Down 1948");
+  try {
+    parse_cephalometry(begin + R"("sources": [{"name": "Downs 1948", "says": "children"}], )" + measure);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("'Down 1948' is not defined before, did you mean 'Downs 1948'?"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 TEST(CephalometricDefinition, NestedTooDeepIsRefusedAsTextAndAsFile) {

@@ -173,11 +173,11 @@ test('trials name their errors and the part of each', () =>
 
 test('cephalometry has intervals and norms, signatures what changed since', () => {
   const row = { name: 'SNA', says: 'maxilla', unit: 'deg', before: { value: 80, half_width: 1.5 }, after: { value: 84, half_width: 1.5 },
-                change: { value: 4, half_width: 2 }, norm: 82, deviation: 2 };
+                change: { value: 4, half_width: 2 }, norm: 82, deviation: 2, source: 'Steiner 1953', norm_of: 'an average child' };
   const text = drawn(script, { ...data, patients: ['Doe, Jane', 'Doe, John'], cephalogram: 'AAAA', result: { ...result,
-    cephalometry: { landmark_deviation_mm: 0.6, measures: [row, { ...row, name: 'Wits', unit: 'mm', norm: null, deviation: null }] },
+    cephalometry: { landmark_deviation_mm: 0.6, measures: [row, { ...row, name: 'Wits', unit: 'mm', norm: null, deviation: null, source: '', norm_of: undefined }] },
     signatures: [{ by: 'Dr <A>', as: 'surgeon', at: '2026-01-01', note: 'read', changed_since: ['steps'] }] } });
-  contains(text, '80.0 ± 1.5', '+4.0 ± 2.0', '82.0 ± 2.0', 'Wits, mm', 'src="data:image/png;base64,AAAA"', 'Doe, Jane; Doe, John',
+  contains(text, '80.0 ± 1.5', '+4.0 ± 2.0', '82.0 ± 2.0', 'Steiner 1953: an average child.', 'Wits, mm', 'src="data:image/png;base64,AAAA"', 'Doe, Jane; Doe, John',
            'signed by <b>Dr &lt;A&gt;</b>, surgeon, 2026-01-01, changed since: read');
 });
 
