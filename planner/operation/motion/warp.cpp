@@ -35,7 +35,7 @@ struct Displaced {
   Json details;
 };
 
-/// The distance over which the displacement fades. Throws std::runtime_error where the typed distance folds space.
+/// The distance over which the displacement fades. Throws std::runtime_error where the typed distance folds
 /// space.
 double fade_of(const Warp& warp, double largest_mm) {
   constexpr double usual_mm = 20.0;
