@@ -92,7 +92,9 @@ glm::dvec3 NodeMotion::displacement_mm(const glm::dvec3& p_mm) const {
       return true;
     });
   if (found) return *found;
-  const auto foot = surface_->nearest(p_mm, std::numeric_limits<double>::infinity());
+  // Among equally near points, as the field's definition says.
+  const auto foot =
+      surface_->nearest(p_mm + 1e-6 * glm::dvec3(1.0, 0.618, 0.382), std::numeric_limits<double>::infinity());
   const auto& [a, b, c] = surface_->triangles().faces[foot->face];
   const glm::dvec3 beyond_mm = glm::max(glm::max(low_mm_ - p_mm, p_mm - high_mm_), glm::dvec3(0.0));
   const double r = std::min(glm::length(beyond_mm) / fade_mm_, 1.0);

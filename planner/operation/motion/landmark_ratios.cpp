@@ -342,11 +342,21 @@ std::string definition(const LandmarkRatios& step, const Objects&) {
          (step.points_mm.size() == 1 ? " landmark" : " landmarks");
 }
 
+constexpr const char* mesh_lineage = "vertices of a mesh, displaced between landmarks";
+
+brep::Solid displaced(const LandmarkRatios& step, const brep::Solid& still) {
+  return brep::warped(still, {step.points_mm, step.displacement_mm, step.fade_mm});
+}
+
+/// Of an object that is known by whole voxels only, the warped mesh is digitised: voxels read at other places than their
+/// centres would shift its surface by up to half a voxel.
 void voxels(const LandmarkRatios& step, const VoxelBench& bench, VoxelSide& made) {
   const Object& still = bench.objects.at(step.object.name);
-  if (is_voxelised(still))
-    return voxelise(brep::warped(*still.mesh.whole, {step.points_mm, step.displacement_mm, step.fade_mm}),
-                    bench.universe, made);
+  if (still.mesh.whole && is_whole_voxels(still.voxel)) {
+    voxelise(displaced(step, *still.mesh.whole), bench.universe, made);
+    made.makers = {std::string("landmark_ratios: ") + mesh_lineage};
+    return;
+  }
   std::vector<voxel::LandmarkShift> landmarks;
   for (std::size_t i = 0; i < step.points_mm.size(); ++i)
     landmarks.push_back({step.points_mm[i], step.displacement_mm[i]});
@@ -361,9 +371,9 @@ void voxels(const LandmarkRatios& step, const VoxelBench& bench, VoxelSide& made
 
 void triangles(const LandmarkRatios& step, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "warp");
-  made.whole =
-      brep::warped(bench.object(step.object.name), {step.points_mm, step.displacement_mm, step.fade_mm});
-  made.lineage = "vertices of a mesh, displaced between landmarks";
+  made.whole = displaced(step, bench.object(step.object.name));
+  made.lineage = mesh_lineage;
+  made.makers = {std::string("landmark_ratios: ") + mesh_lineage};
 }
 
 void bound(const LandmarkRatios& step, const BoundBench& bench, Object& made) {
