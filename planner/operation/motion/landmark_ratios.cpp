@@ -110,7 +110,8 @@ void check_pair(const LandmarkRatios::Pair& pair, const FieldLocation& place) {
 
 void check(const LandmarkRatios& step, const FieldLocation& place) {
   if (!has_pairs(step) && !has_files(step))
-    place.refuse("moves no landmark: add 'pairs', or the files 'before' and 'after'");
+    place.refuse(std::string("moves no landmark: add ") + (place.scope != nullptr ? "'pairs', or " : "") +
+                 "the files 'before' and 'after'");
   if (has_pairs(step)) {
     std::set<std::string> softs;
     bool moves = false;
@@ -250,7 +251,7 @@ void need_motion(const std::vector<RatioLandmark>& landmarks) {
   }
   throw std::runtime_error("there is no motion: " + followed +
                            (followed.find(',') == std::string::npos ? " stays" : " stay") +
-                           " where the scan has it; move the bone in an earlier step");
+                           " at the same place; move the bone first, or state where it goes");
 }
 
 /// Sets the distances from the object's surface.
@@ -278,8 +279,8 @@ void need_no_fold(const LandmarkRatios& step, const std::vector<RatioLandmark>& 
   constexpr double longer = 1.25, most = 4.0;
   for (double times = longer; times <= most; times *= longer)
     if (steepest(times * step.fade_mm) <= steepest_allowed)
-      throw std::runtime_error("'fade_mm' is " + three_figures(step.fade_mm) +
-                               " mm, over which these displacements fold the tissue: give at least " +
+      throw std::runtime_error("a fade of " + three_figures(step.fade_mm) +
+                               " mm folds the tissue under these displacements: give at least " +
                                grouped(std::ceil(times * step.fade_mm), 0) + " mm");
   std::size_t a = 0, b = 1;
   double worst = 0.0;
