@@ -37,6 +37,10 @@ double checked_fade(double fade_mm, const std::vector<glm::dvec3>& displacement_
   return fade_mm;
 }
 
+/// Elements from a lattice leave many points exactly as far from one of their faces as from another, which moves
+/// otherwise. The nearest point is searched from a place this far away, so that rounding does not decide.
+constexpr glm::dvec3 tie_break_mm(1e-6, 0.618e-6, 0.382e-6);
+
 }  // namespace
 
 double least_fade_mm(double largest_displacement_mm) {
@@ -171,7 +175,9 @@ std::vector<glm::dvec3> DisplacementField::at(const std::vector<glm::dvec3>& poi
       outside_mm.push_back(points_mm[i]);
     }
   if (outside.empty()) return displacements;
-  const std::vector<brep::Foot> feet = surface_tree_.feet(outside_mm);
+  std::vector<glm::dvec3> from_mm = outside_mm;
+  for (glm::dvec3& p_mm : from_mm) p_mm += tie_break_mm;
+  const std::vector<brep::Foot> feet = surface_tree_.feet(from_mm);
   for (std::size_t i = 0; i < outside.size(); ++i) {
     const auto& corners = surface_.faces[feet[i].face];
     glm::dvec3 of_foot(0.0);

@@ -24,7 +24,8 @@ struct TurnedOver {
 double least_fade_mm(double largest_displacement_mm);
 
 /// The displacements of tetrahedra's nodes as a field over space: linear within each element; outside all
-/// elements, the displacement of the nearest point of their surface. So the field is continuous across the
+/// elements, the displacement of the nearest point of their surface, searched from 1e-6 mm beside the place in a fixed
+/// direction, so that rounding does not choose among equally near points. So the field is continuous across the
 /// surface, and parts that the elements surround (bone, mouth, airway) move with them. Beyond the elements'
 /// box along the patient's axes the displacement fades to zero, because the surrounding tissue holds the
 /// parts that the deck leaves out. The fading function is Wendland's (1-r)^4 (4r+1) with r = distance to the

@@ -1,10 +1,4 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-//
-// Flat triangles. Along a triangle's side the field bends where the side passes from one element to the next.
-// Between two such places it is linear. Its distance from the straight line is 0 at both ends of the side; if
-// it has one bend, one of the points at a quarter, a half and three quarters of the side shows at least three
-// quarters of the largest distance. Twice the distance at these points is allowed, for sides that pass
-// through several elements.
 #include "verify/witness/warped_witness.h"
 
 #include <algorithm>
@@ -13,14 +7,12 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <tbb/parallel_for.h>
 #include <utility>
+
+#include "verify/witness/moved_points.h"
 
 namespace octotomy::verify {
 namespace {
-
-constexpr double bends = 2.0;
-constexpr int most_steps = 200;
 
 /// The faces that only one element has. Their corners are in any order, because only places on them matter.
 brep::Triangles skin_of(const convert::Tetrahedra& elements) {
@@ -48,37 +40,6 @@ glm::dvec4 shares_of(const glm::dvec3& p, const std::array<glm::dvec3, 4>& corne
   const glm::dmat3 sides(corners[1] - corners[0], corners[2] - corners[0], corners[3] - corners[0]);
   const glm::dvec3 shares = glm::inverse(sides) * (p - corners[0]);
   return {1.0 - shares.x - shares.y - shares.z, shares};
-}
-
-/// The largest error of triangles that stay flat between moved points, measured after moving their points
-/// back.
-double bent_mm(const brep::Triangles& still, const NodeMotion& motion) {
-  constexpr std::array<std::array<double, 3>, 10> places{{{0.75, 0.25, 0.0},
-                                                          {0.5, 0.5, 0.0},
-                                                          {0.25, 0.75, 0.0},
-                                                          {0.0, 0.75, 0.25},
-                                                          {0.0, 0.5, 0.5},
-                                                          {0.0, 0.25, 0.75},
-                                                          {0.25, 0.0, 0.75},
-                                                          {0.5, 0.0, 0.5},
-                                                          {0.75, 0.0, 0.25},
-                                                          {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}}};
-  std::vector<glm::dvec3> moved_mm(still.points_mm.size());
-  tbb::parallel_for(std::size_t{0}, moved_mm.size(), [&](std::size_t i) {
-    moved_mm[i] = still.points_mm[i] + motion.displacement_mm(still.points_mm[i]);
-  });
-  std::vector<double> off_mm(still.faces.size(), 0.0);
-  tbb::parallel_for(std::size_t{0}, off_mm.size(), [&](std::size_t face) {
-    const auto& [a, b, c] = still.faces[face];
-    for (const auto& [u, v, w] : places) {
-      const glm::dvec3 here = u * still.points_mm[a] + v * still.points_mm[b] + w * still.points_mm[c];
-      const glm::dvec3 there = u * moved_mm[a] + v * moved_mm[b] + w * moved_mm[c];
-      if (glm::distance(here + motion.displacement_mm(here), there) <= rounded_mm(there)) continue;
-      if (const auto origin = motion.origin_mm(there, here))
-        off_mm[face] = std::max(off_mm[face], glm::distance(*origin, here));
-    }
-  });
-  return off_mm.empty() ? 0.0 : bends * *std::max_element(off_mm.begin(), off_mm.end());
 }
 
 }  // namespace
@@ -131,7 +92,9 @@ glm::dvec3 NodeMotion::displacement_mm(const glm::dvec3& p_mm) const {
       return true;
     });
   if (found) return *found;
-  const auto foot = surface_->nearest(p_mm, std::numeric_limits<double>::infinity());
+  // Among equally near points, as the field's definition says.
+  const auto foot =
+      surface_->nearest(p_mm + 1e-6 * glm::dvec3(1.0, 0.618, 0.382), std::numeric_limits<double>::infinity());
   const auto& [a, b, c] = surface_->triangles().faces[foot->face];
   const glm::dvec3 beyond_mm = glm::max(glm::max(low_mm_ - p_mm, p_mm - high_mm_), glm::dvec3(0.0));
   const double r = std::min(glm::length(beyond_mm) / fade_mm_, 1.0);
@@ -155,39 +118,20 @@ bool NodeMotion::turns_over() const {
 }
 
 std::optional<glm::dvec3> NodeMotion::origin_mm(const glm::dvec3& p_mm, const glm::dvec3& guess_mm) const {
-  glm::dvec3 x = guess_mm;
-  for (int step = 0; step < most_steps; ++step) {
-    const glm::dvec3 next = p_mm - displacement_mm(x);
-    const double moved_mm = glm::distance(next, x);
-    x = next;
-    if (moved_mm <= rounded_mm(p_mm)) return x;
-  }
-  return std::nullopt;
+  return origin_under(*this, p_mm, guess_mm);
 }
 
 ReshapedSurface surface_warped(const brep::Triangles& still, const NodeMotion& motion) {
-  brep::Triangles moved = still;
-  tbb::parallel_for(std::size_t{0}, moved.points_mm.size(),
-                    [&](std::size_t i) { moved.points_mm[i] += motion.displacement_mm(still.points_mm[i]); });
   // The error of a corner's share is some roundings of coordinates, divided by the element's height.
-  double farthest_mm = 1.0;
-  for (const glm::dvec3& p_mm : moved.points_mm) farthest_mm = std::max(farthest_mm, glm::length(p_mm));
   constexpr double shares_of_flat_elements = 1e4;
-  return {TriangleGrid(std::move(moved)),
-          shares_of_flat_elements * 64.0 * std::numeric_limits<double>::epsilon() * farthest_mm,
-          "64e4 eps |p|: the same displacements by other code"};
+  return surface_moved(still, motion, shares_of_flat_elements * 64.0,
+                       "64e4 eps |p|: the same displacements by other code");
 }
 
 Witness witness_of_warped(Witness still, const brep::Triangles& still_surface,
                           std::shared_ptr<const NodeMotion> motion) {
   if (!still || motion->turns_over()) return {};
-  const double off_mm = bent_mm(still_surface, *motion);
-  return Witness([still = std::move(still), motion = std::move(motion), off_mm](
-                     const glm::dvec3& p_mm, double slack_mm, ReadingNeeds asked) -> Reading {
-    const auto origin = motion->origin_mm(p_mm);
-    if (!origin) return {on_surface, on_surface, 2};
-    return still(*origin, slack_mm + off_mm, asked);
-  });
+  return witness_of_moved_points(std::move(still), still_surface, std::move(motion));
 }
 
 }  // namespace octotomy::verify

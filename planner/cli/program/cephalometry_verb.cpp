@@ -42,8 +42,10 @@ Face face_of_files(const CephalometryText& text) {
   if (text.after.empty()) return face;
   for (const brep::Landmark& after : read_landmarks(text.after))
     for (MovedLandmark& each : face.landmarks)
-      if (each.landmark.name == after.name)
+      if (each.landmark.name == after.name) {
         each.moved_from_still = glm::translate(glm::dmat4(1.0), after.p_mm - each.landmark.p_mm);
+        each.is_predicted = true;
+      }
   return face;
 }
 
@@ -93,6 +95,11 @@ std::string table_of(const CephalometricResults& found) {
     rows.emplace_back(measure.name, row);
   }
   std::string text = lines(rows);
+  for (const auto& [name, landmarks] : found.unpredicted) {
+    text += "not predicted: " + name + ", because nothing states where these go:";
+    for (const std::string& landmark : landmarks) text += " " + landmark;
+    text += "; add a landmark_ratios step with them\n";
+  }
   for (const auto& [name, landmarks] : found.lacking) {
     text += "not measured: " + name + ", lacks";
     for (const std::string& landmark : landmarks) text += " " + landmark;

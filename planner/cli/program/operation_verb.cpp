@@ -246,7 +246,7 @@ class OperationRun {
     verify::MeshExpressions expressions({});
     operation_.mesh(value(), {box.low_mm, box.high_mm, objects_, no_scan_, expressions, timings_, progress()},
                     made.mesh);
-    made.findings = made.mesh.findings;
+    made.findings.insert(made.findings.end(), made.mesh.findings.begin(), made.mesh.findings.end());
     // An empty result is valid: its volume is 0 and its file has no triangles.
     if (made.mesh.whole->empty())
       made.findings.push_back("empty: nothing is left of " + made.definition + ", so " +

@@ -83,6 +83,7 @@ constexpr std::array verb_table{
     GroupedVerb{shaping, "tooth_scan"},
     GroupedVerb{elements, "tet"},
     GroupedVerb{elements, "warp"},
+    GroupedVerb{elements, "landmark_ratios"},
     GroupedVerb{measuring, "measure"},
     GroupedVerb{measuring, "compare"},
     GroupedVerb{measuring, "printable"},

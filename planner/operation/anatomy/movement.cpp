@@ -2,6 +2,7 @@
 #include "planner/operation/anatomy/movement.h"
 
 #include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "planner/operation/anatomy/head_directions.h"
 #include "planner/operation/anatomy/measured_movement.h"
@@ -66,6 +67,25 @@ bool nearer(const voxel::Octree& piece, const std::optional<voxel::Expression>& 
   return false;
 }
 
+/// Moves the landmarks of the skin as a prediction by ratios states.
+void move_skin(const Object& prediction, std::vector<MovedLandmark>& moved) {
+  if (prediction.kind != "landmark_ratios") return;
+  const auto vector_of = [](const Json& row, const char* key) {
+    glm::dvec3 vector(0.0);
+    read_value(row.at(key), vector);
+    return vector;
+  };
+  for (const Json& row : prediction.mesh.details.at("landmarks"))
+    for (MovedLandmark& each : moved) {
+      if (each.landmark.name != row.at("name").get<std::string>()) continue;
+      each.moved_from_still = glm::translate(glm::dmat4(1.0), vector_of(row, "moved_mm"));
+      each.is_predicted = true;
+      const Json& deviation = row.at("deviation");
+      each.deviation_mm =
+          deviation.is_null() ? glm::dvec3(0.0) : deviation.get<double>() * vector_of(row, "bone_moved_mm");
+    }
+}
+
 ObjectMovement movement_of(const Object& object, const Objects& objects,
                            const std::vector<NamedPoint>& landmarks,
                            const std::optional<voxel::Expression>& staying) {
@@ -123,6 +143,7 @@ std::vector<MovedLandmark> moved_landmarks(const Objects& objects, const std::ve
         moved.back().moved_from_still = object.moved->motion * before;
     }
   }
+  for (const Object& object : objects) move_skin(object, moved);
   return moved;
 }
 

@@ -30,12 +30,17 @@ nlohmann::ordered_json movements_json(const Objects& objects, const std::vector<
 struct MovedLandmark {
   NamedPoint landmark;  ///< its position in the scan
   glm::dmat4 moved_from_still{1.0};
+  bool is_predicted = false;  ///< it lies on the skin, and a step or a file states its motion
+  /// The motion errs by this vector times a normally distributed number: the deviation of a ratio times the bone's
+  /// motion.
+  glm::dvec3 deviation_mm{0.0};
 };
 
 /// The motions of landmarks with a plan's objects. A landmark moves with the piece whose bone is nearest to
 /// it. It does not move where other bone is nearer, or where no moved object is within 3 mm, which is about
 /// the error of landmarks placed by surgeons. A landmark on a cut moves with the piece. For pieces that are
-/// moved again, the last motion counts. Cost: some small Booleans per landmark and moved object.
+/// moved again, the last motion counts. Landmarks of the skin move as the last landmark_ratios step that names them
+/// states. Cost: some small Booleans per landmark and moved object.
 std::vector<MovedLandmark> moved_landmarks(const Objects& objects, const std::vector<NamedPoint>& landmarks);
 
 }  // namespace octotomy::planner

@@ -7,6 +7,7 @@
 #include "planner/operation/file/outputs.h"
 #include "planner/operation/measure/compare_labels.h"
 #include "planner/operation/measure/distance_histogram.h"
+#include "planner/operation/measure/face_difference.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
@@ -143,6 +144,9 @@ Json measure(const Compare& asked, const AnswerBench& bench) {
   const Compared made = compared(asked, bench.objects.at(asked.a.name).mesh.within->linked(),
                                  bench.objects.at(asked.b.name).mesh.within->linked(), bench.timings);
   json.update(comparison_json(asked, made));
+  if (const auto face =
+          face_difference(bench.objects.at(asked.a.name), bench.objects.at(asked.b.name), bench.objects))
+    json["face"] = print_record(*face);
   json.update({{"findings", made.findings}});
   return json;
 }

@@ -35,7 +35,7 @@ struct Displaced {
   Json details;
 };
 
-/// The distance over which the displacement fades. Throws std::runtime_error where the typed distance folds space.
+/// The distance over which the displacement fades. Throws std::runtime_error where the typed distance folds
 /// space.
 double fade_of(const Warp& warp, double largest_mm) {
   constexpr double usual_mm = 20.0;
@@ -111,7 +111,9 @@ void triangles(const Warp& warp, const MeshBench& bench, MeshSide& made) {
 
 void bound(const Warp& warp, const BoundBench& bench, Object& made) {
   const Object& object = bench.objects.at(warp.object.name);
+  made.bound.spacing_mm = object.bound.spacing_mm;
   made.bound.shift_mm = object.bound.shift_mm;
+  made.bound.measured_apart_mm = object.bound.measured_apart_mm;
   made.ends_with_universe = true;
   if (!made.mesh.whole || !object.mesh.whole) return;
   // Read at once, because the file may have changed when the certificate is computed.

@@ -27,10 +27,10 @@ constexpr auto members_of(const CephalometryRow&) {
                     member("source", &R::source), member_if_any("norm_of", &R::norm_of));
 }
 
-/// A measure that cannot be computed.
+/// A measure that cannot be computed, before or after the operation.
 struct LackingMeasure {
   std::string name;
-  std::vector<std::string> landmarks;  ///< those that are missing
+  std::vector<std::string> landmarks;  ///< those that are missing, or that nothing moves
 };
 constexpr auto members_of(const LackingMeasure&) {
   return std::tuple(member("name", &LackingMeasure::name), member("landmarks", &LackingMeasure::landmarks));
@@ -38,12 +38,13 @@ constexpr auto members_of(const LackingMeasure&) {
 
 struct CephalometryTable {
   std::vector<CephalometryRow> measures;
-  std::vector<LackingMeasure> lacking;
+  std::vector<LackingMeasure> not_predicted, lacking;
   double landmark_deviation_mm = 0.0, coverage = 0.0;
 };
 constexpr auto members_of(const CephalometryTable&) {
   using T = CephalometryTable;
-  return std::tuple(member("measures", &T::measures), member("lacking", &T::lacking),
+  return std::tuple(member("measures", &T::measures), member_if_any("not_predicted", &T::not_predicted),
+                    member("lacking", &T::lacking),
                     member("landmark_deviation_mm", &T::landmark_deviation_mm),
                     member("coverage", &T::coverage));
 }

@@ -72,11 +72,15 @@ class Reader {
  private:
   void add_landmark(const SortedJson& entry) {
     const std::string where = "landmarks[" + std::to_string(made_.landmarks.size()) + "]";
-    check_keys(entry, where, {"name", "says", "mean_of"});
+    check_keys(entry, where, {"name", "says", "mean_of", "of_skin"});
     CephalometricLandmark landmark{
         word_of(need(entry, "name", where), where), word_of(need(entry, "says", where), where), {}};
     if (entry.contains("mean_of")) landmark.mean_of = words_of(entry["mean_of"], where + ", mean_of");
     need_known(landmark.mean_of, landmarks_, where + ", mean_of");
+    if (entry.contains("of_skin")) {
+      if (!entry["of_skin"].is_boolean()) refuse(where + ", of_skin", "must be true or false");
+      landmark.is_of_skin = entry["of_skin"].get<bool>();
+    }
     if (!landmarks_.insert(landmark.name).second) refuse(where, "'" + landmark.name + "' is defined twice");
     made_.landmarks.push_back(std::move(landmark));
   }

@@ -44,6 +44,8 @@ struct CephalometricLandmark {
   std::string says;
   /// If the landmark is not placed itself, it is the mean of these, such as both sides.
   std::vector<std::string> mean_of;
+  /// It lies on the skin, which does not move as the bone below it does.
+  bool is_of_skin = false;
 };
 
 /// A publication of norms, and the people whom its norms describe.

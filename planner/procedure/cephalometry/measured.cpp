@@ -239,11 +239,13 @@ class Placing {
         after_mm_(landmarks.size()) {}
 
   /// Sets the positions of the landmarks that are used.
-  void place(const Points& errors_mm) {
+  /// `shares` are the errors of the motions, in their deviations.
+  void place(const Points& errors_mm, const std::vector<double>& shares) {
     for (const std::size_t i : used_) {
       const glm::dvec3 p_mm = landmarks_[i].landmark.p_mm + errors_mm[i];
       before_mm_[i] = head_from_lps_ * p_mm;
-      after_mm_[i] = head_from_lps_ * glm::dvec3(landmarks_[i].moved_from_still * glm::dvec4(p_mm, 1.0));
+      after_mm_[i] = head_from_lps_ * (glm::dvec3(landmarks_[i].moved_from_still * glm::dvec4(p_mm, 1.0)) +
+                                       shares[i] * landmarks_[i].deviation_mm);
     }
   }
   const Points& before_mm() const { return before_mm_; }
@@ -262,6 +264,23 @@ std::optional<std::string> norm_of(const Cephalometry& definitions, const Cephal
   return {};
 }
 
+/// A measure's landmarks on the skin whose motion nothing predicts.
+std::vector<std::string> unpredicted(const CephalometricMeasure& measure, const Cephalometry& definitions,
+                                     const std::vector<MovedLandmark>& landmarks) {
+  std::vector<std::string> names;
+  for (const std::string& name : measure.points) {
+    const bool is_of_skin =
+        std::any_of(definitions.landmarks.begin(), definitions.landmarks.end(),
+                    [&](const CephalometricLandmark& one) { return one.name == name && one.is_of_skin; });
+    const bool is_predicted = std::any_of(landmarks.begin(), landmarks.end(), [&](const MovedLandmark& one) {
+      return one.landmark.name == name && one.is_predicted;
+    });
+    if (is_of_skin && !is_predicted && std::find(names.begin(), names.end(), name) == names.end())
+      names.push_back(name);
+  }
+  return names;
+}
+
 Values changes(const Values& before, const Values& after) {
   Values made(before.size());
   for (std::size_t i = 0; i < made.size(); ++i) made[i] = after[i] - before[i];
@@ -275,7 +294,8 @@ CephalometricResults measured(const Cephalometry& definitions, const std::vector
   const Chart chart(definitions, landmarks);
   Placing placing(landmarks, lps_from_head, chart.used_landmarks());
   Points errors_mm(landmarks.size(), glm::dvec3(0.0));
-  placing.place(errors_mm);
+  std::vector<double> shares(landmarks.size(), 0.0);
+  placing.place(errors_mm, shares);
   const Values before = chart.values(placing.before_mm()), after = chart.values(placing.after_mm()),
                change = changes(before, after);
   const bool moves = std::any_of(landmarks.begin(), landmarks.end(), [](const MovedLandmark& landmark) {
@@ -286,7 +306,9 @@ CephalometricResults measured(const Cephalometry& definitions, const std::vector
   for (int trial = 0; trial < doubt.trials; ++trial) {
     for (glm::dvec3& error : errors_mm)
       for (int axis = 0; axis < 3; ++axis) error[axis] = doubt.deviation_mm * chance.normal();
-    placing.place(errors_mm);
+    for (std::size_t i = 0; i < landmarks.size(); ++i)
+      if (landmarks[i].deviation_mm != glm::dvec3(0.0)) shares[i] = chance.normal();
+    placing.place(errors_mm, shares);
     const Values first = chart.values(placing.before_mm());
     of_before.add(first);
     if (!moves) continue;
@@ -302,7 +324,11 @@ CephalometricResults measured(const Cephalometry& definitions, const std::vector
                                {before[i], of_before.half_width(i, before[i])},
                                {},
                                {}};
-    if (moves) {
+    std::vector<std::string> open;
+    if (moves) open = unpredicted(result.measure, definitions, landmarks);
+    if (!open.empty()) {
+      results.unpredicted.emplace_back(result.measure.name, std::move(open));
+    } else if (moves) {
       result.after = {after[i], of_after.half_width(i, after[i])};
       result.change = {change[i], of_change.half_width(i, change[i])};
     }
@@ -312,10 +338,11 @@ CephalometricResults measured(const Cephalometry& definitions, const std::vector
 }
 
 Json to_json(const CephalometricResults& results, const LandmarkDoubt& doubt) {
-  CephalometryTable table{{}, {}, doubt.deviation_mm, verify::claimed_coverage};
+  CephalometryTable table{{}, {}, {}, doubt.deviation_mm, verify::claimed_coverage};
   for (const auto& [measure, norm_of, before, after, change] : results.measured)
     table.measures.push_back({measure.name, measure.says, measure.unit(), before, after, change, measure.norm,
                               measure.deviation, measure.source, norm_of});
+  for (const auto& [name, landmarks] : results.unpredicted) table.not_predicted.push_back({name, landmarks});
   for (const auto& [name, landmarks] : results.lacking) table.lacking.push_back({name, landmarks});
   return print_record(table);
 }

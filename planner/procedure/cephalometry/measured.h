@@ -22,12 +22,15 @@ struct CephalometricResult {
   std::optional<std::string>
       norm_of;  ///< the people whom the norm describes; none if its source is not described
   CephalometricValue before;
-  /// None if nothing moved. A landmark's error is the same before and after, so a change is more accurate
+  /// None if nothing moved, and of measures of the skin that nothing predicts. A landmark's error is the same before and after, so a change is more accurate
   /// than either value.
   std::optional<CephalometricValue> after, change;
 };
 struct CephalometricResults {
   std::vector<CephalometricResult> measured;  ///< in the order of their definitions
+  /// Measures of the skin that have no value after the operation, because nothing predicts the motion of these
+  /// landmarks of theirs.
+  std::vector<std::pair<std::string, std::vector<std::string>>> unpredicted;
   /// Measures that cannot be computed, each with its missing landmarks.
   std::vector<std::pair<std::string, std::vector<std::string>>> lacking;
 };
@@ -39,7 +42,8 @@ struct LandmarkDoubt {
 };
 
 /// Computes the measures whose landmarks are known, from the placed landmarks. Intervals come from
-/// `trials` trials in which each placed landmark has a random, independent, normally distributed error.
+/// `trials` trials in which each placed landmark has a random, independent, normally distributed error., and each motion
+/// by a ratio another one of its own.
 /// Throws std::invalid_argument, which names the measure, if a line's two points coincide. The same seed
 /// produces the same bits. Cost: less than a microsecond per trial and measure or landmark.
 CephalometricResults measured(const Cephalometry& definitions, const std::vector<MovedLandmark>& landmarks,

@@ -126,6 +126,25 @@ function distance_plot({low_mm, width_mm, shares}: NonNullable<Measurement["hist
           "signed distance; height: share of the surfaces"));
 }
 
+const point = (p: Vec3, digits: number): string => p.map((part) => grouped(part, digits)).join(", ");
+
+/// Two predictions of the same skin at its landmarks and over the face.
+function faces(one: Measurement): Child {
+  const face = one.face;
+  if (!face) return null;
+  return [
+    el("h4", {}, `The face by ${one.a} and by ${one.b}, point by point`),
+    table(["Landmark", `#moved by ${one.a}, x, y, z, mm`, `#moved by ${one.b}, x, y, z, mm`, "#difference, mm"], [
+      ...face.landmarks.map((at): Row => [
+        at.name || point(at.at_mm, 1), point(at.a_moved_mm, 2), point(at.b_moved_mm, 2), grouped(at.difference_mm, 2)
+      ]),
+      ["face, mean", "", "", grouped(face.mean_mm, 2)],
+      [`face, largest, at ${point(face.largest_at_mm, 0)} mm`, "", "", grouped(face.largest_mm, 2)]
+    ]),
+    soft(`Of ${face.skin}: ${face.definition}; ${grouped(face.area_mm2)} mm². Coordinates are LPS.`)
+  ];
+}
+
 function differences(one: Measurement): Child {
   const title = el("h3", {}, `Comparison ${one.id}`);
   const way = (words: string, of: OneWay|undefined): Row[] => of ? [[
@@ -147,6 +166,7 @@ function differences(one: Measurement): Child {
     table(["", "#mean", "#signed mean", "#95th percentile", "#largest"],
           [...way(`${one.a} to ${one.b}, mm`, one.a_to_b), ...way(`${one.b} to ${one.a}, mm`, one.b_to_a)]),
     within.length ? table(["", `#${one.a}`, `#${one.b}`], within) : null,
+    faces(one),
     one.histogram ? distance_plot(one.histogram) : null,
     soft("Mean: area-weighted, of absolute distances from points to triangles, over both surfaces. Hausdorff 95: the larger of " +
          "both directed, area-weighted 95th percentiles. Signed distances are positive outside of the other surface."),

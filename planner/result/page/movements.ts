@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The report's table of movements, and the cephalometric one.
+// The report's tables of movements, of landmarks that move by ratios, and of cephalometry.
 import {Child, el} from "../../browser/page/base/html";
 import {grouped} from "../../browser/page/base/numbers";
 import {list, Row, section, soft, table} from "./elements";
@@ -28,6 +28,23 @@ export function movements({movements, movement_words}: Result): Child {
       soft(movement_words, " A piece's own row is its centroid; landmarks are those that its bone is nearest to."));
 }
 
+/// A row for each landmark of the skin that moves by a ratio of the bone's motion.
+export function ratios({objects}: Result): Child {
+  const predictions = objects.filter((one) => one.kind === "landmark_ratios" && one.details?.landmarks);
+  if (!predictions.length) return null;
+  const rows = predictions.flatMap((one) => one.details!.landmarks!.map((at): Row => [
+    one.id, at.name || at.at_mm.map((part) => grouped(part, 1)).join(", "), at.follows || "stays",
+    at.ratio === null ? "–" : grouped(at.ratio, 2) + (at.ratio_up === at.ratio ? "" : `, up ${grouped(at.ratio_up, 2)}`),
+    at.source, ...along(at), at.half_width_mm === null ? "–" : `± ${grouped(at.half_width_mm, 1)}`
+  ]));
+  return section(
+      "Soft tissue by ratios of landmarks",
+      table(["Prediction", "Landmark", "follows", "#ratio", "source", "#forward, mm", "#up, mm", "#left, mm", "#interval, mm"], rows),
+      soft("A landmark of the skin moves by its ratio of the bone's motion; between landmarks the displacement is " +
+           `interpolated, and beyond ${predictions.map((one) => `${grouped(one.details!.fade_mm, 0)} mm`).join(", ")} of all ` +
+           "landmarks it is zero. Interval: what the spread of the ratio between studies leaves open in 99 of 100 people."));
+}
+
 export function cephalometry(of: CephalometryTable|null, cephalogram: string): Child {
   if (!of) return null;
   const rows = of.measures.map((row) => {
@@ -49,6 +66,8 @@ export function cephalometry(of: CephalometryTable|null, cephalogram: string): C
           "Radiograph in true scale; pale: the patient, orange: planned.")),
       table(["Measure", "", "#before", "#planned", "#change", "#norm", "source"], rows),
       soft(`After each ±, what landmarks placed to ${grouped(of.landmark_deviation_mm, 1)} mm (standard deviation along ` +
-           "each axis) leave open in 99 of 100 cases; after each norm, its standard deviation among the people of its source."),
+           "each axis) leave open in 99 of 100 cases; after each norm, its standard deviation among the people of its source." +
+           (of.not_predicted ? ` Nothing predicts where the skin goes for ${of.not_predicted.map((one) => one.name).join(", ")}: ` +
+                "a landmark_ratios step does." : "")),
       list([...described].map(([source, people]) => `${source}: ${people}.`)));
 }

@@ -6,7 +6,7 @@ import {grouped} from "../../browser/page/base/numbers";
 import {certificates, findings_table, scans} from "./certificates";
 import {footer, list, overall_verdict, pill, plural, section, soft, table, times} from "./elements";
 import {measurements, tiles} from "./measurements";
-import {cephalometry, movements} from "./movements";
+import {cephalometry, movements, ratios} from "./movements";
 import {pictures} from "./pictures";
 import {Report} from "./result";
 
@@ -55,7 +55,7 @@ function plan_section({result: {plan}, plan_text}: Report): Child {
 
 export const report = (of: Report): Child => [
   heading(of), tiles(of.result.measurements), section("Findings", findings_table("Check", of.result.findings)),
-  pictures(of.pictures), movements(of.result), cephalometry(of.result.cephalometry, of.cephalogram),
+  pictures(of.pictures), movements(of.result), ratios(of.result), cephalometry(of.result.cephalometry, of.cephalogram),
   measurements(of.result.measurements), certificates(of.result), parts(of), scans(of.result), exports_table(of), plan_section(of),
   footer(of.result.octotomy, "A planning and research tool, not a medical device. Which checks support which number: ",
          el("a", {href: "credibility.html"}, "credibility"),

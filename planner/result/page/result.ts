@@ -38,7 +38,7 @@ export interface Movement {
 }
 type Cephalometric = Maybe<{value: number; half_width: number}>;
 export interface CephalometryTable {
-  landmark_deviation_mm: number;
+  landmark_deviation_mm: number; not_predicted?: {name: string; landmarks: string[]}[];
   measures: {
     name: string; says: string; unit: string; before: Cephalometric; after: Cephalometric; change: Cephalometric;
     norm: Maybe<number>; deviation: Maybe<number>; source: string; norm_of?: string;
@@ -66,6 +66,16 @@ export interface Osteotomy {
   number: number; object: string; between: string[]; contact_voxels_mm2: number; contact_mesh_mm2: Maybe<number>;
   tolerance_mm2: Maybe<number>; verdict: Maybe<string>; finding?: string;
 }
+/// Two predictions of the same skin, point by point.
+export interface FaceDifference {
+  skin: string; mean_mm: number; largest_mm: number; largest_at_mm: Vec3; area_mm2: number; definition: string;
+  landmarks: {name: string; at_mm: Vec3; a_moved_mm: Vec3; b_moved_mm: Vec3; difference_mm: number}[];
+}
+/// The landmarks of a landmark_ratios step, among its object's details.
+export interface RatioLandmark extends Displacement {
+  name: string; follows: string; at_mm: Vec3; ratio: Maybe<number>; ratio_up: Maybe<number>; source: string;
+  half_width_mm: Maybe<number>;
+}
 export interface DoubtfulNumber {
   what: string; of: string; value: number; unit: string; half_width: number; sources: {name: string; half_width: number}[];
 }
@@ -89,13 +99,16 @@ export interface Measurement {
   landmarks: {name: string; says: string; point_mm: Vec3; uncertainty_mm: number}[];
   mean_mm?: Maybe<number>; a: string; b: string;
   hausdorff_mm?: number; hausdorff95_mm?: number; rms_mm?: number; dice?: Maybe<number>; dice_half_width?: Maybe<number>;
-  a_to_b?: OneWay; b_to_a?: OneWay; histogram?: {low_mm: number; width_mm: number; shares: number[]};
+  face?: FaceDifference; a_to_b?: OneWay; b_to_a?: OneWay; histogram?: {low_mm: number; width_mm: number; shares: number[]};
   doubts?: DoubtfulNumber[]; trials: number; errors: {[error: string]: number};
 }
 
 export interface Result {
   octotomy: string; timings_ms: {[stage: string]: number}; plan: PlanDocument; universe: {side: number; voxel_mm: Vec3};
-  scans: Scan[]; objects: {id: string; definition: string; mesh: Maybe<object>; findings: string[]}[];
+  scans: Scan[]; objects: {
+    id: string; kind: string; definition: string; mesh: Maybe<object>; findings: string[];
+    details?: {fade_mm?: number; landmarks?: RatioLandmark[]};
+  }[];
   components: {object: string; count: number; volumes_mm3: number[]}[];
   exports: {object: string; path: string; written: boolean; bytes?: number; findings: string[]}[];
   movements: Movement[]; movement_words: string; cephalometry: Maybe<CephalometryTable>;

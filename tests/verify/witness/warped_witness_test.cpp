@@ -107,6 +107,27 @@ TEST_F(AWarpedBall, DisplacementsAreThoseOfTheOtherCodeWithinAndBesideTheElement
     EXPECT_LT(glm::distance(own->displacement_mm(points[i]), theirs[i]), 1e-9) << i;
 }
 
+TEST_F(AWarpedBall, BetweenTwoEquallyNearElementsBothCodesChooseTheSame) {
+  const convert::Tetrahedra apart = convert::tetrahedra_of(
+      voxel::combine(tests::unit_universe(5), voxel::Expression(voxel::Box{{4, 4, 4}, {12, 28, 28}}) |
+                                                  voxel::Expression(voxel::Box{{20, 4, 4}, {28, 28, 28}})));
+  std::vector<glm::dvec3> moved;
+  double low = 1e300, high = -1e300;  // the gap's walls
+  for (const glm::dvec3& p : apart.nodes_mm) {
+    moved.push_back(p.x < 16 ? glm::dvec3(0, -2, 0) : glm::dvec3(0, 1, 1));
+    if (p.x < 16) low = low > 1e299 ? p.x : std::max(low, p.x);
+    if (p.x > 16) high = high < -1e299 ? p.x : std::min(high, p.x);
+  }
+  const NodeMotion own(apart, moved, fade_mm);
+  const convert::DisplacementField other(apart, moved, fade_mm);
+  std::vector<glm::dvec3> points;
+  for (int y = 6; y < 26; ++y)
+    for (int z = 6; z < 26; ++z) points.emplace_back(0.5 * (low + high), y + 0.1 * z, z - 0.07 * y);
+  const std::vector<glm::dvec3> theirs = other.at(points);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    EXPECT_LT(glm::distance(own.displacement_mm(points[i]), theirs[i]), 1e-9) << i;
+}
+
 TEST_F(AWarpedBall, TheOriginOfAMovedPointIsThePoint) {
   const auto own = motion();
   std::mt19937_64 random(6);

@@ -116,6 +116,33 @@ TEST(Cephalometry, WhatAPlanMovesChangesByAsMuchAndIsSurerThanTheValues) {
   EXPECT_NEAR(of(found, "SNA").after->value, forward, 1e-9);
 }
 
+TEST(Cephalometry, SkinThatNothingPredictsHasNoValueAfterTheOperation) {
+  std::vector<MovedLandmark> skin = face();
+  skin.push_back({{"pronasale", {0, -30, -40}}, glm::dmat4(1.0)});
+  skin.push_back({{"soft_pogonion", {0, 15, -100}}, glm::dmat4(1.0)});
+  skin.push_back({{"upper_lip", {0, -8, -60}}, glm::dmat4(1.0)});
+  EXPECT_TRUE(measure(skin).unpredicted.empty());
+  for (MovedLandmark& each : skin)
+    if (each.landmark.name == "incisor")
+      each.moved_from_still = glm::translate(glm::dmat4(1.0), glm::dvec3(0, -5, 0));
+  const CephalometricResults open = measure(skin);
+  EXPECT_FALSE(of(open, "upper lip to E-line").after);
+  EXPECT_TRUE(of(open, "overjet").after);
+  ASSERT_EQ(open.unpredicted.size(), 1u);
+  EXPECT_EQ(open.unpredicted[0].second,
+            (std::vector<std::string>{"pronasale", "soft_pogonion", "upper_lip"}));
+  for (MovedLandmark& each : skin) each.is_predicted = true;
+  skin.back().moved_from_still = glm::translate(glm::dmat4(1.0), glm::dvec3(0, -3, 0));
+  const CephalometricResults found = measure(skin);
+  EXPECT_TRUE(found.unpredicted.empty());
+  // The line falls 4 in 3: forward by 3 mm is 2.4 mm square to it.
+  EXPECT_NEAR(of(found, "upper lip to E-line").change->value, 2.4, 1e-9);
+  // A ratio that errs by 0.5 mm forward (standard deviation) errs by 0.4 mm square to the line.
+  EXPECT_LT(of(found, "upper lip to E-line").change->half_width, 0.2);
+  skin.back().deviation_mm = {0, -0.5, 0};
+  EXPECT_NEAR(of(measure(skin), "upper lip to E-line").change->half_width, 2.5758 * 0.4, 0.05);
+}
+
 TEST(Cephalometry, IntervalsAreThoseOfIndependentLandmarks) {
   // A distance between two landmarks, far apart, errs along its line by both errors.
   const CephalometricResults found = measure(face(), glm::dmat3(1.0), {0.8, 40000, 7});

@@ -171,6 +171,23 @@ test('trials name their errors and the part of each', () =>
     }), '<td>gap</td><td>rest to moved</td><td class="n">1.5 ± 0.900 mm</td><td class="n">–</td><td class="n">0.200</td>',
         '99 of 100 of 1000 trials', "a piece's seating 0.5 mm along each axis, its turn 0.4° about each"));
 
+test('ratios of landmarks have a row each, and two predictions their difference', () => {
+  const along = { forward_mm: 1.12, up_mm: 0.28, left_mm: 0 };
+  const landmarks = [
+    { ...along, name: 'pronasale', follows: 'ans@advanced', at_mm: [0, -115, -23], ratio: 0.28, ratio_up: 0.1, source: '<F> 1977', half_width_mm: 1.06 },
+    { forward_mm: 0, up_mm: 0, left_mm: 0, name: '', follows: '', at_mm: [0, -99, -64], ratio: null, ratio_up: null, source: '', half_width_mm: null }];
+  const text = drawn(script, { ...data, result: { ...result, objects: [...result.objects,
+    { id: 'quick', kind: 'landmark_ratios', definition: '', mesh: null, findings: [], details: { fade_mm: 60, landmarks } }] } });
+  contains(text, 'Soft tissue by ratios of landmarks', '<td>pronasale</td><td>ans@advanced</td>', '0.28, up 0.10', '&lt;F&gt; 1977',
+           '+1.12', '± 1.1', '<td>0.0, −99.0, −64.0</td><td>stays</td>', 'beyond 60 mm of all landmarks it is zero');
+  const way = { mean_mm: 1, signed_mean_mm: 0, p95_mm: 2, max_mm: 3, bands: [] };
+  contains(with_measurements({
+    id: 'apart', a: 'quick', b: 'by_elements', mean_mm: 1, hausdorff_mm: 3, hausdorff95_mm: 2, a_to_b: way, b_to_a: way, findings: [],
+    face: { skin: 'head', mean_mm: 0.99, largest_mm: 3.72, largest_at_mm: [-32, -88, -28], area_mm2: 17170, definition: 'length of the difference',
+            landmarks: [{ name: 'upper_lip', at_mm: [0, -101, -54], a_moved_mm: [0, -2.2, 0.55], b_moved_mm: [0, -3.2, -1.2], difference_mm: 2.05 }] }
+  }), 'The face by quick and by by_elements, point by point', '0.00, −2.20, 0.55', '>2.05<', '>0.99<', 'face, largest, at −32, −88, −28 mm', '>3.72<');
+});
+
 test('cephalometry has intervals and norms, signatures what changed since', () => {
   const row = { name: 'SNA', says: 'maxilla', unit: 'deg', before: { value: 80, half_width: 1.5 }, after: { value: 84, half_width: 1.5 },
                 change: { value: 4, half_width: 2 }, norm: 82, deviation: 2, source: 'Steiner 1953', norm_of: 'an average child' };
