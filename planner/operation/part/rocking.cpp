@@ -218,7 +218,10 @@ Json json_of(const brep::Loosening& loosening) {
 }
 
 Json empty_answer(const Rocking& asked, const Question& question) {
+  Json on = Json::array();
+  for (const Object* object : question.against) on.push_back(object->id);
   return {{"object", question.part.id},
+          {"on", std::move(on)},
           {"direction", to_json(question.push)},
           {"verdict", nullptr},
           {"angle_deg", nullptr},
