@@ -2,7 +2,7 @@
 // Source and departure: docking.h.
 //
 // 1 Each contact's reaction is a wrench: its force and, over the contacts' extent, its moment about their middle. The
-//   wrenches that contacts can balance form a cone.
+//   wrenches that contacts can balance form a cone. A seventh row adds up the reactions, which are limited.
 // 2 At one point, the pushes d + x e + y f about the direction d that are held form a convex polygon in x and y. A linear
 //   programme follows a ray from the origin to its border. The programme's prices are a motion that no contact resists,
 //   and the border's line there: pushes beyond it do work in that motion.
@@ -23,15 +23,17 @@
 namespace octotomy::brep {
 namespace {
 
-/// A wrench: force, then moment over a length; or a motion: velocity, then turn times that length.
-using Six = std::array<double, 6>;
+/// A wrench: force, then moment over a length, then the size of reactions; or a motion: velocity, then turn times that
+/// length, then the depth that contacts may give.
+constexpr int rows = 7;
+using Wrench = std::array<double, rows>;
 
-double dot(const Six& a, const Six& b) {
+double dot(const Wrench& a, const Wrench& b) {
   double sum = 0.0;
-  for (int i = 0; i < 6; ++i) sum += a[i] * b[i];
+  for (int i = 0; i < rows; ++i) sum += a[i] * b[i];
   return sum;
 }
-Six negative(Six a) {
+Wrench negative(Wrench a) {
   for (double& value : a) value = -value;
   return a;
 }
@@ -39,11 +41,11 @@ Six negative(Six a) {
 /// Entries of wrenches are about 1, so that smaller numbers are rounding after some pivots.
 constexpr double rounding = 1e-10;
 
-/// A linear programme of six rows: not negative shares of columns that sum to a goal.
+/// A linear programme of seven rows: not negative shares of columns that sum to a goal.
 class Programme {
  public:
-  Programme(const std::vector<Six>& columns, const Six& goal) : columns_(columns) {
-    for (int row = 0; row < 6; ++row) {
+  Programme(const std::vector<Wrench>& columns, const Wrench& goal) : columns_(columns) {
+    for (int row = 0; row < rows; ++row) {
       inverse_[row].fill(0.0);
       inverse_[row][row] = goal[row] < 0.0 ? -1.0 : 1.0;
       level_[row] = std::abs(goal[row]);
@@ -55,24 +57,24 @@ class Programme {
   bool reaches_goal() {
     run(artificial);
     double missing = 0.0;
-    for (int row = 0; row < 6; ++row)
+    for (int row = 0; row < rows; ++row)
       if (basis_[row] == artificial) missing += level_[row];
     return missing <= 100.0 * rounding;
   }
   /// How far the goal can move along a direction within the cone; infinity where nothing ends it. prices() then show
   /// the cone's side at the end. Precondition: reaches_goal().
-  double reach(const Six& along) {
+  double reach(const Wrench& along) {
     moved_ = negative(along);
     return run(moving) ? level_of(moving) : std::numeric_limits<double>::infinity();
   }
   /// Of all columns not above 0; above 0 of what the cone does not hold.
-  const Six& prices() const { return prices_; }
+  const Wrench& prices() const { return prices_; }
 
  private:
   static constexpr std::size_t artificial = std::numeric_limits<std::size_t>::max(), moving = artificial - 1;
 
   double level_of(std::size_t column) const {
-    for (int row = 0; row < 6; ++row)
+    for (int row = 0; row < rows; ++row)
       if (basis_[row] == column) return level_[row];
     return 0.0;
   }
@@ -82,9 +84,9 @@ class Programme {
   bool run(std::size_t aim) {
     constexpr int bland_from = 200, most = 20000;
     for (int turn = 0; turn < most; ++turn) {
-      for (int at = 0; at < 6; ++at) {
+      for (int at = 0; at < rows; ++at) {
         prices_[at] = 0.0;
-        for (int row = 0; row < 6; ++row)
+        for (int row = 0; row < rows; ++row)
           if (basis_[row] == aim) prices_[at] += (aim == artificial ? 1.0 : -1.0) * inverse_[row][at];
       }
       const std::size_t enters = entering(aim, turn >= bland_from);
@@ -112,12 +114,12 @@ class Programme {
   }
 
   bool pivot(std::size_t enters) {
-    const Six& column = enters == moving ? moved_ : columns_[enters];
-    Six turned{};
-    for (int row = 0; row < 6; ++row) turned[row] = dot(inverse_[row], column);
+    const Wrench& column = enters == moving ? moved_ : columns_[enters];
+    Wrench turned{};
+    for (int row = 0; row < rows; ++row) turned[row] = dot(inverse_[row], column);
     int leaves = -1;
     double least = std::numeric_limits<double>::infinity();
-    for (int row = 0; row < 6; ++row) {
+    for (int row = 0; row < rows; ++row) {
       // An artificial share of 0 leaves as soon as it would change.
       const bool is_spent =
           basis_[row] == artificial && level_[row] <= rounding && std::abs(turned[row]) > 1e-7;
@@ -130,28 +132,28 @@ class Programme {
       }
     }
     if (leaves < 0) return false;
-    for (int at = 0; at < 6; ++at) inverse_[leaves][at] /= turned[leaves];
-    for (int row = 0; row < 6; ++row) {
+    for (int at = 0; at < rows; ++at) inverse_[leaves][at] /= turned[leaves];
+    for (int row = 0; row < rows; ++row) {
       if (row == leaves) continue;
       level_[row] = std::max(0.0, level_[row] - least * turned[row]);
-      for (int at = 0; at < 6; ++at) inverse_[row][at] -= turned[row] * inverse_[leaves][at];
+      for (int at = 0; at < rows; ++at) inverse_[row][at] -= turned[row] * inverse_[leaves][at];
     }
     level_[leaves] = least;
     basis_[leaves] = enters;
     return true;
   }
 
-  const std::vector<Six>& columns_;
-  std::array<Six, 6> inverse_{};  ///< of the basis, by rows
-  Six level_{}, prices_{}, moved_{};
-  std::array<std::size_t, 6> basis_{};
+  const std::vector<Wrench>& columns_;
+  std::array<Wrench, rows> inverse_{};  ///< of the basis, by rows
+  Wrench level_{}, prices_{}, moved_{};
+  std::array<std::size_t, rows> basis_{};
 };
 
 /// A line in the plane of deviations: across . q <= reach of the pushes that are held.
 struct Line {
   glm::dvec2 across{0.0};  ///< unit
   double reach = 0.0;
-  Six motion{};
+  Wrench motion{};
 };
 
 class Contacts {
@@ -165,7 +167,10 @@ class Contacts {
       squares += glm::dot(arm, arm) / static_cast<double>(contacts.size());
     }
     if (squares > 0.0) length_mm_ = std::sqrt(squares);
-    for (const DockingContact& contact : contacts) wrenches_.push_back(wrench(contact.p_mm, contact.normal));
+    for (const DockingContact& contact : contacts)
+      wrenches_.push_back(wrench(contact.p_mm, contact.normal, 1.0));
+    // Reactions need not use up their limit.
+    wrenches_.push_back({0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0});
     const glm::dvec3 beside = std::abs(push.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
     e_ = glm::normalize(glm::cross(push, beside));
     f_ = glm::cross(push, e_);
@@ -173,7 +178,7 @@ class Contacts {
 
   Docking at(const glm::dvec3& p_mm) const {
     Docking made{most_docking_deg, p_mm, std::nullopt};
-    const Six goal = negative(wrench(p_mm, push_));
+    const Wrench goal = balance(p_mm, push_, most_reaction);
     Programme straight(wrenches_, goal);
     if (!straight.reaches_goal()) {
       made.angle_deg = 0.0;
@@ -206,12 +211,16 @@ class Contacts {
   }
 
  private:
-  Six wrench(const glm::dvec3& p_mm, const glm::dvec3& force) const {
+  Wrench wrench(const glm::dvec3& p_mm, const glm::dvec3& force, double size) const {
     const glm::dvec3 moment = glm::cross(p_mm - middle_mm_, force) / length_mm_;
-    return {force.x, force.y, force.z, moment.x, moment.y, moment.z};
+    return {force.x, force.y, force.z, moment.x, moment.y, moment.z, size};
   }
-  static glm::dvec3 velocity(const Six& motion) { return {motion[0], motion[1], motion[2]}; }
-  glm::dvec3 turn(const Six& motion) const {
+  /// What reactions must sum up to against a push.
+  Wrench balance(const glm::dvec3& p_mm, const glm::dvec3& force, double most) const {
+    return wrench(p_mm, -force, most);
+  }
+  static glm::dvec3 velocity(const Wrench& motion) { return {motion[0], motion[1], motion[2]}; }
+  glm::dvec3 turn(const Wrench& motion) const {
     return glm::dvec3(motion[3], motion[4], motion[5]) / length_mm_;
   }
 
@@ -219,14 +228,14 @@ class Contacts {
   std::optional<Line> line_before(Programme programme, const glm::dvec3& p_mm,
                                   const glm::dvec2& deviation) const {
     const glm::dvec3 force = deviation.x * e_ + deviation.y * f_;
-    if (programme.reach(negative(wrench(p_mm, force))) >= 1.0) return std::nullopt;
+    if (programme.reach(balance(p_mm, force, 0.0)) >= 1.0) return std::nullopt;
     Line line{{}, 0.0, negative(programme.prices())};
     const glm::dvec3 goes = velocity(line.motion) + glm::cross(turn(line.motion), p_mm - middle_mm_);
     line.across = {glm::dot(goes, e_), glm::dot(goes, f_)};
     const double steep = glm::length(line.across);
     if (!(steep > 0.0)) return std::nullopt;
     line.across /= steep;
-    line.reach = std::max(0.0, -glm::dot(goes, push_) / steep);
+    line.reach = std::max(0.0, (most_reaction * line.motion.back() - glm::dot(goes, push_)) / steep);
     return line;
   }
 
@@ -244,7 +253,7 @@ class Contacts {
     return left;
   }
 
-  Loosening loosening(const Six& motion) const {
+  Loosening loosening(const Wrench& motion) const {
     const glm::dvec3 slides = velocity(motion), turns = turn(motion);
     // A turn about an axis ten times farther away than the contacts reach is a slide to them.
     if (10.0 * glm::length(turns) * length_mm_ < glm::length(slides))
@@ -254,7 +263,7 @@ class Contacts {
 
   glm::dvec3 push_, e_{0.0}, f_{0.0}, middle_mm_{0.0};
   double length_mm_ = 1.0;  ///< mean distance of contacts from their middle
-  std::vector<Six> wrenches_;
+  std::vector<Wrench> wrenches_;
 };
 
 void check(const std::vector<DockingContact>& contacts, const glm::dvec3& push,
@@ -300,11 +309,11 @@ std::vector<std::size_t> hull_corners(const std::vector<glm::dvec3>& points_mm) 
   const double size = std::max(glm::distance(low, high), std::numeric_limits<double>::min());
   const auto lifted = [&](std::size_t i) {
     const glm::dvec3 p = (points_mm[i] - middle) / size;
-    return Six{p.x, p.y, p.z, 1.0, 0.0, 0.0};
+    return Wrench{p.x, p.y, p.z, 1.0, 0.0, 0.0, 0.0};
   };
   std::vector<std::size_t> corners;
-  std::vector<Six> columns;
-  const auto add_farthest = [&](const Six& along) {
+  std::vector<Wrench> columns;
+  const auto add_farthest = [&](const Wrench& along) {
     std::size_t farthest = 0;
     for (std::size_t i = 1; i < points_mm.size(); ++i)
       if (dot(along, lifted(i)) > dot(along, lifted(farthest))) farthest = i;
@@ -313,7 +322,7 @@ std::vector<std::size_t> hull_corners(const std::vector<glm::dvec3>& points_mm) 
     columns.push_back(lifted(farthest));
     return true;
   };
-  add_farthest({1.0, 0.0, 0.0, 0.0, 0.0, 0.0});
+  add_farthest({1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
   for (std::size_t i = 0; i < points_mm.size(); ++i)
     for (;;) {
       Programme programme(columns, lifted(i));

@@ -22,13 +22,14 @@
 namespace octotomy::voxel {
 namespace {
 
-using Wrench = std::array<double, 6>;
+/// A force, its moment over a length, and the size of reactions.
+using Wrench = std::array<double, 7>;
 
 double product(const Wrench& a, const Wrench& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] + a[4] * b[4] + a[5] * b[5];
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] + a[4] * b[4] + a[5] * b[5] + a[6] * b[6];
 }
 void add(Wrench& to, double factor, const Wrench& what) {
-  for (int k = 0; k < 6; ++k) to[k] += factor * what[k];
+  for (std::size_t k = 0; k < to.size(); ++k) to[k] += factor * what[k];
 }
 
 /// A wrench in the cone is told from one beside it by this share of its length.
@@ -80,7 +81,7 @@ Wrench beyond_cone(const std::vector<Wrench>& cone, const Wrench& goal) {
         most = gain;
         best = i;
       }
-    if (best == cone.size() || used.size() == 6) break;
+    if (best == cone.size() || used.size() == rest.size()) break;
     used.push_back(best);
     factors.push_back(0.0);
     for (;;) {
@@ -120,29 +121,33 @@ struct Held {
     about_mm = 0.5 * (low + high);
     if (low != high) length_mm = 0.5 * glm::distance(low, high);
     for (const DockingContact& one : contacts) {
-      Wrench made = wrench(one.p_mm, one.normal);
+      Wrench made = wrench(one.p_mm, one.normal, 1.0);
       const double size = std::sqrt(product(made, made));
       for (double& value : made) value /= size;
       cone.push_back(made);
     }
+    cone.push_back({0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0});  // what is left of the limit
   }
 
-  Wrench wrench(const glm::dvec3& p_mm, const glm::dvec3& force) const {
+  Wrench wrench(const glm::dvec3& p_mm, const glm::dvec3& force, double size) const {
     const glm::dvec3 moment = glm::cross(p_mm - about_mm, force) / length_mm;
-    return {force.x, force.y, force.z, moment.x, moment.y, moment.z};
+    return {force.x, force.y, force.z, moment.x, moment.y, moment.z, size};
   }
 
-  /// None if the push is held; else the velocity of the pushed point in a motion that no contact resists.
-  std::optional<glm::dvec3> gives_way(const glm::dvec3& p_mm, const glm::dvec3& push) const {
-    const Wrench rest = beyond_cone(cone, wrench(p_mm, -push));
+  /// None if a push is held; else a vector with which it, and all other pushes that are not held for the same reason,
+  /// has a positive product: the velocity of the pushed point in a motion that contacts resist too little, less what they
+  /// resist.
+  std::optional<glm::dvec3> gives_way(const glm::dvec3& p_mm, const glm::dvec3& push,
+                                      const glm::dvec3& nominal) const {
+    const Wrench rest = beyond_cone(cone, wrench(p_mm, -push, most_reaction * glm::dot(push, nominal)));
     if (product(rest, rest) == 0.0) return std::nullopt;
     const glm::dvec3 slide(-rest[0], -rest[1], -rest[2]),
         turn = glm::dvec3(-rest[3], -rest[4], -rest[5]) / length_mm;
-    return slide + glm::cross(turn, p_mm - about_mm);
+    return slide + glm::cross(turn, p_mm - about_mm) + most_reaction * rest[6] * nominal;
   }
 
   double angle(const glm::dvec3& p_mm, const glm::dvec3& push) const {
-    if (gives_way(p_mm, push)) return 0.0;
+    if (gives_way(p_mm, push, push)) return 0.0;
     const glm::dvec3 beside = std::abs(push.z) < 0.6 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
     const glm::dvec3 u = glm::normalize(glm::cross(beside, push)), v = glm::cross(push, u);
     constexpr int around = 72;
@@ -152,7 +157,7 @@ struct Held {
       const glm::dvec3 side = std::cos(turn) * u + std::sin(turn) * v;
       for (int again = 0; again < 100 && found > 0.0; ++again) {
         const std::optional<glm::dvec3> way =
-            gives_way(p_mm, std::cos(found) * push + std::sin(found) * side);
+            gives_way(p_mm, std::cos(found) * push + std::sin(found) * side, push);
         if (!way) break;
         const double least = std::asin(std::clamp(-glm::dot(push, *way) / glm::length(*way), 0.0, 1.0));
         // Rounding must not stop the search.

@@ -5,7 +5,8 @@
 // 3 The triangles may still cut off sharp edges. At an outline, everything behind a cut-off edge would be
 //   lost, so columns just beside an outline search for the object itself at the outline's depths.
 // 4 A block has one value if all its columns begin in front of the block, or all behind it. In the other
-//   blocks 5^3 points of each voxel are counted: an odd number, so that no share is exactly a half.
+//   blocks 5^3 points of each voxel are counted: an odd number, so that no share is exactly a half. A voxel whose centre
+//   lies in the shadow belongs to it however small its share is: a tip thinner than a voxel casts a shadow, too.
 #include "voxel/filter/shadow.h"
 
 #include <algorithm>
@@ -271,12 +272,16 @@ class ShadowShares {
     int share = -points_a_voxel;
     for (const glm::dvec3& point : points_) {
       const glm::dvec3 at = centre + point;
-      if (at.z >= depths_.at(glm::dvec2(at)) && at.z <= end_mm_) share += 2;
+      if (holds(at)) share += 2;
     }
+    // The object's voxels are those whose centres it holds, so the same counts for what lies behind them.
+    if (share < 0 && holds(centre)) share = 1;
     return static_cast<std::int16_t>(share);
   }
 
  private:
+  bool holds(const glm::dvec3& at) const { return at.z >= depths_.at(glm::dvec2(at)) && at.z <= end_mm_; }
+
   const FirstDepths& depths_;
   double end_mm_;
   glm::dvec3 origin_{0.0};
