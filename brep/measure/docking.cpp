@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Source and departure: docking.h.
 //
-// 1 Each contact's reaction is a wrench: its force and, over the contacts' extent, its moment about their middle. The
-//   wrenches that contacts can balance form a cone. A seventh row adds up the reactions, which are limited.
-// 2 At one point, the pushes d + x e + y f about the direction d that are held form a convex polygon in x and y. A linear
-//   programme follows a ray from the origin to its border. The programme's prices are a motion that no contact resists,
-//   and the border's line there: pushes beyond it do work in that motion.
-// 3 Begin with a large square. Follow the ray to each corner: it is a corner of the polygon, or its line cuts it off.
+// 1 Each contact's reaction is a wrench: its force and, over the contacts' extent, its moment about their
+//   middle. The wrenches that contacts can balance form a cone. A seventh row adds up the reactions, which
+//   are limited.
+// 2 At one point, the pushes d + x e + y f about the direction d that are held form a convex polygon in x and
+//   y. A linear programme follows a ray from the origin to its border. The programme's prices are a motion
+//   that no contact resists, and the border's line there: pushes beyond it do work in that motion.
+// 3 Begin with a large square. Follow the ray to each corner: it is a corner of the polygon, or its line cuts
+//   it off.
 // 4 The line nearest to the origin gives the angle.
 #include "brep/measure/docking.h"
 
@@ -23,8 +25,8 @@
 namespace octotomy::brep {
 namespace {
 
-/// A wrench: force, then moment over a length, then the size of reactions; or a motion: velocity, then turn times that
-/// length, then the depth that contacts may give.
+/// A wrench: force, then moment over a length, then the size of reactions; or a motion: velocity, then turn
+/// times that length, then the depth that contacts may give.
 constexpr int rows = 7;
 using Wrench = std::array<double, rows>;
 
@@ -61,8 +63,8 @@ class Programme {
       if (basis_[row] == artificial) missing += level_[row];
     return missing <= 100.0 * rounding;
   }
-  /// How far the goal can move along a direction within the cone; infinity where nothing ends it. prices() then show
-  /// the cone's side at the end. Precondition: reaches_goal().
+  /// How far the goal can move along a direction within the cone; infinity where nothing ends it. prices()
+  /// then show the cone's side at the end. Precondition: reaches_goal().
   double reach(const Wrench& along) {
     moved_ = negative(along);
     return run(moving) ? level_of(moving) : std::numeric_limits<double>::infinity();
@@ -79,8 +81,8 @@ class Programme {
     return 0.0;
   }
 
-  /// Improves the basis until no column helps: fewer artificial shares, or a larger share of the moving column. False if
-  /// nothing ends that.
+  /// Improves the basis until no column helps: fewer artificial shares, or a larger share of the moving
+  /// column. False if nothing ends that.
   bool run(std::size_t aim) {
     constexpr int bland_from = 200, most = 20000;
     for (int turn = 0; turn < most; ++turn) {
@@ -299,8 +301,8 @@ Docking docking(const std::vector<DockingContact>& contacts, const glm::dvec3& p
                            [](const Docking& a, const Docking& b) { return a.angle_deg < b.angle_deg; });
 }
 
-/// A point outside the hull of the corners found so far has a plane between it and them. The farthest point beyond that
-/// plane is a corner.
+/// A point outside the hull of the corners found so far has a plane between it and them. The farthest point
+/// beyond that plane is a corner.
 std::vector<std::size_t> hull_corners(const std::vector<glm::dvec3>& points_mm) {
   if (points_mm.empty()) return {};
   glm::dvec3 low = points_mm.front(), high = low;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 Cut the part's triangles into pieces no longer than the spacing; their corners are the candidates, those of large
-//   triangles first.
-// 2 A candidate near the objects whose foot faces it becomes a contact, one in each cube of the spacing's edge.
+// 1 Cut the part's triangles into pieces no longer than the spacing; their corners are the candidates, those
+//   of large triangles first.
+// 2 A candidate near the objects whose foot faces it becomes a contact, one in each cube of the spacing's
+//   edge.
 // 3 Each normal becomes the mean of its neighbours'.
 #include "brep/measure/docking_contacts.h"
 

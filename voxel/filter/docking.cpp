@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 A push is held if its opposite lies in the cone of the contacts' wrenches: if the cone's nearest point is that
-//   wrench itself (Lawson and Hanson, Solving Least Squares Problems, 1974, chapter 23).
-// 2 If not, the difference to the nearest point is a motion that no contact resists, in which the push does work. It
-//   bounds the angle: no push beyond the plane across the pushed point's velocity is held.
-// 3 Test pushes around a circle of the angle found so far, which begins at the largest. Each one that is not held makes
-//   the angle smaller. The held pushes form a convex cone, so what lies between the held ones is held.
+// 1 A push is held if its opposite lies in the cone of the contacts' wrenches: if the cone's nearest point is
+//   that wrench itself (Lawson and Hanson, Solving Least Squares Problems, 1974, chapter 23).
+// 2 If not, the difference to the nearest point is a motion that no contact resists, in which the push does
+//   work. It bounds the angle: no push beyond the plane across the pushed point's velocity is held.
+// 3 Test pushes around a circle of the angle found so far, which begins at the largest. Each one that is not
+//   held makes the angle smaller. The held pushes form a convex cone, so what lies between the held ones is
+//   held.
 #include "voxel/filter/docking.h"
 
 #include <algorithm>
@@ -35,7 +36,8 @@ void add(Wrench& to, double factor, const Wrench& what) {
 /// A wrench in the cone is told from one beside it by this share of its length.
 constexpr double held_share = 1e-7;
 
-/// The factors with which some columns come nearest to a goal, by orthogonal columns. Precondition: independent ones.
+/// The factors with which some columns come nearest to a goal, by orthogonal columns. Precondition:
+/// independent ones.
 std::vector<double> least_squares(const std::vector<const Wrench*>& columns, const Wrench& goal) {
   const std::size_t count = columns.size();
   std::vector<Wrench> square(count);
@@ -134,9 +136,9 @@ struct Held {
     return {force.x, force.y, force.z, moment.x, moment.y, moment.z, size};
   }
 
-  /// None if a push is held; else a vector with which it, and all other pushes that are not held for the same reason,
-  /// has a positive product: the velocity of the pushed point in a motion that contacts resist too little, less what they
-  /// resist.
+  /// None if a push is held; else a vector with which it, and all other pushes that are not held for the same
+  /// reason, has a positive product: the velocity of the pushed point in a motion that contacts resist too
+  /// little, less what they resist.
   std::optional<glm::dvec3> gives_way(const glm::dvec3& p_mm, const glm::dvec3& push,
                                       const glm::dvec3& nominal) const {
     const Wrench rest = beyond_cone(cone, wrench(p_mm, -push, most_reaction * glm::dot(push, nominal)));

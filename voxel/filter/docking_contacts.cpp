@@ -81,8 +81,8 @@ class Crossings {
   std::vector<VoxelFace> faces_;
 };
 
-/// The normal of the plane that lies best among points near `middle`, turned as little as the points allow from a first
-/// normal: where they lie on a line, about it only.
+/// The normal of the plane that lies best among points near `middle`, turned as little as the points allow
+/// from a first normal: where they lie on a line, about it only.
 glm::dvec3 plane_normal(const std::vector<glm::dvec3>& points, const glm::dvec3& first) {
   glm::dvec3 middle(0.0);
   for (const glm::dvec3& p : points) middle += p / static_cast<double>(points.size());

@@ -10,8 +10,8 @@
 
 namespace octotomy::voxel {
 
-/// A solid by its voxels, which decide on which side a centre lies, and by an expression that places its surface
-/// between centres.
+/// A solid by its voxels, which decide on which side a centre lies, and by an expression that places its
+/// surface between centres.
 struct PlacedSolid {
   const Octree& octree;
   const Expression& solid;
@@ -30,15 +30,15 @@ struct DockingContactsOptions {
   Progress progress = {};
 };
 
-/// Where objects lie against a part: where an edge between voxels' centres crosses an object's surface, and the part
-/// begins within a distance along the surface's normal. Throws std::invalid_argument if the distance is not above 0;
-/// Stopped. Parallel; the same bits on any number of threads. Cost: some hundred questions of membership for each face
-/// of the objects' voxels near the part.
+/// Where objects lie against a part: where an edge between voxels' centres crosses an object's surface, and
+/// the part begins within a distance along the surface's normal. Throws std::invalid_argument if the distance
+/// is not above 0; Stopped. Parallel; the same bits on any number of threads. Cost: some hundred questions of
+/// membership for each face of the objects' voxels near the part.
 std::vector<DockingContact> docking_contacts(const PlacedSolid& part, const std::vector<PlacedSolid>& objects,
                                              const DockingContactsOptions& options);
 
-/// Places where the part's surface crosses edges between voxels' centres and its outward normal is within 60 degrees
-/// of the opposite of a push, a unit vector: where a finger can push.
+/// Places where the part's surface crosses edges between voxels' centres and its outward normal is within 60
+/// degrees of the opposite of a push, a unit vector: where a finger can push.
 std::vector<glm::dvec3> pushed_surface(const PlacedSolid& part, const glm::dvec3& push);
 
 }  // namespace octotomy::voxel

@@ -5,8 +5,9 @@
 // 3 The triangles may still cut off sharp edges. At an outline, everything behind a cut-off edge would be
 //   lost, so columns just beside an outline search for the object itself at the outline's depths.
 // 4 A block has one value if all its columns begin in front of the block, or all behind it. In the other
-//   blocks 5^3 points of each voxel are counted: an odd number, so that no share is exactly a half. A voxel whose centre
-//   lies in the shadow belongs to it however small its share is: a tip thinner than a voxel casts a shadow, too.
+//   blocks 5^3 points of each voxel are counted: an odd number, so that no share is exactly a half. A voxel
+//   whose centre lies in the shadow belongs to it however small its share is: a tip thinner than a voxel
+//   casts a shadow, too.
 #include "voxel/filter/shadow.h"
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Whether a part that is pushed onto its bone can rock: the docking angle, by which the push may deviate at the worst
-// place before the part begins to turn or to slide. The room's README defines it.
+// Whether a part that is pushed onto its bone can rock: the docking angle, by which the push may deviate at
+// the worst place before the part begins to turn or to slide. The room's README defines it.
 //
 // 1 Each kernel finds the places where bone bears the part, the places that may be pushed, and the angle.
-// 2 The mesh's angle is the answer. The voxels' must agree within what a change of the mesh's own contacts by the
-//   resolution of voxels does to it.
+// 2 The mesh's angle is the answer. The voxels' must agree within what a change of the mesh's own contacts by
+//   the resolution of voxels does to it.
 // 3 Trials lose contacts by random errors of scan and printer. They give the interval.
 #include <algorithm>
 #include <array>
@@ -43,7 +43,8 @@ struct Rocking {
 constexpr double contact_spacing_mm = 1.0;
 /// Normals are those of the bone's surface over this distance.
 constexpr double smooth_mm = 2.0;
-/// Normals of triangles are off by about a degree, which holds like friction of that angle: less counts as none.
+/// Normals of triangles are off by about a degree, which holds like friction of that angle: less counts as
+/// none.
 constexpr double nothing_deg = 1.0;
 /// Errors of scan and printer are alike within patches of this edge.
 constexpr double patch_mm = 4.0;
@@ -78,6 +79,8 @@ std::vector<glm::dvec3> pushed_points(const std::vector<glm::dvec3>& surface, co
         points.push_back(p);
         break;
       }
+  // Typed points that no surface near them faces are typing errors.
+  if (points.empty() && asked.radius_mm > 0.0) return points;
   if (!asked.at.empty()) points.insert(points.end(), question.at_mm.begin(), question.at_mm.end());
   return points;
 }
@@ -135,8 +138,8 @@ double angle_of(const std::vector<brep::DockingContact>& contacts, const glm::dv
   return least;
 }
 
-/// How far two right answers may be apart, by changes of the mesh's contacts alone: a voxel wider and narrower, and
-/// normals turned at random as a tenth of a voxel turns a plane over the distance of smoothing.
+/// How far two right answers may be apart, by changes of the mesh's contacts alone: a voxel wider and
+/// narrower, and normals turned at random as a tenth of a voxel turns a plane over the distance of smoothing.
 double allowed_deg(const std::vector<brep::DockingContact>& contacts, double angle_deg, const Rocking& asked,
                    const glm::dvec3& push, const std::vector<glm::dvec3>& points, double voxel_mm) {
   glm::dvec3 middle(0.0);
@@ -169,8 +172,8 @@ double allowed_deg(const std::vector<brep::DockingContact>& contacts, double ang
   return allowed + most;
 }
 
-/// The angles of all trials, ascending. In a trial the errors of patches open and close gaps; what is opened beyond the
-/// largest gap bears no more.
+/// The angles of all trials, ascending. In a trial the errors of patches open and close gaps; what is opened
+/// beyond the largest gap bears no more.
 std::vector<double> trial_angles(const std::vector<brep::DockingContact>& contacts, const Rocking& asked,
                                  const glm::dvec3& push, const std::vector<glm::dvec3>& points,
                                  const voxel::Progress& progress) {

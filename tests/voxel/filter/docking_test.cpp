@@ -16,7 +16,8 @@ TEST(VoxelDocking, SixContactsOfABoxCornerHoldByTheirClosedForm) {
                                            {{10, 40, 0}, {0, 0, 1}}, {{10, 0, 20}, {0, 1, 0}},
                                            {{40, 0, 20}, {0, 1, 0}}, {{0, 20, 20}, {1, 0, 0}}};
   const glm::dvec3 push = -glm::normalize(glm::dvec3(1.0));
-  // Above the walls' contacts by h, the floor's contacts bear (10 gz - h gx) / 30, (10 gz - h gy) / 30 and the rest.
+  // Above the walls' contacts by h, the floor's contacts bear (10 gz - h gx) / 30, (10 gz - h gy) / 30 and
+  // the rest.
   for (const double h : {0.0, 2.0, 5.0, 9.0}) {
     const double truth = glm::degrees(
         std::asin(std::min((10.0 - h) / std::sqrt(3.0 * (100.0 + h * h)), 1.0 / std::sqrt(3.0))));

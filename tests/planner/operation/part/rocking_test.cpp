@@ -58,21 +58,23 @@ std::string capped_block() {
 }
 
 TEST(RockingStep, ACapOverFourSidesHoldsByItsClosedForm) {
-  // The worst push leans on two walls, each with q times its part along the direction. It is 2 mm above the walls' upper
-  // ends and 8 mm above the lower ones. The top bears moments up to 8, then reactions of (2 q - 8) / 6 at the lower ends of
-  // the opposite walls help. All reactions, 1 + 2 q + 4 (2 q - 8) / 6, reach their limit of 10 at q = 4.3.
+  // The worst push leans on two walls, each with q times its part along the direction. It is 2 mm above the
+  // walls' upper ends and 8 mm above the lower ones. The top bears moments up to 8, then reactions of (2 q -
+  // 8) / 6 at the lower ends of the opposite walls help. All reactions, 1 + 2 q + 4 (2 q - 8) / 6, reach
+  // their limit of 10 at q = 4.3.
   const ScratchFolder folder;
   const Json rocks =
       last_of(folder, capped_block() + rocking("cap", "block", R"(, "at": [[0, 0, 10]], "radius_mm": 0)"));
   const double truth_deg = std::atan(4.3 * std::sqrt(2.0)) * 180.0 / std::acos(-1.0);
   EXPECT_EQ(rocks.at("verdict"), "PASS") << rocks.dump(1);
   EXPECT_NEAR(rocks.at("angle_deg").get<double>(), truth_deg, 0.02 * truth_deg);
-  EXPECT_NEAR(rocks.at("voxel_angle_deg").get<double>(), truth_deg, 0.02 * truth_deg);
+  EXPECT_NEAR(rocks.at("voxel_angle_deg").get<double>(), truth_deg, rocks.at("allowed_deg").get<double>());
+  EXPECT_LT(rocks.at("allowed_deg").get<double>(), 10.0);
 }
 
 TEST(RockingStep, AShellOnACornerHoldsByItsClosedForm) {
-  // Three faces of a block's corner, each 10 mm wide, are pushed at 2 mm beyond the corner on their diagonal. Reactions
-  // of two faces balance each other's moment while neither is 12 / 2 = 6 times the other.
+  // Three faces of a block's corner, each 10 mm wide, are pushed at 2 mm beyond the corner on their diagonal.
+  // Reactions of two faces balance each other's moment while neither is 12 / 2 = 6 times the other.
   const ScratchFolder folder;
   const Json rocks = last_of(folder, box_mask("column", {-8, -8, -8}, {8, 8, 8}) +
                                          box_mask("around", {-2, -2, -2}, {10, 10, 10}) +
