@@ -7,7 +7,7 @@
 // 2 At one point, the pushes d + x e + y f about the direction d that are held form a convex polygon in x and
 //   y. A linear programme follows a ray from the origin to its border. The programme's prices are a motion
 //   that no contact resists, and the border's line there: pushes beyond it do work in that motion.
-// 3 Begin with a large square. Follow the ray to each corner: it is a corner of the polygon, or its line cuts
+// 3 Begin with the square about the largest angle. Follow the ray to each corner: it is a corner of the polygon, or its line cuts
 //   it off.
 // 4 The line nearest to the origin gives the angle.
 #include "brep/measure/docking.h"
@@ -178,8 +178,8 @@ class Contacts {
     f_ = glm::cross(push, e_);
   }
 
-  Docking at(const glm::dvec3& p_mm) const {
-    Docking made{most_docking_deg, p_mm, std::nullopt};
+  Docking at(const glm::dvec3& p_mm, double at_most_deg) const {
+    Docking made{at_most_deg, p_mm, std::nullopt};
     const Wrench goal = balance(p_mm, push_, most_reaction);
     Programme straight(wrenches_, goal);
     if (!straight.reaches_goal()) {
@@ -187,11 +187,11 @@ class Contacts {
       made.loosening = loosening(negative(straight.prices()));
       return made;
     }
-    const double most = std::tan(most_docking_deg * std::numbers::pi / 180.0);
+    const double most = std::tan(at_most_deg * std::numbers::pi / 180.0);
     std::vector<std::pair<glm::dvec2, bool>> polygon;  // corners, and whether a ray has reached them
     for (const glm::dvec2& corner :
          {glm::dvec2(1, 1), glm::dvec2(-1, 1), glm::dvec2(-1, -1), glm::dvec2(1, -1)})
-      polygon.emplace_back(2.0 * most * corner, false);
+      polygon.emplace_back(most * corner, false);
     std::optional<Line> nearest;
     constexpr double nothing = 1e-7;
     while (!nearest || nearest->reach > nothing) {
@@ -279,13 +279,16 @@ void check(const std::vector<DockingContact>& contacts, const glm::dvec3& push,
 }  // namespace
 
 std::vector<Docking> dockings(const std::vector<DockingContact>& contacts, const glm::dvec3& push,
-                              const std::vector<glm::dvec3>& points_mm, const Progress& progress) {
+                              const std::vector<glm::dvec3>& points_mm, const Progress& progress,
+                              double at_most_deg) {
   check(contacts, push, points_mm);
+  if (!(at_most_deg >= 0.0 && at_most_deg <= most_docking_deg))
+    throw std::invalid_argument("angles are looked for up to 89 degrees at most");
   progress.at(0.0);
   const Contacts held(contacts, push);
   std::vector<Docking> made(points_mm.size());
   tbb::parallel_for(std::size_t{0}, points_mm.size(), [&](std::size_t i) {
-    if (!progress.stop.stop_requested()) made[i] = held.at(points_mm[i]);
+    if (!progress.stop.stop_requested()) made[i] = held.at(points_mm[i], at_most_deg);
   });
   progress.at(1.0);
   return made;

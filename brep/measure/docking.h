@@ -22,7 +22,7 @@ struct Docking {
   /// The push may deviate by less than this from its direction, whatever the side; 0 to `most_docking_deg`.
   double angle_deg = 0.0;
   glm::dvec3 at_mm{0.0};               ///< the point that is pushed
-  std::optional<Loosening> loosening;  ///< the motion that begins at that angle; none at `most_docking_deg`
+  std::optional<Loosening> loosening;  ///< the motion that begins at that angle; none at the largest angle
 };
 
 /// Pushes that deviate by more are not looked at.
@@ -45,9 +45,11 @@ constexpr double most_reaction = 10.0;
 /// pushes are found, not samples.
 Docking docking(const std::vector<DockingContact>& contacts, const glm::dvec3& push,
                 const std::vector<glm::dvec3>& points_mm, const Progress& progress = {});
-/// The same at each point alone, in their order.
+/// The same at each point alone, in their order. Larger angles than `at_most_deg` are reported as that angle, in
+/// less time. Throws std::invalid_argument if it is beyond 0..`most_docking_deg`, too.
 std::vector<Docking> dockings(const std::vector<DockingContact>& contacts, const glm::dvec3& push,
-                              const std::vector<glm::dvec3>& points_mm, const Progress& progress = {});
+                              const std::vector<glm::dvec3>& points_mm, const Progress& progress = {},
+                              double at_most_deg = most_docking_deg);
 /// The corners of the convex hull of points, as numbers in ascending order.
 std::vector<std::size_t> hull_corners(const std::vector<glm::dvec3>& points_mm);
 

@@ -130,10 +130,10 @@ VoxelAnswer answer_by_voxels(const Question& question, const Rocking& asked, con
 }
 
 double angle_of(const std::vector<brep::DockingContact>& contacts, const glm::dvec3& push,
-                const std::vector<glm::dvec3>& points) {
+                const std::vector<glm::dvec3>& points, double at_most_deg = brep::most_docking_deg) {
   if (contacts.empty()) return 0.0;
-  double least = brep::most_docking_deg;
-  for (const brep::Docking& one : brep::dockings(contacts, push, points))
+  double least = at_most_deg;
+  for (const brep::Docking& one : brep::dockings(contacts, push, points, {}, at_most_deg))
     least = std::min(least, one.angle_deg);
   return least;
 }
@@ -176,7 +176,7 @@ double allowed_deg(const std::vector<brep::DockingContact>& contacts, double ang
 /// beyond the largest gap bears no more.
 std::vector<double> trial_angles(const std::vector<brep::DockingContact>& contacts, const Rocking& asked,
                                  const glm::dvec3& push, const std::vector<glm::dvec3>& points,
-                                 const voxel::Progress& progress) {
+                                 double angle_deg, const voxel::Progress& progress) {
   using Patch = std::array<double, 3>;
   const auto patch_of = [](const brep::DockingContact& contact) {
     const glm::dvec3 at = glm::floor(contact.p_mm / patch_mm);
@@ -194,7 +194,8 @@ std::vector<double> trial_angles(const std::vector<brep::DockingContact>& contac
     std::vector<brep::DockingContact> left;
     for (const brep::DockingContact& contact : contacts)
       if (contact.gap_mm + errors.at(patch_of(contact)) <= asked.contact_mm) left.push_back(contact);
-    angles.push_back(angle_of(left, push, points));
+    // Fewer contacts hold less.
+    angles.push_back(angle_of(left, push, points, angle_deg));
   }
   std::sort(angles.begin(), angles.end());
   return angles;
@@ -364,7 +365,7 @@ Json measure(const Rocking& asked, const AnswerBench& bench) {
   for (const brep::Docking& one : worst) tried.push_back(one.at_mm);
   const double angle = worst.front().angle_deg;
   const std::vector<double> angles =
-      trial_angles(contacts, asked, question.push, tried, bench.progress("rocking"));
+      trial_angles(contacts, asked, question.push, tried, angle, bench.progress("rocking"));
   const brep::Docking best = best_of(contacts, question, bench);
   const glm::dvec3 voxel_mm = bench.universe.lattice().spacing_mm();
   json["angle_deg"] = angle;

@@ -87,6 +87,15 @@ TEST(Docking, TheWorstPointCountsAndInnerPointsAreNotExamined) {
   EXPECT_EQ(hull_corners(points), (std::vector<std::size_t>{1, 2, 3, 4}));
 }
 
+TEST(Docking, ALargestAngleShortensTheSearchAndChangesNoSmallerOne) {
+  for (const double at_most_deg : {0.0, 3.0, 14.0, 15.0, 40.0}) {
+    const double found =
+        dockings(flanged_plane(), {0, 0, -1}, {{0, 0, 20}}, {}, at_most_deg).front().angle_deg;
+    EXPECT_NEAR(found, std::min(at_most_deg, deg(std::atan(5.0 / 20.0))), 1e-6) << at_most_deg;
+  }
+  EXPECT_THROW(dockings(flanged_plane(), {0, 0, -1}, {{0, 0, 20}}, {}, 90.0), std::invalid_argument);
+}
+
 TEST(Docking, WithoutFlangesAPlaneSlides) {
   std::vector<DockingContact> contacts = flanged_plane();
   contacts.resize(3);
