@@ -138,8 +138,10 @@ double angle_of(const std::vector<brep::DockingContact>& contacts, const glm::dv
   return least;
 }
 
-/// How far two right answers may be apart, by changes of the mesh's contacts alone: a voxel wider and
-/// narrower, and normals turned at random as a tenth of a voxel turns a plane over the distance of smoothing.
+/// How far two right answers may be apart, by changes of the mesh's contacts alone: the largest effect of
+/// contacts a voxel wider and narrower, of pushed points a voxel nearer and farther, and of gaps a tenth of a
+/// voxel wider; and that of normals turned at random as a tenth of a voxel turns a plane over the distance of
+/// smoothing.
 double allowed_deg(const std::vector<brep::DockingContact>& contacts, double angle_deg, const Rocking& asked,
                    const glm::dvec3& push, const std::vector<glm::dvec3>& points, double voxel_mm) {
   glm::dvec3 middle(0.0);
@@ -157,6 +159,15 @@ double allowed_deg(const std::vector<brep::DockingContact>& contacts, double ang
       changed[i].p_mm = middle + factor * (contacts[i].p_mm - middle);
     allowed = std::max(allowed, std::abs(angle_of(changed, push, points) - angle_deg));
   }
+  for (const double along_mm : {-voxel_mm, voxel_mm}) {
+    std::vector<glm::dvec3> moved = points;
+    for (glm::dvec3& p : moved) p += along_mm * push;
+    allowed = std::max(allowed, std::abs(angle_of(contacts, push, moved) - angle_deg));
+  }
+  changed.clear();
+  for (const brep::DockingContact& one : contacts)
+    if (one.gap_mm <= asked.contact_mm - 0.1 * voxel_mm) changed.push_back(one);
+  allowed = std::max(allowed, std::abs(angle_of(changed, push, points) - angle_deg));
   const double tilt = 0.1 * voxel_mm / std::max(smooth_mm, 2.0 * voxel_mm);
   double most = 0.0;
   for (int draw = 0; draw < 10; ++draw) {
