@@ -5,7 +5,9 @@
 // 3 The triangles may still cut off sharp edges. At an outline, everything behind a cut-off edge would be
 //   lost, so columns just beside an outline search for the object itself at the outline's depths.
 // 4 A block has one value if all its columns begin in front of the block, or all behind it. In the other
-//   blocks 5^3 points of each voxel are counted: an odd number, so that no share is exactly a half.
+//   blocks 5^3 points of each voxel are counted: an odd number, so that no share is exactly a half. Whether a
+//   voxel belongs to the shadow is decided by its centre, one of these points, so that a tip or a cleft
+//   thinner than a voxel is not lost behind the object's voxels.
 #include "voxel/filter/shadow.h"
 
 #include <algorithm>
@@ -271,12 +273,16 @@ class ShadowShares {
     int share = -points_a_voxel;
     for (const glm::dvec3& point : points_) {
       const glm::dvec3 at = centre + point;
-      if (at.z >= depths_.at(glm::dvec2(at)) && at.z <= end_mm_) share += 2;
+      if (holds(at)) share += 2;
     }
+    // The centre decides, as it does of the object's voxels: what is thinner than a voxel has a share below a half.
+    if (holds(centre) != (share > 0)) share = -share;
     return static_cast<std::int16_t>(share);
   }
 
  private:
+  bool holds(const glm::dvec3& at) const { return at.z >= depths_.at(glm::dvec2(at)) && at.z <= end_mm_; }
+
   const FirstDepths& depths_;
   double end_mm_;
   glm::dvec3 origin_{0.0};

@@ -32,7 +32,8 @@ struct Shadow {
 /// meets a surface through those crossings (SurfaceCrossings). Beside an outline, where that surface cuts
 /// edges off, it begins at the solid itself. A voxel's share is counted at 5^3 points in the voxel, each in
 /// the nearest column. So the shadow's side walls deviate at random by up to 0.15 of a voxel edge, and on
-/// average by nothing. Walls thinner than half a voxel along the direction have no voxels.
+/// average by nothing. A voxel belongs to the shadow if its centre does, also behind a tip that is narrower
+/// than a voxel. Walls thinner than half a voxel along the direction have no voxels.
 ///
 /// Throws std::invalid_argument if the direction is not a unit vector, the end is not finite or the octree
 /// is empty; Stopped. Parallel; same bits on any thread count. Cost: the crossings, and for each voxel of

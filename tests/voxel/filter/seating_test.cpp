@@ -29,5 +29,16 @@ TEST(VoxelSeating, ABumpReachesIntoTheWayByWhatItSticksOut) {
   }
 }
 
+TEST(VoxelSeating, AChannelThinnerThanAVoxelLetsATipPass) {
+  const Universe universe = tests::spaced_universe(5);
+  const glm::dvec3 at_mm = universe.lattice().lps_mm(glm::dvec3(16.0));
+  const Expression speck(Sphere{at_mm, 0.3}), block(Box{at_mm - 5.3, at_mm + 5.3}),
+      channel(Cylinder{at_mm - glm::dvec3(0, 9, 0), at_mm + glm::dvec3(0, 9, 0), 0.45});
+  const Octree object = combine(universe, speck);
+  const Expression pierced = block - channel;
+  EXPECT_FALSE(seating(combine(universe, pierced), pierced, object, {{0, 1, 0}}).binding);
+  EXPECT_TRUE(seating(combine(universe, block), block, object, {{0, 1, 0}}).binding);
+}
+
 }  // namespace
 }  // namespace octotomy::voxel

@@ -80,6 +80,18 @@ TEST(VoxelShadow, ASlabAlongAnObliqueDirectionIsFilledDownToTheEnd) {
   EXPECT_NEAR(volume_mm3(universe, Expression(made.window)), truth_mm3, 0.006 * truth_mm3);
 }
 
+TEST(VoxelShadow, OfATipThinnerThanAVoxelIsTheColumnBehindIt) {
+  const Universe universe = tests::spaced_universe(5);
+  const glm::dvec3 at_mm = universe.lattice().lps_mm(glm::dvec3(16.0));
+  const Expression speck(Sphere{at_mm, 0.3});
+  const Octree octree = combine(universe, speck);
+  ASSERT_EQ(octree.voxel_count(), 1U);
+  const Shadow made = shadow(octree, speck, {{0, 1, 0}, at_mm.y + 10.25});
+  const Octree behind = combine(universe, Expression(made.window));
+  EXPECT_EQ(behind.voxel_count(), 11U);
+  for (int y = 0; y <= 10; ++y) EXPECT_TRUE(behind.contains({16, 16 + y, 16})) << y;
+}
+
 TEST(VoxelShadow, WhatItAddsIsKnownForManyDirectionsAtOnce) {
   const Universe universe = tests::spaced_universe(6);
   const Expression ball(Sphere{universe.lattice().lps_mm(glm::dvec3(31.3)), 12.0});

@@ -116,6 +116,14 @@ TEST(Procedure, PartsOfALeFortISitWhereItsLandmarksAre) {
   EXPECT_EQ(step("intermediate_splint").at("upper_direction"), (Json{0.0, 0.0, 33.0}));
   for (const char* part : {"intermediate_splint", "guide_left", "guide_right", "plate_left", "plate_right"}) {
     EXPECT_EQ(step(part + std::string("_prints")).at("object"), part);
+    const bool is_splint = part == std::string("intermediate_splint");
+    for (const char* side :
+         is_splint ? std::vector<const char*>{"_upper", "_lower"} : std::vector<const char*>{""}) {
+      const Json goes_on = step(part + std::string("_goes_on") + side),
+                 holds = step(part + std::string("_holds") + side);
+      EXPECT_EQ(holds.at("do"), "rocking") << part;
+      for (const char* key : {"object", "against"}) EXPECT_EQ(holds.at(key), goes_on.at(key)) << part << key;
+    }
     EXPECT_EQ(step(part + std::string("_file")).at("path"), part + std::string(".stl"));
   }
 }

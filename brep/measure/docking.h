@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+#include "brep/measure/docking_contacts.h"
+#include "brep/mesh/progress.h"
+
+namespace octotomy::brep {
+
+/// A small motion that contacts resist too little: a turn about an axis, or a slide.
+struct Loosening {
+  bool turns = false;
+  glm::dvec3 direction{0.0};  ///< unit, LPS: of the axis, right-handed, or of the slide
+  glm::dvec3 about_mm{0.0};   ///< of a turn: the axis's point nearest to the contacts' middle
+};
+
+/// How firmly contacts hold a part that is pushed at a point.
+struct Docking {
+  /// The push may deviate by less than this from its direction, whatever the side; 0 to `most_docking_deg`.
+  double angle_deg = 0.0;
+  glm::dvec3 at_mm{0.0};               ///< the point that is pushed
+  std::optional<Loosening> loosening;  ///< the motion that begins at that angle; none at the largest angle
+};
+
+/// Pushes that deviate by more are not looked at.
+constexpr double most_docking_deg = 89.0;
+/// The sum of all reactions over the push's component along its nominal direction. Beyond it a part wedges
+/// itself in by walls along the push, which the smallest error of their normals would undo. In motions:
+/// contacts resist too little where the pushed point moves by more than ten times what they would have to
+/// give.
+constexpr double most_reaction = 10.0;
+
+/// The docking angle at the worst of the pushed points. Contacts push along their normals, without friction.
+/// A push is held if reactions that are not negative and within `most_reaction` balance its force and its
+/// moment. The angle at a point is half the opening of the widest circular cone about `push` of which all
+/// pushes are held. For one push the points where it is held form a convex set, so that only corners of the
+/// points' convex hull are examined. `push` is a unit vector, LPS. Throws std::invalid_argument if it is not,
+/// or without contacts or points; Error (Geometry) if rounding hides the answer; Stopped. The same bits on
+/// any number of threads. Cost: for each corner of the hull about two linear programmes of seven rows for
+/// each side of the set of held pushes; parallel. Source: Mattheijer and others, docking robustness of
+/// patient specific surgical guides. Departures: reactions are limited, and all sides of the set of held
+/// pushes are found, not samples.
+Docking docking(const std::vector<DockingContact>& contacts, const glm::dvec3& push,
+                const std::vector<glm::dvec3>& points_mm, const Progress& progress = {});
+/// The same at each point alone, in their order. Larger angles than `at_most_deg` are reported as that angle, in
+/// less time. Throws std::invalid_argument if it is beyond 0..`most_docking_deg`, too.
+std::vector<Docking> dockings(const std::vector<DockingContact>& contacts, const glm::dvec3& push,
+                              const std::vector<glm::dvec3>& points_mm, const Progress& progress = {},
+                              double at_most_deg = most_docking_deg);
+/// The corners of the convex hull of points, as numbers in ascending order.
+std::vector<std::size_t> hull_corners(const std::vector<glm::dvec3>& points_mm);
+
+}  // namespace octotomy::brep

@@ -1,0 +1,448 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Whether a part that is pushed onto its bone can rock: the docking angle, by which the push may deviate at
+// the worst place before the part begins to turn or to slide. The room's README defines it.
+//
+// 1 Each kernel finds the places where bone bears the part, the places that may be pushed, and the angle.
+// 2 The mesh's angle is the answer. The voxels' must agree within what a change of the mesh's own contacts by
+//   the resolution of voxels does to it.
+// 3 Trials lose contacts by random errors of scan and printer. They give the interval.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "brep/measure/docking.h"
+#include "planner/operation/measure/digitised.h"
+#include "planner/operation/measure/result_json.h"
+#include "planner/operation/part/insertion.h"
+#include "planner/operation/table/number_format.h"
+#include "planner/operation/table/operation.h"
+#include "verify/phantom/chance.h"
+#include "voxel/filter/docking.h"
+#include "voxel/space/rounded.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Rocking {
+  ObjectName part;
+  std::vector<ObjectName> against;
+  Insertion insertion;
+  std::optional<glm::dvec3> push;
+  std::vector<Mark> at;
+  double radius_mm = 5.0;
+  double contact_mm = 0.4;
+  double scan_mm = 0.2, printer_mm = 0.16;
+  int trials = 200;
+  int seed = 1;
+};
+
+/// Neighbouring contacts of the mesh, and pushed points, lie about this far apart.
+constexpr double contact_spacing_mm = 1.0;
+/// Normals are those of the bone's surface over this distance.
+constexpr double smooth_mm = 2.0;
+/// Normals of triangles are off by about a degree, which holds like friction of that angle: less counts as
+/// none.
+constexpr double nothing_deg = 1.0;
+/// Errors of scan and printer are alike within patches of this edge.
+constexpr double patch_mm = 4.0;
+/// Walls that face a push by less than this cosine, six degrees, lie along it.
+constexpr double least_facing = 0.1;
+/// So many of the worst points are followed through trials.
+constexpr std::size_t tried_points = 4;
+
+void check(const Rocking& asked, const FieldLocation& place) {
+  check(asked.insertion, place);
+  for (const ObjectName& object : asked.against)
+    if (object.name == asked.part.name)
+      place.at("against").refuse("names the part '" + asked.part.name +
+                                 "' itself: name the bone or the teeth on which it sits");
+}
+
+/// What both kernels are asked.
+struct Question {
+  const Object& part;
+  std::vector<const Object*> against;
+  glm::dvec3 push{0.0};
+  std::vector<glm::dvec3> at_mm;  ///< the points about which the part is pushed
+};
+
+/// The points of a surface within the radius of a line along the push through a point, and typed points.
+std::vector<glm::dvec3> pushed_points(const std::vector<glm::dvec3>& surface, const Rocking& asked,
+                                      const Question& question) {
+  std::vector<glm::dvec3> points;
+  for (const glm::dvec3& p : surface)
+    for (const glm::dvec3& at : question.at_mm)
+      if (glm::length(glm::cross(p - at, question.push)) <= asked.radius_mm) {
+        points.push_back(p);
+        break;
+      }
+  // Typed points that no surface near them faces are typing errors.
+  if (points.empty() && asked.radius_mm > 0.0) return points;
+  if (!asked.at.empty()) points.insert(points.end(), question.at_mm.begin(), question.at_mm.end());
+  return points;
+}
+
+std::string in_words(const glm::dvec3& direction) {
+  const auto two = [](double value) { return plain(std::round(100.0 * value) / 100.0 + 0.0); };
+  return "(" + two(direction.x) + ", " + two(direction.y) + ", " + two(direction.z) + ")";
+}
+std::string names_of(const Question& question) {
+  std::string names;
+  for (const Object* object : question.against) names += (names.empty() ? "'" : ", '") + object->id + "'";
+  return names;
+}
+
+std::vector<brep::DockingContact> mesh_contacts(const Question& question, const Rocking& asked,
+                                                const AnswerBench& bench) {
+  std::vector<brep::Solid> objects;
+  for (const Object* object : question.against) objects.push_back(*object->mesh.within);
+  return brep::docking_contacts(*question.part.mesh.within, objects,
+                                {asked.contact_mm, contact_spacing_mm, smooth_mm, {bench.stop, {}}});
+}
+
+/// The voxel kernel's answer.
+struct VoxelAnswer {
+  std::size_t contacts = 0;
+  std::optional<voxel::Docking> worst;
+};
+
+VoxelAnswer answer_by_voxels(const Question& question, const Rocking& asked, const AnswerBench& bench) {
+  const voxel::Expression world(voxel::bounds(bench.universe.lattice()));
+  const auto placed = [&](const Object& object) { return *object.voxel.symbol & world; };
+  const voxel::Expression part_solid = placed(question.part);
+  const voxel::PlacedSolid part{question.part.voxel.octree, part_solid};
+  std::vector<voxel::Expression> solids;
+  for (const Object* object : question.against) solids.push_back(placed(*object));
+  std::vector<voxel::PlacedSolid> objects;
+  for (std::size_t i = 0; i < solids.size(); ++i)
+    objects.push_back({question.against[i]->voxel.octree, solids[i]});
+  const std::vector<voxel::DockingContact> contacts =
+      voxel::docking_contacts(part, objects, {asked.contact_mm, smooth_mm, {bench.stop, {}}});
+  const std::vector<glm::dvec3> points =
+      pushed_points(voxel::pushed_surface(part, question.push), asked, question);
+  VoxelAnswer made{contacts.size(), {}};
+  if (!contacts.empty() && !points.empty())
+    made.worst = voxel::docking(contacts, question.push, points, {bench.stop, {}});
+  return made;
+}
+
+double angle_of(const std::vector<brep::DockingContact>& contacts, const glm::dvec3& push,
+                const std::vector<glm::dvec3>& points, double at_most_deg = brep::most_docking_deg) {
+  if (contacts.empty()) return 0.0;
+  double least = at_most_deg;
+  for (const brep::Docking& one : brep::dockings(contacts, push, points, {}, at_most_deg))
+    least = std::min(least, one.angle_deg);
+  return least;
+}
+
+/// How far two right answers may be apart, by changes of the mesh's contacts alone: the largest effect of
+/// contacts a voxel wider and narrower, of pushed points a voxel nearer and farther, and of gaps a tenth of a
+/// voxel wider; and that of normals turned at random as a tenth of a voxel turns a plane over the distance of
+/// smoothing.
+double allowed_deg(const std::vector<brep::DockingContact>& contacts, double angle_deg, const Rocking& asked,
+                   const glm::dvec3& push, const std::vector<glm::dvec3>& points, double voxel_mm) {
+  glm::dvec3 middle(0.0);
+  for (const brep::DockingContact& one : contacts) middle += one.p_mm / static_cast<double>(contacts.size());
+  double squares = 0.0;
+  for (const brep::DockingContact& one : contacts) {
+    const glm::dvec3 arm = one.p_mm - middle;
+    squares += glm::dot(arm, arm) / static_cast<double>(contacts.size());
+  }
+  const double share = std::min(0.9, (voxel_mm + contact_spacing_mm) / std::max(std::sqrt(squares), 1e-9));
+  double allowed = nothing_deg;
+  std::vector<brep::DockingContact> changed = contacts;
+  for (const double factor : {1.0 - share, 1.0 + share}) {
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+      changed[i].p_mm = middle + factor * (contacts[i].p_mm - middle);
+    allowed = std::max(allowed, std::abs(angle_of(changed, push, points) - angle_deg));
+  }
+  for (const double along_mm : {-voxel_mm, voxel_mm}) {
+    std::vector<glm::dvec3> moved = points;
+    for (glm::dvec3& p : moved) p += along_mm * push;
+    allowed = std::max(allowed, std::abs(angle_of(contacts, push, moved) - angle_deg));
+  }
+  changed.clear();
+  for (const brep::DockingContact& one : contacts)
+    if (one.gap_mm <= asked.contact_mm - 0.1 * voxel_mm) changed.push_back(one);
+  allowed = std::max(allowed, std::abs(angle_of(changed, push, points) - angle_deg));
+  const double tilt = 0.1 * voxel_mm / std::max(smooth_mm, 2.0 * voxel_mm);
+  double most = 0.0;
+  for (int draw = 0; draw < 10; ++draw) {
+    verify::Chance chance(static_cast<std::uint64_t>(asked.seed) +
+                          1000003ULL * static_cast<std::uint64_t>(draw + 1));
+    changed = contacts;
+    for (brep::DockingContact& one : changed) {
+      const double x = chance.normal(), y = chance.normal();
+      one.normal = glm::normalize(one.normal + tilt * glm::dvec3(x, y, chance.normal()));
+    }
+    most = std::max(most, std::abs(angle_of(changed, push, points) - angle_deg));
+  }
+  return allowed + most;
+}
+
+/// The angles of all trials, ascending. In a trial the errors of patches open and close gaps; what is opened
+/// beyond the largest gap bears no more.
+std::vector<double> trial_angles(const std::vector<brep::DockingContact>& contacts, const Rocking& asked,
+                                 const glm::dvec3& push, const std::vector<glm::dvec3>& points,
+                                 double angle_deg, const voxel::Progress& progress) {
+  using Patch = std::array<double, 3>;
+  const auto patch_of = [](const brep::DockingContact& contact) {
+    const glm::dvec3 at = glm::floor(contact.p_mm / patch_mm);
+    return Patch{at.x, at.y, at.z};
+  };
+  std::map<Patch, double> errors;
+  for (const brep::DockingContact& contact : contacts) errors[patch_of(contact)] = 0.0;
+  const double deviation_mm = std::hypot(asked.scan_mm, asked.printer_mm);
+  std::vector<double> angles;
+  for (int trial = 0; trial < asked.trials; ++trial) {
+    progress.at(1.0 * trial / asked.trials);
+    verify::Chance chance(1000003ULL * static_cast<std::uint64_t>(asked.seed) +
+                          static_cast<std::uint64_t>(trial));
+    for (auto& [patch, error_mm] : errors) error_mm = deviation_mm * chance.normal();
+    std::vector<brep::DockingContact> left;
+    for (const brep::DockingContact& contact : contacts)
+      if (contact.gap_mm + errors.at(patch_of(contact)) <= asked.contact_mm) left.push_back(contact);
+    // Fewer contacts hold less.
+    angles.push_back(angle_of(left, push, points, angle_deg));
+  }
+  std::sort(angles.begin(), angles.end());
+  return angles;
+}
+
+/// A value that a share of sorted ones does not exceed.
+double percentile(const std::vector<double>& sorted, double share) {
+  const double at = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(std::floor(at));
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
+std::string motion_in_words(const brep::Loosening& loosening) {
+  return loosening.turns ? "turns it about the axis " + in_words(loosening.direction) + " through " +
+                               voxel::rounded(loosening.about_mm) + " mm"
+                         : "slides it along " + in_words(loosening.direction);
+}
+
+Json json_of(const brep::Loosening& loosening) {
+  Json json{{"motion", loosening.turns ? "turn" : "slide"}, {"direction", to_json(loosening.direction)}};
+  json["about_mm"] = loosening.turns ? to_json(loosening.about_mm) : Json(nullptr);
+  return json;
+}
+
+Json empty_answer(const Rocking& asked, const Question& question) {
+  Json on = Json::array();
+  for (const Object* object : question.against) on.push_back(object->id);
+  return {{"object", question.part.id},
+          {"on", std::move(on)},
+          {"direction", to_json(question.push)},
+          {"verdict", nullptr},
+          {"angle_deg", nullptr},
+          {"low_deg", nullptr},
+          {"high_deg", nullptr},
+          {"share_of_ideal", nullptr},
+          {"voxel_angle_deg", nullptr},
+          {"allowed_deg", nullptr},
+          {"at_mm", nullptr},
+          {"voxel_at_mm", nullptr},
+          {"gives_way", nullptr},
+          {"best_deg", nullptr},
+          {"best_at_mm", nullptr},
+          {"contacts", 0},
+          {"voxel_contacts", 0},
+          {"pushed_points", 0},
+          {"contact_mm", asked.contact_mm},
+          {"errors",
+           {{"scan_mm", asked.scan_mm},
+            {"printer_mm", asked.printer_mm},
+            {"trials", asked.trials},
+            {"seed", asked.seed}}},
+          {"findings", Json::array()}};
+}
+
+Json failed(Json json, const std::string& finding) {
+  json["verdict"] = "FAIL";
+  json["findings"].push_back(finding);
+  return json;
+}
+
+/// The points with the smallest angles, worst first.
+std::vector<brep::Docking> worst_of(const std::vector<brep::DockingContact>& contacts, const glm::dvec3& push,
+                                    const std::vector<glm::dvec3>& points, const AnswerBench& bench) {
+  std::vector<glm::dvec3> corners;
+  for (const std::size_t i : brep::hull_corners(points)) corners.push_back(points[i]);
+  std::vector<brep::Docking> all = brep::dockings(contacts, push, corners, {bench.stop, {}});
+  std::stable_sort(all.begin(), all.end(),
+                   [](const brep::Docking& a, const brep::Docking& b) { return a.angle_deg < b.angle_deg; });
+  if (all.size() > tried_points) all.resize(tried_points);
+  return all;
+}
+
+/// The place of a surface where a push may deviate most, of places 4 mm apart.
+brep::Docking best_of(const std::vector<brep::DockingContact>& contacts, const Question& question,
+                      const AnswerBench& bench) {
+  std::vector<brep::Docking> all = brep::dockings(
+      contacts, question.push,
+      brep::pushed_surface(*question.part.mesh.within, question.push, 4.0 * contact_spacing_mm),
+      {bench.stop, {}});
+  return *std::max_element(all.begin(), all.end(), [](const brep::Docking& a, const brep::Docking& b) {
+    return a.angle_deg < b.angle_deg;
+  });
+}
+
+void judge(Json& json, const Question& question, const brep::Docking& worst) {
+  const double angle = worst.angle_deg, low = json["low_deg"];
+  const std::string pushed = "a push along " + in_words(question.push) + " at " +
+                             voxel::rounded(worst.at_mm) + " mm",
+                    best = json["best_deg"].get<double>() > std::max(nothing_deg, angle)
+                               ? "; push near " +
+                                     voxel::rounded(glm::dvec3(json["best_at_mm"][0], json["best_at_mm"][1],
+                                                               json["best_at_mm"][2])) +
+                                     " mm, where it may deviate by " + three_figures(json["best_deg"]) +
+                                     " degrees"
+                               : "; let the part reach farther round the bone";
+  json["verdict"] = "WARN";
+  if (angle < nothing_deg)
+    json["findings"].push_back("'" + question.part.id + "' rocks on " + names_of(question) + ": " + pushed +
+                               " " + (worst.loosening ? motion_in_words(*worst.loosening) : "moves it") +
+                               best);
+  else if (low < nothing_deg)
+    json["findings"].push_back("'" + question.part.id + "' may rock on " + names_of(question) +
+                               " with the errors of scan and printer: in one of 200 trials " + pushed +
+                               " may not deviate" + best);
+  else
+    json["verdict"] = "PASS";
+  const double by_voxels = json["voxel_angle_deg"];
+  if (std::abs(angle - by_voxels) <= json["allowed_deg"].get<double>()) return;
+  json["verdict"] = "WARN";
+  json["findings"].push_back("the kernels disagree: the push may deviate by " + three_figures(angle) +
+                             " degrees in meshes, by " + three_figures(by_voxels) + " in voxels");
+}
+
+std::optional<std::string> what_is_missing(const Object& object) {
+  if (object.voxel.octree.is_empty() || !object.voxel.symbol)
+    return why_no_voxels(object) + ": nothing can be said of its contacts";
+  if (!object.mesh.within || object.mesh.within->empty())
+    return "'" + object.id +
+           "' has no mesh, so one kernel alone would answer: make it by steps that both kernels have";
+  return std::nullopt;
+}
+
+Json measure(const Rocking& asked, const AnswerBench& bench) {
+  const Stopwatch watch(bench.timings, "rocking");
+  Question question{bench.objects.at(asked.part.name), {}, {}, {}};
+  question.push =
+      asked.push ? glm::normalize(*asked.push) : direction_of(asked.insertion, bench.objects.lps_from_head);
+  for (const ObjectName& name : asked.against) question.against.push_back(&bench.objects.at(name.name));
+  Json json = empty_answer(asked, question);
+  if (const auto missing = what_is_missing(question.part)) json["findings"].push_back(*missing);
+  for (const Object* object : question.against)
+    if (const auto missing = what_is_missing(*object)) json["findings"].push_back(*missing);
+  if (!json["findings"].empty()) return json;
+
+  const std::vector<brep::DockingContact> contacts = mesh_contacts(question, asked, bench);
+  json["contacts"] = contacts.size();
+  if (contacts.empty())
+    return failed(
+        json, "'" + question.part.id + "' touches " + names_of(question) + " nowhere within " +
+                  three_figures(asked.contact_mm) +
+                  " mm: raise 'contact_mm' above the part's clearance, or name the bone on which it sits");
+  if (std::all_of(contacts.begin(), contacts.end(), [&](const brep::DockingContact& contact) {
+        return glm::dot(contact.normal, question.push) > -least_facing;
+      }))
+    return failed(json, "the push along " + in_words(question.push) + " presses '" + question.part.id +
+                            "' onto nothing of " + names_of(question) +
+                            ": state the direction in which the part is put on");
+  glm::dvec3 middle(0.0);
+  for (const brep::DockingContact& contact : contacts)
+    middle += contact.p_mm / static_cast<double>(contacts.size());
+  for (const Mark& mark : asked.at) question.at_mm.push_back(mark_mm(mark, bench.objects));
+  if (question.at_mm.empty()) question.at_mm.push_back(middle);
+  const std::vector<glm::dvec3> points = pushed_points(
+      brep::pushed_surface(*question.part.mesh.within, question.push, contact_spacing_mm), asked, question);
+  json["pushed_points"] = points.size();
+  if (points.empty())
+    return failed(json, "no surface of '" + question.part.id + "' faces the push within " +
+                            three_figures(asked.radius_mm) + " mm of the line through " +
+                            voxel::rounded(question.at_mm.front()) +
+                            " mm: name points in 'at', or raise 'radius_mm'");
+
+  const std::vector<brep::Docking> worst = worst_of(contacts, question.push, points, bench);
+  const VoxelAnswer by_voxels = answer_by_voxels(question, asked, bench);
+  json["voxel_contacts"] = by_voxels.contacts;
+  std::vector<glm::dvec3> tried;
+  for (const brep::Docking& one : worst) tried.push_back(one.at_mm);
+  const double angle = worst.front().angle_deg;
+  const std::vector<double> angles =
+      trial_angles(contacts, asked, question.push, tried, angle, bench.progress("rocking"));
+  const brep::Docking best = best_of(contacts, question, bench);
+  const glm::dvec3 voxel_mm = bench.universe.lattice().spacing_mm();
+  json["angle_deg"] = angle;
+  json["low_deg"] = std::min(angle, percentile(angles, 0.005));
+  json["high_deg"] = std::max(angle, percentile(angles, 0.995));
+  if (angle >= nothing_deg) json["share_of_ideal"] = percentile(angles, 0.5) / angle;
+  json["at_mm"] = to_json(worst.front().at_mm);
+  if (worst.front().loosening) json["gives_way"] = json_of(*worst.front().loosening);
+  json["best_deg"] = best.angle_deg;
+  json["best_at_mm"] = to_json(best.at_mm);
+  json["voxel_angle_deg"] = by_voxels.worst ? by_voxels.worst->angle_deg : 0.0;
+  if (by_voxels.worst) json["voxel_at_mm"] = to_json(by_voxels.worst->at_mm);
+  json["allowed_deg"] = allowed_deg(contacts, angle, asked, question.push, tried,
+                                    std::max({voxel_mm.x, voxel_mm.y, voxel_mm.z}));
+  judge(json, question, worst.front());
+  return json;
+}
+
+}  // namespace
+
+Operation rocking_operation() {
+  return Describe<Rocking>(
+             "rocking",
+             "Tests whether a part that is pushed onto its bone can rock: by how much the push may "
+             "deviate before the part turns or slides.",
+             Makes::Measurement)
+      .takes(field("object", &Rocking::part, "The part at its place.").required())
+      .takes(field("against", &Rocking::against, "The bone or teeth on which it sits.").required().from(1))
+      .takes(insertion_direction(&Rocking::insertion))
+      .takes(insertion_view(&Rocking::insertion))
+      .takes(field("push", &Rocking::push,
+                   "The direction in which the part is held by a finger, LPS; default: that in which it is "
+                   "put on.")
+                 .direction())
+      .takes(field("at", &Rocking::at,
+                   "Points where the part is pushed; default: over the middle of its contacts."))
+      .takes(
+          field(
+              "radius_mm", &Rocking::radius_mm,
+              "The outer surface that faces the push within this distance of the lines of push through these "
+              "points may be pushed, too: half a fingertip.")
+              .from(0.0)
+              .to(500.0))
+      .takes(
+          field(
+              "contact_mm", &Rocking::contact_mm,
+              "Bone within this distance of the part bears it: the part's clearance and what its fit lacks.")
+              .greater_than(0.0)
+              .to(5.0))
+      .takes(
+          field("scan_mm", &Rocking::scan_mm, "Standard deviation of the bone's surface from place to place.")
+              .from(0.0)
+              .to(5.0))
+      .takes(field("printer_mm", &Rocking::printer_mm,
+                   "Standard deviation of the printed surface; 0.16 is stated for resin.")
+                 .from(0.0)
+                 .to(5.0))
+      .takes(field("trials", &Rocking::trials, "Number of trials of these errors.").from(100).to(100000))
+      .takes(field("seed", &Rocking::seed, "Seed of the random errors: the same seed gives the same numbers.")
+                 .from(0)
+                 .to(1e9))
+      .example(R"({"id": "holds", "do": "rocking", "object": "advanced", "against": ["rest"],
+        "direction": [0, 1, 0]})")
+      .of_head()
+      .check(check)
+      .measure(measure);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// 1 Find where edges between centres cross an object's surface, near the part.
+// 2 The directions about a crossing that lead out of the object add up to a first normal.
+// 3 A crossing is a contact if a step along that normal, no longer than the largest gap, ends in the part.
+// 4 A plane through the contacts nearby on the same face gives the normal.
+#include "voxel/filter/docking_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <stdexcept>
+#include <tbb/parallel_for.h>
+
+#include "voxel/measure/distance_map.h"
+#include "voxel/solid/combine.h"
+#include "voxel/solid/membership.h"
+#include "voxel/space/error.h"
+#include "voxel/tree/voxel_boundary.h"
+
+namespace octotomy::voxel {
+namespace {
+
+/// Points of a unit sphere, evenly spread along a spiral.
+std::vector<glm::dvec3> spread_directions(int count) {
+  std::vector<glm::dvec3> found;
+  const double golden = glm::pi<double>() * (3.0 - std::sqrt(5.0));
+  for (int i = 0; i < count; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / count, radius = std::sqrt(1.0 - z * z);
+    found.emplace_back(radius * std::cos(golden * i), radius * std::sin(golden * i), z);
+  }
+  return found;
+}
+
+/// Crossings of a solid's surface with edges between voxels' centres, and first normals.
+class Crossings {
+ public:
+  /// Of the voxels within a box of LPS.
+  Crossings(const PlacedSolid& of, const Box& near)
+      : lattice_(of.octree.universe().lattice()), contains_(of.octree.universe(), of.solid) {
+    const glm::dvec3 spacing_mm = lattice_.spacing_mm();
+    reach_mm_ = std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+    const Octree part = combine(of.octree.universe(), Expression(of.octree) & Expression(near));
+    const int side = of.octree.universe().side();
+    for (const VoxelFace& face : voxel_boundary(part)) {
+      glm::ivec3 beyond = face.voxel;
+      beyond[face.axis] += face.side;
+      // A face of the box, or of the universe, is none of the surface.
+      if (beyond[face.axis] < 0 || beyond[face.axis] >= side || of.octree.contains(beyond)) continue;
+      faces_.push_back(face);
+    }
+  }
+
+  std::size_t size() const { return faces_.size(); }
+
+  glm::dvec3 at(std::size_t i) const {
+    const VoxelFace& face = faces_[i];
+    glm::dvec3 step(0.0);
+    step[face.axis] = face.side;
+    double in = 0.0, out = 1.0;
+    for (int halving = 0; halving < 8; ++halving) {
+      const double middle = 0.5 * (in + out);
+      (contains_(lattice_.lps_mm(glm::dvec3(face.voxel) + middle * step)) ? in : out) = middle;
+    }
+    return lattice_.lps_mm(glm::dvec3(face.voxel) + 0.5 * (in + out) * step);
+  }
+
+  /// The outward normal to some degrees; zero where all around is alike.
+  glm::dvec3 first_normal(const glm::dvec3& p_mm) const {
+    static const std::vector<glm::dvec3> directions = spread_directions(120);
+    glm::dvec3 sum(0.0);
+    for (const glm::dvec3& way : directions) sum += contains_(p_mm + reach_mm_ * way) ? -way : way;
+    const double length = glm::length(sum);
+    return length > 1e-6 ? sum / length : glm::dvec3(0.0);
+  }
+
+ private:
+  Lattice lattice_;
+  Membership contains_;
+  double reach_mm_ = 1.0;
+  std::vector<VoxelFace> faces_;
+};
+
+/// The normal of the plane that lies best among points near `middle`, turned as little as the points allow
+/// from a first normal: where they lie on a line, about it only.
+glm::dvec3 plane_normal(const std::vector<glm::dvec3>& points, const glm::dvec3& first) {
+  glm::dvec3 middle(0.0);
+  for (const glm::dvec3& p : points) middle += p / static_cast<double>(points.size());
+  glm::dmat3 spread(0.0);
+  for (const glm::dvec3& p : points) spread += glm::outerProduct(p - middle, p - middle);
+  const double size = spread[0][0] + spread[1][1] + spread[2][2];
+  if (points.size() < 4 || !(size > 0.0)) return first;
+  constexpr double share = 1e-3;
+  const glm::dmat3 inverse = glm::inverse(spread + share * size * glm::dmat3(1.0));
+  glm::dvec3 normal = first;
+  for (int step = 0; step < 6; ++step) normal = glm::normalize(inverse * normal);
+  return glm::dot(normal, first) < 0.0 ? -normal : normal;
+}
+
+void fit_planes(std::vector<DockingContact>& contacts, double within_mm) {
+  constexpr double least_alike = 0.8;
+  std::vector<glm::dvec3> normals(contacts.size());
+  tbb::parallel_for(std::size_t{0}, contacts.size(), [&](std::size_t i) {
+    std::vector<glm::dvec3> nearby;
+    for (const DockingContact& other : contacts)
+      if (glm::distance(other.p_mm, contacts[i].p_mm) <= within_mm &&
+          glm::dot(other.normal, contacts[i].normal) > least_alike)
+        nearby.push_back(other.p_mm);
+    normals[i] = plane_normal(nearby, contacts[i].normal);
+  });
+  for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i].normal = normals[i];
+}
+
+/// The box about a solid's voxels, LPS. Precondition: not empty.
+Box box_about(const Octree& octree, double margin_mm) {
+  const VoxelRange range = range_of(octree);
+  const Lattice lattice = octree.universe().lattice();
+  Box box{glm::dvec3(1e300), glm::dvec3(-1e300)};
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 at(corner & 1 ? range.high.x : range.low.x, corner & 2 ? range.high.y : range.low.y,
+                        corner & 4 ? range.high.z : range.low.z);
+    const glm::dvec3 p = lattice.lps_mm(at);
+    box.low_mm = glm::min(box.low_mm, p);
+    box.high_mm = glm::max(box.high_mm, p);
+  }
+  box.low_mm -= margin_mm;
+  box.high_mm += margin_mm;
+  return box;
+}
+
+}  // namespace
+
+std::vector<DockingContact> docking_contacts(const PlacedSolid& part, const std::vector<PlacedSolid>& objects,
+                                             const DockingContactsOptions& options) {
+  if (!(options.within_mm > 0.0)) throw InvalidInput("the largest gap of a contact must be above 0 mm");
+  if (part.octree.is_empty()) return {};
+  const glm::dvec3 spacing_mm = part.octree.universe().lattice().spacing_mm();
+  const double edge_mm = std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+  const Membership in_part(part.octree.universe(), part.solid);
+  const Box near = box_about(part.octree, options.within_mm + 2.0 * edge_mm);
+  std::vector<DockingContact> contacts;
+  for (const PlacedSolid& object : objects) {
+    options.progress.at(0.5);
+    const Crossings crossings(object, near);
+    std::vector<DockingContact> found(crossings.size());
+    tbb::parallel_for(std::size_t{0}, crossings.size(), [&](std::size_t i) {
+      const glm::dvec3 p = crossings.at(i), normal = crossings.first_normal(p);
+      constexpr int steps = 8;
+      for (int step = 1; step <= steps; ++step)
+        if (in_part(p + options.within_mm * step / steps * normal)) {
+          found[i] = {p, normal};
+          break;
+        }
+    });
+    for (const DockingContact& one : found)
+      if (one.normal != glm::dvec3(0.0)) contacts.push_back(one);
+  }
+  fit_planes(contacts, std::max(options.smooth_mm, 2.0 * edge_mm));
+  options.progress.at(1.0);
+  return contacts;
+}
+
+std::vector<glm::dvec3> pushed_surface(const PlacedSolid& part, const glm::dvec3& push) {
+  if (part.octree.is_empty()) return {};
+  constexpr double least_facing = 0.5;
+  const Crossings crossings(
+      part, box_about(part.octree, glm::length(part.octree.universe().lattice().spacing_mm())));
+  std::vector<std::pair<bool, glm::dvec3>> found(crossings.size());
+  tbb::parallel_for(std::size_t{0}, crossings.size(), [&](std::size_t i) {
+    const glm::dvec3 p = crossings.at(i);
+    found[i] = {glm::dot(crossings.first_normal(p), push) <= -least_facing, p};
+  });
+  std::vector<glm::dvec3> points;
+  for (const auto& [is_pushed, p] : found)
+    if (is_pushed) points.push_back(p);
+  return points;
+}
+
+}  // namespace octotomy::voxel
