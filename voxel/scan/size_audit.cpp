@@ -13,8 +13,8 @@ namespace octotomy::voxel {
 namespace {
 
 // Lengths in mm. Scanners: the widest bore in use is 900 mm and reconstructs 820; a whole body is two metres
-// long. Pixels of CT: 1000 mm over 256 at the coarsest. Organs: an inner ear is reconstructed to 40 mm and
-// more, over 256 pixels and more; halved twice these are 64. The head of a newborn is 90 mm wide.
+// long. Pixels of CT: 1000 mm over 256 at the coarsest. Organs: an inner ear is reconstructed to at least 40
+// mm and 256 pixels a side; halved twice, 64 pixels remain. The head of a newborn is 90 mm wide.
 constexpr double widest_field_mm = 1000.0, longest_field_mm = 2500.0;
 constexpr double coarsest_ct_mm = 5.0, finest_pixel_mm = 0.05;
 constexpr double smallest_field_mm = 10.0, smallest_fine_field_mm = 36.0;
