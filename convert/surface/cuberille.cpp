@@ -225,7 +225,8 @@ class Cuberille {
     layer.faces.push_back({quad.points[0], quad.points[2], quad.points[3]});
   }
 
-  /// The marching cube's edge that the face crosses, in the cube of voxels about one of the face's corners.
+  /// Number (0..11) of the marching-cubes edge that passes through the face, in the cube of eight voxels
+  /// around `corner`.
   static int edge_at(const glm::ivec3& v, const glm::ivec3& corner, int axis) {
     const int b = axis == 0 ? 1 : 0;
     const int c = axis == 2 ? 1 : 2;

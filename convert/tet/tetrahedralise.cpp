@@ -430,9 +430,9 @@ std::optional<Tetrahedra> by_stuffing(const MesherInput& surface, double surface
   made.findings.push_back("isosurface stuffing made the elements; their nodes on the surface lie on the " +
                           std::string("given one, with cells of ") + rounded(cell_mm) + " mm: volume " +
                           switch_number(quality(made).volume_mm3) + " of " + switch_number(surface_mm3) +
-                          " mm3; 95 % of the given points are within " +
-                          rounded(apart_mm[apart_mm.size() * 95 / 100]) + " mm of it, all within " +
-                          rounded(apart_mm.back()) + " mm");
+                          " mm3; 95 % of the given surface's points are within " +
+                          rounded(apart_mm[apart_mm.size() * 95 / 100]) +
+                          " mm of the elements' surface, all within " + rounded(apart_mm.back()) + " mm");
   if (!options.finer.empty())
     made.findings.push_back("elements are not finer where requested: stuffing makes elements of one size");
   return made;
