@@ -194,7 +194,7 @@ void judge_by_witness(Certificate& certificate, const Evidence& evidence, const 
                   .difference = voxels_mm3,
                   .tolerance = 0.0,
                   .formula = "0: voxels at which the scan and the plan allow a kernel only one answer",
-                  .statement = "Voxels of % contradict the scan"},
+                  .statement = "Voxels with a total volume of % contradict the scan"},
                  most);
   add_comparison(certificate,
                  {.quantity = "stray surface",
@@ -202,7 +202,7 @@ void judge_by_witness(Certificate& certificate, const Evidence& evidence, const 
                   .difference = places.stray_mm2,
                   .tolerance = 0.0,
                   .formula = "0: a triangle must lie where the scan and the plan have a surface",
-                  .statement = "Triangles of % lie where the scan has no surface"},
+                  .statement = "Triangles with a total area of % lie where the scan has no surface"},
                  most);
 }
 
@@ -310,7 +310,7 @@ void judge_volume(Certificate& certificate, const Evidence& evidence) {
            .difference = certificate.symmetric_difference_mm3,
            .tolerance = certificate.symmetric_difference_tolerance_mm3,
            .formula = "layers of voxels that may differ, and three standard deviations of their number",
-           .statement = "Voxels of % are inside for one kernel only"});
+           .statement = "Voxels with a total volume of % are inside for one kernel only"});
   if (certificate.centroid_distance_mm && certificate.centroid_tolerance_mm)
     compare(certificate, evidence,
             {.quantity = "centroid",
@@ -383,7 +383,7 @@ void compare_repeated(Certificate& certificate, const brep::Triangles& mesh) {
                                .difference = area_mm2,
                                .tolerance = 0.0,
                                .formula = "0: no triangle may occur twice",
-                               .statement = "Triangles of % occur several times in the mesh"});
+                               .statement = "Triangles with a total area of % are repeated in the mesh"});
 }
 
 /// Compares amounts measured along lines with both answers. If the answers agree with each other and not with
@@ -435,11 +435,11 @@ void judge_emptiness(Certificate& certificate, const voxel::Octree& octree, cons
   if (octree.is_empty() == solid.empty()) return;
   lower(certificate, Verdict::Warn,
         octree.is_empty()
-            ? "No voxel holds the object, of which the mesh has " +
+            ? "The object has no voxel, but its mesh encloses " +
                   voxel::rounded(certificate.mesh.volume_mm3) +
-                  " mm3, so that no surfaces were compared: take smaller voxels."
-            : "The mesh is empty, and the voxels have " + voxel::rounded(certificate.voxel.volume_mm3) +
-                  " mm3, so that no surfaces were compared.");
+                  " mm3, so no surfaces were compared: take smaller voxels."
+            : "The mesh is empty, but the voxels hold " + voxel::rounded(certificate.voxel.volume_mm3) +
+                  " mm3, so no surfaces were compared.");
 }
 
 }  // namespace

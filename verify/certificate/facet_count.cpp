@@ -208,7 +208,7 @@ class Part {
   bool is_first_;
   std::size_t sides_;
   std::vector<glm::dvec3> points_;
-  /// by axis: a side's turns for k = 1 along this axis, and its weights
+  /// by axis: each side's phase in radians for k = 1, and its outward weight
   std::array<std::vector<double>, 3> side_, outward_;
   std::array<std::vector<Phases>, 3> power_;
   glm::ivec3 last_{0};

@@ -137,7 +137,7 @@ class Measuring {
   const glm::dvec3& point(std::uint32_t number) const { return triangles_.points_mm[number]; }
 
   /// The key of a lattice cell and of a direction's nearest axis with its sign. Precondition: the cell's
-  /// indices are below half a million.
+  /// indices are at least -2^19 and below 2^19.
   static std::uint64_t numbered(const glm::dvec3& cell, const glm::dvec3& along) {
     int direction = 0;
     for (int axis = 1; axis < 3; ++axis)
