@@ -32,10 +32,10 @@ struct MovedLandmark {
   glm::dmat4 moved_from_still{1.0};
 };
 
-/// The motions of landmarks with a plan's objects. A landmark moves with the piece whose bone is nearest to
-/// it. It does not move where other bone is nearer, or where no moved object is within 3 mm, which is about
-/// the error of landmarks placed by surgeons. A landmark on a cut moves with the piece. For pieces that are
-/// moved again, the last motion counts. Cost: some small Booleans per landmark and moved object.
+/// The motions of landmarks with a plan's objects. A landmark moves with a piece within 3 mm of it unless
+/// bone that stays is nearer; 3 mm is about the error of landmarks placed by surgeons. A landmark on a cut
+/// moves with the piece. Of several such pieces, or motions of one piece, the last counts. Cost: some small
+/// Booleans per landmark and moved object.
 std::vector<MovedLandmark> moved_landmarks(const Objects& objects, const std::vector<NamedPoint>& landmarks);
 
 }  // namespace octotomy::planner

@@ -235,7 +235,7 @@ std::vector<Field> stroke_fields() {
           .from(0.1)
           .to(100.0));
   fields.push_back(field("shape", &Stroke::shape, "The shape of the brush.").one_of({"ball", "slab"}));
-  fields.push_back(field("normal", &Stroke::normal, "The direction across a slab, LPS.").direction());
+  fields.push_back(field("normal", &Stroke::normal, "The slab's normal, LPS.").direction());
   fields.push_back(field("thickness_mm", &Stroke::thickness_mm,
                          "The thickness of a slab, half on either side of the points.")
                        .from(0.1)

@@ -207,8 +207,8 @@ void need_form_name(const Build& asked) {
       !convert::is_deck(asked.out) &&
       std::find(others.begin(), others.end(), voxel::extension_of(asked.out)) == others.end())
     return;
-  throw std::runtime_error(asked.out.string() + ": is the name of another kind of file: the form " +
-                           asked.as + " is written as .txt or under a name of your own, as ." + asked.as);
+  throw std::runtime_error(asked.out.string() + ": has the extension of another kind of file: for the form " +
+                           asked.as + " use .txt, or an extension of no known kind, such as ." + asked.as);
 }
 
 void check(const Build& asked, const FieldLocation& place) {

@@ -32,8 +32,9 @@ struct Shadow {
   Insertion insertion;
   double beyond_mm = 0.0;
   std::optional<double> tolerance_mm;
-  glm::dvec3 along{0.0, 1.0, 0.0};  ///< settled: unit, LPS
-  double end_mm = 0.0;              ///< settled: p . along of the end plane
+  glm::dvec3 along{0.0, 1.0, 0.0};  ///< set by settle(): unit, LPS
+  double end_mm = 0.0;              ///< set by settle(): position along `along` of the plane at which the
+                                    ///< shadow ends
 };
 
 void check(const Shadow& shadow, const FieldLocation& place) {

@@ -323,9 +323,7 @@ void bound(const Splint& splint, const BoundBench& bench, Object& made) {
 }  // namespace
 
 Operation splint_operation() {
-  return Describe<Splint>("splint",
-                          "Makes a splint between the teeth of two jaws that can be slid onto both.",
-                          Makes::Object)
+  return Describe<Splint>("splint", "Makes a splint that slides onto the teeth of both jaws.", Makes::Object)
       .takes(field("upper", &Splint::upper, "The upper jaw at its planned place.")
                  .required()
                  .positional("upper"))
@@ -365,7 +363,10 @@ Operation splint_operation() {
                    "The direction in which the splint moves onto the upper teeth, LPS. Default: the one of "
                    "least undercut within 20 degrees of the arch's normal.")
                  .direction())
-      .takes(field("lower_direction", &Splint::lower_direction, "The same onto the lower teeth.").direction())
+      .takes(field("lower_direction", &Splint::lower_direction,
+                   "The direction in which the splint moves onto the lower teeth, LPS. Default: as for the "
+                   "upper teeth.")
+                 .direction())
       .example(R"({"id": "wafer", "do": "splint", "upper": "advanced", "lower": "rest",
         "arch": [[-24, -52, -56], [0, -86, -56], [24, -52, -56]]})")
       .on_files("octotomy splint upper.stl lower.stl --arch -24,-52,-56 0,-86,-56 24,-52,-56 -o splint.stl")

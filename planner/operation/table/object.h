@@ -63,7 +63,8 @@ struct Shown {
   voxel::GreyOctree grey;
   double threshold = 0.0;
   std::string scan;                                  ///< name of the scan of `grey`
-  glm::dmat4 moved_from_still{1.0};                  ///< motion by all steps since, LPS to LPS
+  glm::dmat4 moved_from_still{1.0};                  ///< motion by all steps after the surface was made, LPS
+                                                     ///< to LPS
   std::shared_ptr<const voxel::Scene> samples = {};  ///< samples of the scan; none: only `grey` shows the
                                                      ///< surface
   double high = std::numeric_limits<double>::infinity();  ///< the window's upper bound
@@ -146,7 +147,7 @@ struct Object {
     bool is_whole = false;
   };
   std::optional<Image> image;
-  std::vector<CutWall> walls;  ///< walls cut by the masks with which it was made, if these have a mesh
+  std::vector<CutWall> walls;  ///< one wall for each mask that cut this object and has a mesh
 };
 
 /// The objects that steps have made so far, in order. References stay valid when objects are added.
