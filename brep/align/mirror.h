@@ -23,8 +23,8 @@ Mesh mirrored(const Mesh& mesh, const MirrorPlane& plane);
 Solid mirrored(const Solid& solid, const MirrorPlane& plane);
 
 struct MirrorFitOptions {
-  /// The plane near which the result lies, to about 20 degrees. None: tries the planes square to the
-  /// surface's three axes, and those about which most pairs of points are mirror images.
+  /// The plane near which the result lies, to about 20 degrees. None: tries the planes perpendicular to the
+  /// surface's three axes, and the planes about which the most pairs of points are mirror images.
   std::optional<MirrorPlane> start = std::nullopt;
   /// Share of the surface's area that has a counterpart on the other side, as in SurfaceFitOptions: the
   /// missing or crooked part of one side must be less than the rest. Without a start, half of this share is

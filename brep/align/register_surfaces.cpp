@@ -528,7 +528,7 @@ void tell_trust(SurfaceFit& fit) {
                               " mm, the surfaces' own noise " + short_text(trust.noise_mm) + " mm";
   if (trust.verdict == FitVerdict::Failed)
     fit.findings.push_back("FAIL registration: no position was found at which the surfaces match: " +
-                           figures + ": give --landmarks, or keep only what both surfaces show");
+                           figures + ": give --landmarks, or keep only the parts that both surfaces show");
   else
     fit.findings.push_back("WARN registration: the position is doubtful: " + figures +
                            ": look at the result, or give --landmarks");

@@ -402,7 +402,7 @@ LaidToothScan lay_tooth_scan(const Mesh& scan, const Solid& fixed, const ToothPo
   if (!matches(laid))
     refuse("only " + short_text(100.0 * laid.matched_share) + " % of the crowns of " + options.scan +
            " lie within " + short_text(match_mm(options)) + " mm of the teeth of " + options.fixed +
-           ": it is a scan of the other jaw or of another patient, or its points are at other places");
+           ": the scan shows the other jaw or another patient, or its points mark other places");
   bound_error(options, laid);
   return laid;
 }

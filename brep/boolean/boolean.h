@@ -40,8 +40,8 @@ BooleanResult boolean(const Solid& a, Operation operation, const Solid& b, const
 
 /// The Boolean of any number of solids: their union, their intersection, or the first minus all others. The
 /// residual is the largest of all steps; findings of all steps are listed. Throws std::invalid_argument if
-/// there are no operands, and as above. Cost: unions are computed in pairs, so that each triangle takes part
-/// in log n of them.
+/// there are no operands, and as above. Cost: unions are computed in pairs, so each triangle takes part in
+/// log n unions.
 BooleanResult boolean(const std::vector<Solid>& operands, Operation operation,
                       const std::stop_token& stop = {});
 
@@ -60,7 +60,7 @@ struct Booleans {
   std::optional<Solid> a_minus_b;
   std::optional<Solid> b_minus_a;
   /// The largest of |(A + B) - (A u B + A n B)|, |A - (A-B) - (A n B)| and |B - (B-A) - (A n B)|, as volumes
-  /// relative to A + B; only those whose volumes were all computed.
+  /// relative to A + B; an identity counts only if all its volumes were computed.
   std::optional<double> residual;
   /// The distance by which an operand was moved (see "shifted"): about 4e-6 of the operands' extent, 1 um for
   /// a head. The error of each volume is at most this length times the area of the operand's surface.

@@ -8,7 +8,7 @@
 #include <vector>
 
 // Findings about a mesh file: its statements on frame, unit, program and polygons, the values that were used,
-// and those that were assumed because the file states none. A guess is a Warn.
+// and the values that were assumed because the file states none. A guess is a Warn.
 namespace octotomy::brep {
 
 enum class MeshVerdict { Pass, Warn, Fail };

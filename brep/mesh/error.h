@@ -29,8 +29,8 @@ struct Stopped : Error {
   explicit Stopped(const std::string& message) : Error(ErrorCode::Cancelled, message) {}
 };
 
-/// Refuses a value or data that may come from outside the program: what is wrong and, if it helps, what to do.
-/// A precondition that only the caller can break throws a plain std::invalid_argument.
+/// Refuses a value or data that may come from outside the program. The message states the fault and, if it
+/// helps, the remedy. A precondition that only the caller can break throws a plain std::invalid_argument.
 struct InvalidInput : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };

@@ -46,7 +46,7 @@ struct Size {
   glm::dvec3 low_mm{0.0}, high_mm{0.0};
 };
 
-/// The same bits as those of measure() at a fraction of the cost, because no edges are visited.
+/// Returns the same bits as measure() at a fraction of the cost, because no edges are visited.
 Size size_of(const Triangles& triangles);
 Size size_of(const Mesh& mesh);
 double volume_mm3(const Mesh& mesh);

@@ -10,7 +10,7 @@
 
 #include "brep/mesh/triangles.h"
 
-// Which triangles form a shell, and which of them have to be reversed so that it winds one way.
+// The triangles of each shell, and the triangles to reverse so that the shell is consistently oriented.
 namespace octotomy::brep {
 
 /// For each side of each triangle, the other triangle that shares it.

@@ -55,7 +55,7 @@ struct DrawOptions {
   Lighting lighting;
   glm::vec3 background{1.0f};  ///< sRGB, 0..1
   bool cull = false;           ///< leaves out triangles that face away from the observer
-  bool hide = false;           ///< Wire: triangles hide what lies behind them
+  bool hide = false;           ///< Wire: triangles hide edges behind them
   double wire_px = 1.0;        ///< Wire: width of the edges
 };
 
