@@ -13,8 +13,8 @@
 #include "voxel/space/shared_progress.h"
 #include "voxel/tree/corner_patterns.h"
 
-// The surface is dual to that of marching cubes: the eight voxels about a corner are a cube of samples, the
-// faces that meet there are its crossed edges, and the sheets are its loops. The passes:
+// The surface is dual to that of marching cubes: the eight voxels around a corner are a cube of samples. The
+// faces that meet at the corner are the cube's crossed edges, and the sheets are its loops. The passes:
 //
 // 1 Every plane of corners counts its sheets; a running sum gives every plane its first point.
 // 2 Every layer of voxels, with the planes below and above it, writes the planes' points and the layer's

@@ -30,7 +30,7 @@
 // 3 The nodes are moved to the patient's frame. Where regions meet in a plane, the nodes along its rim, where
 //   three labels meet, are put on it, because surfaces in contact that are not flat interlock. Then nodes
 //   move to mend flat elements. Where that leaves nodes off the plane, elements are split at it.
-// 4 The answer counts only if all volumes are positive and each region's is near that of its voxels.
+// 4 The answer counts only if all volumes are positive and each region's volume is near its voxels' volume.
 
 namespace octotomy::convert {
 namespace {
@@ -43,7 +43,8 @@ using voxel::rounded;
 
 void check(const std::vector<voxel::Octree>& regions, const RegionMeshOptions& options) {
   if (regions.empty()) refuse_regions("there is no region");
-  if (regions.size() > std::numeric_limits<std::uint8_t>::max()) refuse_regions("there are over 255 regions");
+  if (regions.size() > std::numeric_limits<std::uint8_t>::max())
+    refuse_regions("there are more than 255 regions");
   for (const voxel::Octree& region : regions) {
     if (region.is_empty()) refuse_regions("a region is empty");
     if (!(region.universe() == regions.front().universe()))

@@ -59,10 +59,10 @@ class SizingField {
 /// Cost: n log n of the answer.
 brep::Triangles refined_surface(const brep::Triangles& surface, const SizingField& sizes);
 
-/// Describes places where elements are over three times as large as a refinement allows at their middle,
-/// which happens deep inside a refined surface: the worst place, its size and the requested size, and the
-/// number of places. Checks the element nearest to each point, and to a hundred points of a surface. None if
-/// there is no such place. Cost: places times elements, parallel.
+/// Describes places where elements are more than three times the size that a refinement allows at their
+/// middle, which happens deep inside a refined surface: the worst place, its size and the requested size, and
+/// the number of places. Checks the element nearest to each point, and to a hundred points of a surface. None
+/// if there is no such place. Cost: places times elements, parallel.
 std::optional<std::string> coarse_place(const Tetrahedra& tetrahedra, const std::vector<Refinement>& finer);
 
 }  // namespace octotomy::convert

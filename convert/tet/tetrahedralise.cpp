@@ -492,7 +492,8 @@ Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options) {
   constexpr double most_elements = 2e7;
   if (options.max_volume_mm3 && surface_mm3 > most_elements * *options.max_volume_mm3)
     refuse_option("elements of at most " + rounded(*options.max_volume_mm3) +
-                  " mm3 would be over 20 million in " + rounded(surface_mm3) + " mm3: allow larger ones");
+                  " mm3 would be more than 20 million in " + rounded(surface_mm3) +
+                  " mm3: allow larger ones");
   for (const Part& part : parts)
     if (part.six_volumes_mm3 < 0.0) surface.holes_mm.push_back(hole_point(surface, parts, part));
 
