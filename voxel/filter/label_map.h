@@ -53,9 +53,8 @@ struct Label {
 };
 std::vector<Label> labels(const Scene& scene);
 
-/// The same labels on another lattice, for a map that was cropped, or whose axes were reversed or exchanged.
-/// None if a sample of the scene lies between the lattice's samples, or a sample with a label beyond the
-/// lattice.
+/// The same labels on another lattice, for a map that was cropped or has reversed or exchanged axes. None if
+/// a sample of the scene lies between the lattice's samples, or a sample with a label beyond the lattice.
 std::optional<Scene> laid_on(const Scene& scene, const Lattice& lattice);
 
 /// The voxels of a universe whose nearest sample has that label; voxels beyond the scan are empty. Parallel

@@ -27,8 +27,8 @@ class SurfaceCrossings {
   /// the cells whose crossings form one ring.
   std::vector<glm::dvec3> with_middles() const;
   /// Calls `visit`, from several threads, with the triangles of a surface through the crossings: a fan about
-  /// the middle of each ring of a cell, moved outward to the solid's surface, so that edges are cut off very
-  /// little. Neighbouring cells share the chords of their rings, so that the surface is closed where the
+  /// the middle of each ring of a cell, moved outward to the solid's surface, so that little of an edge is
+  /// cut off. Neighbouring cells share the chords of their rings, so that the surface is closed where the
   /// solid ends within the universe. The triangles' winding is arbitrary.
   void for_triangles(const std::function<void(const std::array<glm::dvec3, 3>& corners)>& visit) const;
 

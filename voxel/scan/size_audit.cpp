@@ -88,15 +88,15 @@ std::optional<Finding> size_finding(const Scene& scene) {
         print("the slices span %.3g mm, more than a person's length: check their distance of %.4g mm",
               field_mm.z, spacing_mm.z)};
   } else if (std::max(wide_mm, field_mm.z) < smallest_scan_mm) {
-    doubt = print("the scan is %.3g x %.3g x %.3g mm, smaller than what scanners show of a person",
-                  field_mm.x, field_mm.y, field_mm.z);
+    doubt = print("the scan is %.3g x %.3g x %.3g mm, smaller than any scan of a person", field_mm.x,
+                  field_mm.y, field_mm.z);
   } else if (scene.meaning != Meaning::Label && !is_known) {
     // Such a field is smaller than any whole field of a person. A cropped part may be as small.
     if (std::max(wide_mm, field_mm.z) >= smallest_fine_field_mm || std::min(dims.x, dims.y) < fine_side_px)
       return std::nullopt;
     doubt = print(
-        "the scan is %.3g x %.3g x %.3g mm, smaller than what scanners show of a person unless it "
-        "is a part that was cut out",
+        "the scan is %.3g x %.3g x %.3g mm, smaller than any scan of a person, unless it was cut out of a "
+        "larger one",
         field_mm.x, field_mm.y, field_mm.z);
   } else if (!is_known) {
     return std::nullopt;

@@ -317,7 +317,7 @@ template <typename Samples>
   return search.crossed ? crossing_mm : Float{};
 }
 
-constexpr std::int32_t nothing = 0, smooth = 1, face = 2;  // what a ray meets
+constexpr std::int32_t nothing = 0, smooth = 1, face = 2;  // kind of the surface that a ray meets
 
 /// Executes each of steps 2 to 5 for all vectors of a batch before the next step, so that the processor can
 /// overlap the work on several vectors.

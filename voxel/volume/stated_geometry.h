@@ -22,9 +22,9 @@ struct StatedGeometry {
   glm::dvec3 mm_per_unit{1.0};                ///< along the file's axes
 };
 
-/// The lattice in LPS millimetres. Adds one line on the frame and one on the unit to the audit: the file's
-/// statement, and the value used. `frame` and `unit`, if set, override the file (--frame, --unit). A guess,
-/// or an option that contradicts the file, is a warning.
+/// The lattice in LPS millimetres. Adds one line on the frame and one on the unit to the audit. Each holds
+/// the file's statement and the value used. `frame` and `unit`, if set, override the file (--frame, --unit).
+/// A guess, or an option that contradicts the file, is a warning.
 Lattice placed(const StatedGeometry& stated, const std::optional<PatientFrame>& frame,
                const std::optional<LengthUnit>& unit, std::vector<Finding>& audit);
 
