@@ -98,16 +98,18 @@ void add_specks(Certificate& certificate, const Specks& specks) {
   if (specks.count == 0) return;
   const double largest_mm3 = specks.largest->volume_mm3;
   if (certificate.limit) certificate.limit->volume_mm3 = std::max(certificate.limit->volume_mm3, largest_mm3);
-  add_comparison(certificate,
-                 {.quantity = "parts and cavities between voxels' centres",
-                  .unit = "mm3",
-                  .difference = specks.volume_mm3,
-                  .tolerance = certificate.tolerance_mm3,
-                  .formula = "the volume's tolerance; the mesh has " + std::to_string(specks.count) +
-                             ", the largest of " + voxel::rounded(largest_mm3) + " mm3 near " +
-                             voxel::rounded(specks.largest->at_mm) + ", and distances leave them out",
-                  .statement = "The mesh has parts and cavities of % that hold no voxel's centre"},
-                 Verdict::Warn);
+  add_comparison(
+      certificate,
+      {.quantity = "parts and cavities between voxels' centres",
+       .unit = "mm3",
+       .difference = specks.volume_mm3,
+       .tolerance = certificate.tolerance_mm3,
+       .formula = "the volume's tolerance; the mesh has " + std::to_string(specks.count) +
+                  ", the largest of " + voxel::rounded(largest_mm3) + " mm3 near " +
+                  voxel::rounded(specks.largest->at_mm) + ", and distances leave them out",
+       .statement =
+           "The mesh has parts and cavities with a total volume of % that contain no voxel's centre"},
+      Verdict::Warn);
   judge_evidence(certificate);
 }
 
@@ -253,8 +255,8 @@ void judge_lost(Certificate& certificate, const Evidence& evidence, const Places
        .difference = static_cast<double>(places.lost.size()) * evidence.voxel_mm3,
        .tolerance = stated_share * certificate.larger_mm3(),
        .formula = "0.002 V; voxels that lack or fill walls or gaps thinner than a voxel, most near " + near,
-       .statement = "At this voxel size resampling loses walls or gaps thinner than a voxel: voxels of % "
-                    "lack or fill what this step made of them, most near " +
+       .statement = "At this voxel size resampling loses walls or gaps thinner than a voxel: voxels with a "
+                    "total volume of % differ from this step's result, most of them near " +
                     near + ". The scan confirms the mesh there: take smaller voxels"},
       Verdict::Warn);
   if (!certificate.worst) certificate.worst = places.worst_lost;
@@ -294,8 +296,8 @@ void judge_volume(Certificate& certificate, const Evidence& evidence) {
   if (!evidence.witnessed && (voxels.voxel_count == 0) != (mesh.area_mm2 == 0.0)) {
     const bool lost_by_voxels = voxels.voxel_count == 0;
     lower(certificate, Verdict::Fail,
-          lost_by_voxels ? "The voxel kernel's object is empty, the mesh kernel's is not."
-                         : "The mesh kernel's object is empty, the voxel kernel's is not.");
+          lost_by_voxels ? "The voxel kernel's object is empty, but the mesh kernel's is not."
+                         : "The mesh kernel's object is empty, but the voxel kernel's is not.");
     const glm::dvec3 low_mm = lost_by_voxels ? mesh.low_mm : voxels.extents->low_mm,
                      high_mm = lost_by_voxels ? mesh.high_mm : voxels.extents->high_mm;
     certificate.worst = {0.5 * (low_mm + high_mm), longest(high_mm - low_mm),
@@ -325,13 +327,12 @@ void judge_volume(Certificate& certificate, const Evidence& evidence) {
 /// times count once among the centres.
 void compare_counted(Certificate& certificate, const Evidence& evidence, const voxel::Octree& digitised) {
   const double counted_mm3 = static_cast<double>(digitised.voxel_count()) * evidence.voxel_mm3;
-  add_comparison(
-      certificate,
-      {"volume counted inside of the mesh", "mm3", counted_mm3, evidence.mesh.volume_mm3,
-       std::abs(counted_mm3 - evidence.mesh.volume_mm3), certificate.tolerance_mm3 + evidence.voxel_mm3,
-       "the volume's tolerance, and a voxel",
-       "The mesh's volume and its inside, counted by voxels' centres, are % apart, as where it has a part "
-       "several times"});
+  add_comparison(certificate,
+                 {"volume counted inside of the mesh", "mm3", counted_mm3, evidence.mesh.volume_mm3,
+                  std::abs(counted_mm3 - evidence.mesh.volume_mm3),
+                  certificate.tolerance_mm3 + evidence.voxel_mm3, "the volume's tolerance, and a voxel",
+                  "The mesh's volume and its inside, counted by voxels' centres, are % apart, for example "
+                  "because the mesh contains a part several times"});
 }
 
 /// Indices of the keys that share a slot of a hash table with at least eight slots per key: all equal keys,
@@ -407,7 +408,7 @@ void compare_with_lines(Certificate& certificate, const Evidence& evidence, cons
                                std::min(of_voxels, of_mesh), tolerance_mm3,
                                "the volume's tolerance, five deviations of the lines, and a voxel",
                                "Lines through the scan find " + voxel::rounded(third.volume_mm3) +
-                                   " mm3, from which the nearer answer is % off"});
+                                   " mm3; the nearer answer differs from that by %"});
   if (both_stray || std::abs(certificate.difference_mm3) <= certificate.tolerance_mm3) return;
   const auto told = [&](const char* kernel, double volume_mm3) {
     const double lost_mm3 = third.volume_mm3 - volume_mm3;

@@ -158,7 +158,7 @@ void compare(const voxel::Octree& octree, const brep::Solid& solid, double near,
          " mm3 are inside for one kernel only.");
 }
 
-/// The mesh kernel's answer in units, and what the corefinements found.
+/// The mesh kernel's answer in units, and the corefinements' findings.
 struct Corefined {
   brep::Solid solid;
   double shift_units = 0.0;  ///< how far operands were moved

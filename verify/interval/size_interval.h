@@ -57,7 +57,8 @@ struct SizeIntervals {
 /// n in edges.
 SizeIntervals size_intervals(const brep::Solid& solid, const SampledFrom& from);
 
-/// The intervals of an empty object: upper bounds of what may have been missed, a ball two samples across.
+/// The intervals of an empty object: upper bounds of a part that may have been missed, a ball two samples
+/// across.
 SizeIntervals nothing_found(const glm::dvec3& sample_mm);
 
 /// For an object whose surface comes from several samplings: the intervals as if one of them had sampled the

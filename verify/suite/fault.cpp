@@ -251,7 +251,7 @@ const std::vector<Fault>& faults() {
       {wrong_pivot, "one kernel turns about the origin instead of the given point", true},
       {shell_thrice, "the mesh contains its surface three times", true},
       {both_empty, "both kernels return an empty answer", true},
-      {lost_by_both, "both kernels have lost what lies in one half of the universe", true}};
+      {lost_by_both, "both kernels have lost the part in one half of the universe", true}};
   return all;
 }
 

@@ -25,7 +25,7 @@ struct WitnessedScan {
 /// the object has no witness. Cost of a reading: some triangles, and the object's reading where it counts.
 Witness witness_of_scan_blend(Witness object, WitnessedScan asked);
 
-/// Whether a witness is that of a scan blend, and not a Boolean or a motion of others.
+/// Whether a witness belongs to a scan blend, and not to a Boolean or a motion of other witnesses.
 bool is_scan_blend(const Witness& witness);
 
 }  // namespace octotomy::verify
