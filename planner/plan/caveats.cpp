@@ -164,7 +164,7 @@ void add_unmeasured(const MadeOf& from, Object& made) {
                          (are_nonfinite    ? "no finite numbers"
                           : left_by_motion ? "holes that no object fills"
                                            : "padding") +
-                         ", and both kernels leave out what lies there";
+                         ", and both kernels leave out the object there";
     if (enclosed > 0)
       reason += ": " + std::to_string(enclosed) + " of them lie between samples of this object, where " +
                 three_figures(static_cast<double>(enclosed) * scene.lattice.voxel_mm3()) +

@@ -19,8 +19,8 @@ struct Signature {
   std::map<std::string, std::string> scans_sha256;  ///< by the plan's names of scans
 };
 
-/// The SHA-256 of a plan's content: its JSON without signatures and paths of scans, with sorted keys, so that
-/// it depends neither on layout nor on the folder.
+/// The SHA-256 of a plan's content: its JSON without signatures and paths of scans, with sorted keys, so it
+/// depends neither on the layout nor on the folder.
 std::string sum_of_plan(const std::string& text);
 
 /// The signatures in a plan's text, in their order. Throws std::runtime_error with the position in the text.

@@ -39,7 +39,7 @@ Json export_file(Session& session, const Json& said, const Watched& watched);
 Json report(Session& session, const Json& said, const Watched& watched);
 /// {"path", "low", "unmoved"} -> the outcome's JSON: compares a later scan with the plan.
 Json outcome(Session& session, const Json& said, const Watched& watched);
-/// {"step"} -> {"shell", "python"}: commands that evaluate the step with those on which it depends, and
+/// {"step"} -> {"shell", "python"}: commands that evaluate the step and the steps on which it depends, and
 /// commands that add it to a plan.
 Json command_of_step(Session& session, const Json& said, const Watched& watched);
 

@@ -18,10 +18,10 @@ inline glm::dvec3 carried(const glm::dmat4& motion, const glm::dvec3& p_mm) {
 }
 
 /// The last motion of each moved object, in the order of the objects: the motion, its rotations, and the
-/// displacement of the object's centroid and of the landmarks on it, in words and along the head's
-/// directions. A map that scales or shears has the rotations of the nearest rotation, and words for the rest.
-/// Where earlier steps moved the object as well, also the displacements since the scan. Landmarks move with
-/// objects by the rules of moved_landmarks(). Cost: some small Booleans per landmark and object.
+/// displacements of the object's centroid and landmarks, in words and along the head's directions. A map that
+/// scales or shears has the rotations of the nearest rotation, and words for the rest. Where earlier steps
+/// moved the object as well, also the displacements since the scan. Landmarks move with objects by the rules
+/// of moved_landmarks(). Cost: some small Booleans per landmark and object.
 std::vector<ObjectMovement> movements_of(const Objects& objects, const std::vector<NamedPoint>& landmarks);
 /// The movements as JSON, with the details that the moving steps have reported.
 nlohmann::ordered_json movements_json(const Objects& objects, const std::vector<NamedPoint>& landmarks);

@@ -39,10 +39,10 @@ struct RegionSamples {
   std::optional<double> tolerance;
 };
 
-/// For each seed, the contour around the connected region of its slice in which it lies, and those of the region's
-/// holes; a region with several seeds appears once. `threshold` is the lower bound, `away_mm` the distance of the
-/// seed from the region's contours. The mask and the exceptions are those of contours_at_seeds(); a seed outside the
-/// window is refused with its sample.
+/// For each seed, the contour around the connected region of the slice that contains the seed, and the
+/// contours of the region's holes; a region with several seeds appears once. `threshold` is the lower bound,
+/// `away_mm` the distance of the seed from the region's contours. The mask and the exceptions are those of
+/// contours_at_seeds(); a seed outside the window is refused with its sample.
 SeedContours contours_around_seeds(const voxel::Scene& scene, const std::vector<glm::dvec3>& seeds_mm,
                                    const RegionSamples& samples);
 

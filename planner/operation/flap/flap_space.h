@@ -33,9 +33,9 @@ struct FlapPlace {
   /// LPS to LPS, rigid; none: the space is where the segment is placed, or of bone that stays.
   std::optional<glm::dmat4> uncut_from_placed;
 };
-/// The place at a share of the way between both cuts of a segment's space, 0 to 1. For the resection's space: in
-/// the bone that stays, from -1 at the first stump's point to 0 at the first cut, or from 1 at the last cut to
-/// 2 at the last stump's point. Throws std::runtime_error, which states what is out of range, for another share, a
+/// The place at a share of the way between both cuts of a segment's space, 0 to 1. For the resection's space:
+/// in the bone that stays, from -1 at the first stump's point to 0 at the first cut, or from 1 at the last
+/// cut to 2 at the last stump's point. Throws std::runtime_error, which names the value, for another share, a
 /// resection without stumps, or a step that made no such space; `name` is the step's, for the message.
 FlapPlace flap_place(const Action* maker, const std::string& name, double share);
 

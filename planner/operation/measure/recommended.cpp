@@ -229,7 +229,7 @@ std::vector<std::string> findings_of(const verify::SizeIntervals& found, bool is
         grouped(*mesh_mm3, 1) + " mm\u00b3): " +
         (!is_of_phases ? "labels are counted in the scan's own samples"
          : has_core ? "the threshold's surface loses parts that are thin or sharp compared with the scan's "
-                      "blur, and the sum of the samples does not"
+                      "blur, but the sum of the samples does not"
                     : "no part is thicker than the scan's blur; the sum of the samples is taken, with the "
                       "window's bound as the half level"));
   constexpr double far_off = 0.1;

@@ -46,7 +46,7 @@ struct Seat {
 
 void check(const Occlude& asked, const FieldLocation& place) {
   if (asked.object.name == asked.against.name)
-    place.at("against").refuse("is the object itself: name what it is to meet");
+    place.at("against").refuse("is the object itself: name the object that it shall meet");
 }
 
 /// The direction of a word as a unit vector, LPS.

@@ -157,7 +157,8 @@ std::vector<voxel::Octree> objects_of(const FileBench& bench, const Build& asked
       throw std::runtime_error("--with: " + other.name + ": is not an .octree file");
     objects.push_back(binary_of(asked, other.name, octree_named(other.name, bench)));
     if (objects.back().universe() != objects.front().universe())
-      throw std::runtime_error("--with: " + other.name + ": has another universe than " + asked.file.name +
+      throw std::runtime_error("--with: " + other.name + ": its universe differs from that of " +
+                               asked.file.name +
                                ": build both of one scan, or one of them by octotomy mask --like");
   }
   return objects;

@@ -141,7 +141,7 @@ std::vector<double> positions_of(const Outline& outline, const Cutter& cutter) {
                high_mm = outline.to_mm.value_or(cutter.high_mm);
   const double first = std::ceil(low_mm / outline.every_mm), last = std::floor(high_mm / outline.every_mm);
   if (last - first >= static_cast<double>(most_planes))
-    throw std::runtime_error("every_mm: makes over " + std::to_string(most_planes) +
+    throw std::runtime_error("every_mm: makes more than " + std::to_string(most_planes) +
                              " planes: choose a larger distance, or 'from_mm' and 'to_mm'");
   std::vector<double> positions;
   for (double k = first; k <= last; ++k) positions.push_back(k * outline.every_mm);

@@ -36,7 +36,7 @@ void check(const Repair& repair, const FieldLocation& place) {
         "does only the requested repairs: add 'solid' for all, or 'weld_mm', 'duplicates', 'flat', 'orient', "
         "'holes' or 'intersections'; octotomy info lists a mesh's defects");
   if (repair.wall_mm && repair.hull)
-    place.at("hull").refuse("fills what a wall leaves hollow: give 'hull' or 'wall_mm'");
+    place.at("hull").refuse("fills the inside that a wall leaves hollow: give either 'hull' or 'wall_mm'");
   if ((repair.hull || repair.cell_mm || repair.wall_mm) && !repair.solid)
     place.at(repair.hull      ? "hull"
              : repair.cell_mm ? "cell_mm"

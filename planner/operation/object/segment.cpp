@@ -133,7 +133,7 @@ class Segmenter {
     if (made_.steps.size() > 1)
       return " after its " + std::to_string(made_.steps.size()) + " steps: leave some out";
     if (source_.scene.meaning != voxel::Meaning::Label && !segment_.label)
-      return ": choose another window, or see what --otsu 3 suggests";
+      return ": choose another window, or see the bounds that --otsu 3 suggests";
     for (const voxel::Finding& finding : source_.scene.audit)
       if (finding.check == "fractions") return ": " + finding.detail;
     return ": choose another label";

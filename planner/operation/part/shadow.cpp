@@ -203,8 +203,8 @@ Operation shadow_operation() {
               .from(0.0)
               .to(500.0))
       .takes(field("tolerance_mm", &Shadow::tolerance_mm,
-                   "A tolerated undercut: what lies less deep below the object's surface blocks nothing, so "
-                   "that a part snaps on, for example 0.12. Default: none is tolerated.")
+                   "A tolerated undercut: parts less deep than this below the object's surface block "
+                   "nothing, so that a part snaps on, for example 0.12. Default: none is tolerated.")
                  .greater_than(0.0)
                  .to(2.0))
       .example(R"({"id": "blocked", "do": "shadow", "object": "maxilla", "direction": [0, 0, 1]})")

@@ -205,8 +205,8 @@ Operation tooth_scan_operation() {
              "Lays a scan of teeth onto an object and replaces the object's crowns by the scan's.",
              Makes::Object)
       .takes(field("object", &ToothScan::object,
-                   "The object with the teeth: one jaw alone, because the scan would also replace what lies "
-                   "within 'reach_mm' of it on the other jaw's teeth.")
+                   "The object with the teeth: one jaw alone, because the scan would also replace the other "
+                   "jaw's teeth within 'reach_mm' of it.")
                  .required()
                  .positional("object"))
       .takes(field("path", &ToothScan::path,
@@ -234,11 +234,12 @@ Operation tooth_scan_operation() {
                  .to(30.0)
                  .read_if<ToothScan>([](const ToothScan& asked) { return !asked.crowns.empty(); },
                                      "applies only about 'crowns': add them"))
-      .takes(field("depth_mm", &ToothScan::depth_mm,
-                   "Crowns are fitted and replaced from their tips to this depth; what the scan shows beyond "
-                   "is gum.")
-                 .from(2.0)
-                 .to(12.0))
+      .takes(
+          field(
+              "depth_mm", &ToothScan::depth_mm,
+              "Crowns are fitted and replaced from their tips to this depth; beyond that the scan shows gum.")
+              .from(2.0)
+              .to(12.0))
       .takes(
           field("blend_mm", &ToothScan::blend_mm,
                 "The width of the border in which the surface changes from the scan's to the object's, also "

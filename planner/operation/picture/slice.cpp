@@ -546,8 +546,8 @@ Operation slice_operation() {
                  .repeated()
                  .called("octree"))
       .takes(field("hatched", &Slice::hatched,
-                   "Objects that are drawn with their inside hatched, in red where no colour is given: "
-                   "interference of pieces, for example.")
+                   "Objects to draw with a hatched inside, in red if no colour is given: for example the "
+                   "interference of pieces.")
                  .repeated())
       .takes(field("colours", &Slice::colours,
                    "Colours, #RRGGBB, of the outlines in their order, then of the hatched objects.")

@@ -12,8 +12,8 @@
 namespace octotomy::planner {
 
 /// Reads an object's keys into the fields of `owner`. `also` lists further keys that are allowed but not read
-/// here. Throws std::runtime_error with the place, what is wrong and what to try: an unknown key with the
-/// nearest known one, a missing one, a wrong type, a number out of its range, a name that is not bound.
+/// here. Throws std::runtime_error with the place, the fault and the remedy: an unknown key with the nearest
+/// known one, a missing one, a wrong type, a number out of its range, a name that is not bound.
 void read_fields(const std::vector<Field>& fields, const nlohmann::json& object, void* owner,
                  const FieldLocation& place, const std::vector<std::string>& also = {});
 

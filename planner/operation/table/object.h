@@ -32,7 +32,7 @@ struct VoxelSide {
   std::optional<voxel::Expression> symbol;
   voxel::Measures measures;
   std::string lineage;
-  std::vector<std::string> makers;  ///< the code that made it and what it was made of (verify::Answer)
+  std::vector<std::string> makers;  ///< the code that made it and its inputs (verify::Answer)
   std::vector<std::string> findings;
 };
 
@@ -115,7 +115,7 @@ struct Object {
   std::string definition;        ///< in words: "skull & cut"
   bool is_tool = false;          ///< only helps to make others, as a mask
   bool is_interpolated = false;  ///< a part of it comes from samples between images
-  bool is_surely_empty = false;  ///< its definition is empty whatever its operands are, as a - a
+  bool is_surely_empty = false;  ///< its definition is empty for all operands, for example a - a
   VoxelSide voxel;
   MeshSide mesh;
   BoundTerms bound;
