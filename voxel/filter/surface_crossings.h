@@ -23,7 +23,7 @@ class SurfaceCrossings {
   SurfaceCrossings(const Octree& octree, const Expression& solid);
 
   const std::vector<glm::dvec3>& points() const { return points_; }
-  /// The crossings, the middles of the chords between two of them in a lattice square, and the middles of
+  /// The crossings, the middles of the chords between two crossings in a lattice square, and the middles of
   /// the cells whose crossings form one ring.
   std::vector<glm::dvec3> with_middles() const;
   /// Calls `visit`, from several threads, with the triangles of a surface through the crossings: a fan about

@@ -15,7 +15,7 @@ namespace octotomy::voxel {
 struct StatedGeometry {
   glm::ivec3 dims{1};
   glm::dmat4 file_from_voxel{1.0};
-  std::optional<PatientFrame> frame = {};     ///< frame of the file's axes, if it states one
+  std::optional<PatientFrame> frame = {};     ///< frame of the file's axes, if the file states one
   PatientFrame assumed_frame = {};            ///< frame to assume if the file states none
   std::string frame_says = {};                ///< the file's words, such as "space right-anterior-superior"
   std::optional<std::string> unit_says = {};  ///< the file's words; none if it states no unit of length
