@@ -37,8 +37,8 @@ struct MirrorFitOptions {
 };
 
 struct MirrorFit {
-  MirrorPlane plane;  ///< its point is as near to the surface's centre as possible; the largest component of
-                      ///< its normal is positive
+  MirrorPlane plane;    ///< its point is the plane's nearest point to the surface's centre; the largest
+                        ///< component of its normal is positive
   double rms_mm = 0.0;  ///< distance of the mirrored surface from the surface, over the samples kept
   double kept_share = 0.0;
   /// The remaining motion that would fit the mirror image to the surface best, as rotation about the normal

@@ -52,7 +52,7 @@ constexpr double rest_share() {
 }
 
 /// A fit that hardly improves for this many rounds counts as at rest: samples at the trimming limit are then
-/// kept and dropped in turn, and none of these choices is better than another.
+/// kept and dropped in turn, and all these choices are equally good.
 constexpr int cycle_rounds = 12;
 
 /// A fit hardly improves if its rms falls by less than this share in cycle_rounds rounds.

@@ -65,13 +65,13 @@ struct Booleans {
   /// The distance by which an operand was moved (see "shifted"): about 4e-6 of the operands' extent, 1 um for
   /// a head. The error of each volume is at most this length times the area of the operand's surface.
   double shift_mm = 0.0;
-  /// Doubts. "shifted": the operands touch so that a difference or intersection would not be manifold (a shared
-  /// edge), or intersect in a way that corefinement cannot resolve, so the named operand was moved. "touches
-  /// itself": sheets of a result share a point, which has a vertex for each sheet. "crosses itself": rounding
-  /// left triangles that intersect, which settled() could not take out. "meets itself": an
-  /// operand's triangles intersect near the cut, usually because an earlier cut was rounded. "film": shells
-  /// thinner than the rounding of points were left out. "without area": an operand's triangles without area
-  /// were removed by another diagonal, which does not change its surface.
+  /// Doubts. "shifted": the operands touch so that a difference or intersection would not be manifold (a
+  /// shared edge), or intersect in a way that corefinement cannot resolve, so the named operand was moved.
+  /// "touches itself": sheets of a result share a point, which has a vertex for each sheet. "crosses itself":
+  /// rounding made triangles intersect, and settled() could not remove these intersections. "meets itself":
+  /// an operand's triangles intersect near the cut, usually because an earlier cut was rounded. "film":
+  /// shells thinner than the rounding of points were left out. "without area": an operand's triangles without
+  /// area were removed by another diagonal, which does not change its surface.
   std::vector<std::string> findings;
 };
 

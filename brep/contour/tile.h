@@ -59,9 +59,9 @@ std::vector<std::array<std::uint32_t, 3>> tile_clear(
     const Ring& lower, const Ring& upper, TileCost cost, const SpanClearance& sides,
     std::vector<std::uint8_t>& scores, const std::vector<std::array<std::uint32_t, 3>>& avoided = {});
 
-/// The same, with both rings scaled for the test so that their boxes coincide, and tested against their own sides
-/// only. This serves thin walls that lean by more than their thickness: a good span of the outer side then crosses
-/// the inner side in projection, but nothing in space.
+/// As above, but both rings are scaled for the test so that their boxes coincide, and are tested against
+/// their own sides only. This serves thin walls that lean by more than their thickness: a good span of the
+/// outer side then crosses the inner side in projection, but nothing in space.
 std::vector<std::array<std::uint32_t, 3>> tile_clear_aligned(
     const Ring& lower, const Ring& upper, TileCost cost, std::vector<std::uint8_t>& scores,
     const std::vector<std::array<std::uint32_t, 3>>& avoided = {});

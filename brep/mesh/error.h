@@ -14,7 +14,7 @@ enum class ErrorCode {
   Resource,   ///< memory, disk or time was exhausted
 };
 
-/// The mesh kernel's error: a code and a message that names the place, the cause and what to do next.
+/// The mesh kernel's error: a code and a message that names the place, the cause and the next step.
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}

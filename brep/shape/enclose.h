@@ -13,7 +13,7 @@ namespace octotomy::brep {
 
 struct EncloseOptions {
   /// Edge of the lattice's cells in mm, above 0: walls and gaps thinner than that may be missed. Default: the
-  /// mean side of the triangles, at most a 60th of the surface's extent and not below a 1000th.
+  /// mean side of the triangles, but at most 1/60 and at least 1/1000 of the surface's extent.
   std::optional<double> cell_mm = std::nullopt;
   bool hull = false;  ///< keep only the outermost shells: cavities and parts inside them are filled
   Progress progress = {};
