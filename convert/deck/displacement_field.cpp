@@ -33,7 +33,7 @@ double largest_mm(const std::vector<glm::dvec3>& displacement_mm) {
 double checked_fade(double fade_mm, const std::vector<glm::dvec3>& displacement_mm) {
   if (!(fade_mm > least_fade_mm(largest_mm(displacement_mm))))
     throw voxel::InvalidInput("a displacement of " + std::to_string(largest_mm(displacement_mm)) +
-                              " mm that fades over " + std::to_string(fade_mm) + "  mm folds space");
+                              " mm that fades over " + std::to_string(fade_mm) + " mm folds space");
   return fade_mm;
 }
 

@@ -22,8 +22,8 @@ namespace {
 
 constexpr int rounds = 2;
 
-/// The least distance of an interpolated point from a voxel's centre, as a part of the edge. Closer points would
-/// make triangles that are too small for a normal.
+/// Smallest distance of an interpolated point from a voxel's centre, as a share of the edge. Closer points
+/// would make triangles that are too small for a normal.
 constexpr double closest_to_sample() {
   return 0x1p-10;
 }

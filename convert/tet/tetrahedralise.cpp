@@ -61,8 +61,8 @@ constexpr double volume_tolerance() {
   return 1e-9;
 }
 
-/// The volume, relative to the cube of the largest extent, under which a solid is flat for TetGen: TetGen
-/// takes points for coplanar within 1e-8 of the largest extent, so a plate that thin has no inside.
+/// The volume, relative to the cube of the largest extent, below which a solid is flat for TetGen: TetGen
+/// treats points within 1e-8 of the largest extent as coplanar, so such a thin plate has no inside.
 constexpr double flat_volume() {
   return 1e-8;
 }
