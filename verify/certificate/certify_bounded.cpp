@@ -224,7 +224,7 @@ void judge_bridges(Certificate& certificate, const Places& places) {
                                .difference = certificate.bridges.front().volume_mm3,
                                .formula = "no verdict up to the limit; the largest of " +
                                           std::to_string(certificate.bridges.size()) +
-                                          " parts that hang on necks which one kernel cuts"});
+                                          " parts that are connected by necks which one kernel cuts"});
   for (std::size_t i = 0; i < std::min(large, most_told); ++i) {
     const WorstPlace& bridge = certificate.bridges[i];
     lower(certificate, Verdict::Warn,

@@ -14,9 +14,10 @@
 
 namespace octotomy::verify {
 
-/// Displacements of tetrahedra's nodes as a field over space. It is linear within an element; outside all elements it
-/// is that of the nearest point of their surface. At a distance d from the box of all nodes it is multiplied by (1 -
-/// r)^4 (4 r + 1) with r = d / fade_mm, and beyond fade_mm it is zero. No kernel shares this code. LPS millimetres.
+/// Displacements of tetrahedra's nodes as a field over space. It is linear within an element; outside all
+/// elements it is the displacement of the nearest point of their surface. At a distance d from the box of all
+/// nodes it is multiplied by (1 - r)^4 (4 r + 1) with r = d / fade_mm, and beyond fade_mm it is zero. No
+/// kernel shares this code. LPS millimetres.
 class NodeMotion {
  public:
   /// Throws std::invalid_argument without elements, or unless each node has one displacement.
