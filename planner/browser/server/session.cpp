@@ -399,8 +399,8 @@ voxel::GreyOctree Session::alone(const Snapshot& snapshot, const std::string& sc
 
 namespace {
 
-/// The voxel size for previews during a drag: that of the plan, or a multiple of it if its universe has more
-/// voxels along a side than can be computed for each picture.
+/// The voxel size for previews during a drag: the plan's size, or a multiple of it if the plan's universe has
+/// too many voxels along a side to compute each picture in time.
 std::optional<double> coarse_voxel_mm(const Snapshot& snapshot, const Plan& plan) {
   constexpr int most_side = 256;
   if (!snapshot.evaluation) return plan.voxel_mm;

@@ -157,11 +157,11 @@ void add_object(const voxel::DicomSegment& object, const voxel::Progress& progre
   add_partial(object.label,
               voxel::digitise_partial(voxel::universe_on(shares.lattice), voxel::Expression(object.object)),
               glm::ivec3(0), shares);
-  findings.push_back("'" + object.label +
-                     "': its voxels are turned against those of the source, so their shares "
-                     "are estimated: " +
-                     three_figures(shares.volumes_mm3.back()) + " mm3 of " +
-                     three_figures(volume_mm3(object.object)) + " mm3; a surface's shares are exact");
+  findings.push_back(
+      "'" + object.label +
+      "': its voxels are rotated relative to the source's voxels, so their shares are estimated: " +
+      three_figures(shares.volumes_mm3.back()) + " mm3 of " + three_figures(volume_mm3(object.object)) +
+      " mm3; a surface's shares are exact");
 }
 
 /// Whether samples are shares, and not labels: all from 0 to 1, and one between.

@@ -21,8 +21,8 @@ struct FlapCut {
   double reach_mm = 12.0;        ///< no bone farther from point_mm is cut
   bool is_of_resection = false;  ///< the cut at one end of the resection, not of a segment
 };
-/// The cuts at both ends of a segment's space, or of the resection's. The kerf of a segment lies outside of it,
-/// that of the resection within. None: the step made no such space.
+/// The cuts at both ends of a segment's space, or of the resection's. A segment's kerf lies outside the
+/// segment, the resection's kerf inside the resection. None: the step made no such space.
 std::vector<FlapCut> flap_cuts(const Action& maker);
 
 /// A place on the axis of a flap, and the motion from where a segment is placed to where its uncut bone lies.

@@ -239,7 +239,7 @@ std::vector<std::string> findings_of(const verify::SizeIntervals& found, bool is
       (area > (1.0 + far_off) * std::max(*voxels_mm2, *mesh_mm2) ||
        area < (1.0 - far_off) * std::min(*voxels_mm2, *mesh_mm2)))
     findings.push_back("WARN area: the recommended " + grouped(area, 1) +
-                       " mm\u00b2 lies over a tenth outside of both kernels' answers (voxels " +
+                       " mm\u00b2 differs from both kernels' answers by more than a tenth (voxels " +
                        grouped(*voxels_mm2, 1) + ", mesh " + grouped(*mesh_mm2, 1) +
                        " mm\u00b2): it allows for edges that the scan's blur rounds off");
   for (const auto& [name, interval] :

@@ -92,7 +92,7 @@ void check_stroke(const Stroke& stroke, const FieldLocation& place) {
     if (!(glm::length(stroke.points_mm[i]) <= most_mm))
       place.at("points_mm")
           .refuse("point " + std::to_string(i) +
-                  "  lies more than 1000 m from the origin: give LPS coordinates in mm");
+                  " lies more than 1000 m from the origin: give LPS coordinates in mm");
   for (std::size_t i = 1; i < stroke.points_mm.size(); ++i) {
     const double way_mm = glm::distance(stroke.points_mm[i - 1], stroke.points_mm[i]);
     if (way_mm > 0.0 && way_mm < least_way_mm)

@@ -237,10 +237,10 @@ FileAnswer on_files(const Build& asked, const FileBench& bench) {
 }  // namespace
 
 Operation octree_operation() {
-  return Describe<Build>(
-             "octree",
-             "Builds an octree of a scan's window or of all its samples, or puts one into another form.",
-             Makes::File)
+  return Describe<Build>("octree",
+                         "Builds an octree of a scan's window or of all its samples, or converts an octree "
+                         "to another form.",
+                         Makes::File)
       .takes(
           field("object", &Build::file,
                 "The object; on the command line a scan, an .octree file, or with --from a representation.")

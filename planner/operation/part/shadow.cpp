@@ -3,8 +3,9 @@
 // which this is subtracted can be slid on along the direction. Each kernel works on its own version of the
 // object; the direction and the end plane are determined first, so that both kernels use the same.
 //
-// With a tolerated undercut the shadow is that of the object's points deeper than the tolerance, united with
-// the object. On its way a part then meets only points of the object that are at most that deep.
+// With a tolerated undercut, only the object's points deeper than the tolerance cast the shadow, and the
+// object is united with it. On its way a part then meets only points of the object that are at most that
+// deep.
 #include "brep/shape/shadow.h"
 
 #include <algorithm>

@@ -132,7 +132,7 @@ std::vector<glm::dvec3> curve_points(const std::vector<std::string>& words) {
   return points;
 }
 
-/// A rectangle of a plane about a point's projection onto it; by default the middle of what is cut.
+/// A rectangle in a plane, around a point's projection onto the plane; by default the middle of what is cut.
 voxel::Sheet rectangle_of(const Slice& slice, const voxel::Lattice& lattice, const voxel::View& view,
                           double position_mm, double pixel_mm) {
   Render said;

@@ -35,8 +35,9 @@ nlohmann::ordered_json fields_schema(const std::vector<Field>& fields, void* fre
 /// std::runtime_error if a word is not of the field's type.
 nlohmann::json json_of_words(const Field& field, void* fresh, const std::vector<std::string>& words);
 
-/// The values of several fields in their order: a point takes three values, a list takes all that are left,
-/// any other field one. Scans are skipped. Throws std::runtime_error if there are too many values or too few.
+/// The values of several fields in their order: a point has three values, a list has all remaining values,
+/// any other field has one. Scans are skipped. Throws std::runtime_error if there are too many values or too
+/// few.
 nlohmann::json json_of_values(const std::vector<Field>& fields, void* fresh,
                               const std::vector<std::string>& values);
 
