@@ -137,7 +137,7 @@ Triangles CommonFrame::moved_back(const Triangles& triangles) const {
     p = is_given[v] ? given->second : origin_mm + lps_from_frame * p;
   }
   // Crossing points that coincide except for rounding become one, because the triangles between them are
-  // turned over.
+  // reversed.
   for (const auto& face : back.faces)
     for (std::size_t k = 0; k < 3; ++k) {
       std::uint32_t v = face[k], w = face[(k + 1) % 3];
