@@ -21,7 +21,7 @@
 #include "voxel/tree/slice_build.h"
 
 // 1 The regions' voxels become an image of labels: their box and a voxel all round.
-//   An interface that is flat to within the voxels' resolution counts as a plane, and the side of the plane
+//   An interface that is flat within the voxels' resolution counts as a plane, and the side of the plane
 //   decides between its regions.
 // 2 Mesh_3 starts from the middles between voxels of different labels, a size apart, so that it misses no
 //   region and no part of one, and from rims, where three labels meet, because it would otherwise put the
@@ -135,9 +135,8 @@ struct Counted {
 using LabelPair = std::pair<std::uint8_t, std::uint8_t>;  // the lower first
 
 /// Planes of the interfaces that may be plane cuts. If a plane cuts two regions apart, the middle between two
-/// voxels on either side of it lies within half a voxel's edge of it; an interface is flat to within the
-/// voxels' resolution if this holds for all its middles. The fitted plane is not the cut itself, hence a
-/// tenth of an edge more.
+/// voxels on either side of it lies within half a voxel's edge of it; an interface is flat within the voxels'
+/// resolution if all its middles do. The fitted plane is not the cut itself, hence a tenth of an edge more.
 std::vector<LabelPlane> planes_between(const Labelled& labelled) {
   constexpr std::size_t fewest = 16;
   constexpr double most_edges = 0.6, near_share = 0.99;

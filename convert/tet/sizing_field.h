@@ -53,10 +53,10 @@ class SizingField {
 };
 
 /// The same surface with smaller triangles at refinements. Sides longer than 4/3 of the size at their middles
-/// are halved, the longest of a triangle first, so that angles stay over half the smallest before (Rivara
-/// 1984). Points keep their numbers and new ones follow. Faces keep their planes and winding, so a closed
-/// surface stays closed and keeps its volume. Throws voxel::Error (Resource) beyond four million triangles.
-/// Cost: n log n of the answer.
+/// are halved, the longest of a triangle first, so that angles stay above half of the smallest former angle
+/// (Rivara 1984). Points keep their numbers and new ones follow. Faces keep their planes and winding, so a
+/// closed surface stays closed and keeps its volume. Throws voxel::Error (Resource) beyond four million
+/// triangles. Cost: n log n of the answer.
 brep::Triangles refined_surface(const brep::Triangles& surface, const SizingField& sizes);
 
 /// Describes places where elements are more than three times the size that a refinement allows at their
