@@ -35,7 +35,7 @@ struct Subject {
 ///   column. A subject whose scans are unknown has `trouble` set.
 std::vector<Subject> find_subjects(const std::filesystem::path& input, const Plan& plan);
 
-/// Doubts about a cohort as a whole, one sentence each: subjects with the same path of a scan, and unused
+/// Doubts about the whole cohort, one sentence each: subjects that share the path of a scan, and unused
 /// columns of a table of scans. None for BIDS's participants.tsv, whose columns describe people. Throws as
 /// find_subjects() does if the table cannot be read.
 std::vector<std::string> doubts_of_cohort(const std::filesystem::path& input, const Plan& plan,

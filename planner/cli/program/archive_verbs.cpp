@@ -296,7 +296,8 @@ void add_archive_verbs(Program& program) {
       "  octotomy send dicom_folder --to dicom://ORTHANC@localhost:4242\n"
       "  octotomy send --echo --to dicoms://ARCHIVE@pacs.example:2762 --authorities hospital.pem",
       [&program, sent] { return send(program, *sent); });
-  sends.add_option("files", sent->files, "DICOM files, or folders of them")->check(CLI::ExistingPath);
+  sends.add_option("files", sent->files, "DICOM files, or folders that contain DICOM files")
+      ->check(CLI::ExistingPath);
   sends
       .add_option("--to", sent->address,
                   "http:// or https:// of a DICOMweb service; dicom://TITLE@HOST:PORT, or dicoms:// for TLS")

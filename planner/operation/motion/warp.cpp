@@ -51,8 +51,8 @@ double fade_of(const Warp& warp, double largest_mm) {
   return *warp.fade_mm;
 }
 
-/// Throws std::runtime_error with the place if elements are turned over: no tissue moves like that, and the
-/// scan of such a field shows one place twice.
+/// Throws std::runtime_error with the place if elements are inverted: no tissue moves like that, and the scan
+/// of such a field shows one place twice.
 void refuse_turned_over(const convert::DisplacementField& field, const std::filesystem::path& path) {
   const std::vector<convert::TurnedOver> found = field.turned_over();
   if (found.empty()) return;

@@ -258,11 +258,11 @@ Operation tooth_scan_operation() {
                  .to(1.0))
       .takes(
           field("frame", &ToothScan::frame,
-                "Directions of x, y and z in the scan's file, in place of what the file states: LPS, RAS, or "
-                "three other letters of L or R, A or P, S or I. Default: what the file states, else LPS."))
+                "Directions of x, y and z in the scan's file, in place of the file's statement: LPS, RAS, or "
+                "three other letters of L or R, A or P, S or I. Default: the file's statement, else LPS."))
       .takes(field("unit", &ToothScan::unit,
-                   "The unit of the file's lengths, in place of what the file states. Default: what the file "
-                   "states, else mm.")
+                   "The unit of the file's lengths, in place of the file's statement. Default: the file's "
+                   "statement, else mm.")
                  .one_of({"um", "mm", "cm", "m", "inch", "foot"}))
       .example(R"({"id": "sharp", "do": "tooth_scan", "object": "maxilla", "path": "upper_scan.stl",
         "points": [[-24, -52, -58], [0, -83, -58], [24, -52, -58]],
