@@ -21,8 +21,8 @@ struct Cloud {
   glm::dmat3 axes{1.0};    ///< columns, by falling spread, right-handed
 };
 
-/// Spreads `count` samples over the surface. Throws std::invalid_argument, which calls the surface `which`,
-/// if it has no area.
+/// Spreads `count` samples over the surface. Throws std::invalid_argument, naming the surface by `which`, if
+/// it has no area.
 Cloud cloud_of(const Mesh& mesh, std::size_t count, const std::string& which);
 
 /// The fit from `start`. Only if `widens` is set, the last step uses all samples within the noise. Throws and

@@ -45,12 +45,12 @@ struct TrustedFrom {
   std::vector<glm::dmat4> start_ends = {};  ///< where each start of the search ended; none: a start was given
 };
 
-/// Judges a motion. A right one brings much more of the surface to within the noise than any other motion
-/// that the search found; at a wrong one, the search's other ends match about as much. Motions that match
-/// equally much, each to within the noise, are equal answers of a symmetric shape. If their matches are small
-/// and differ, the motion is not right. Neither is a small match whose distances are scattered evenly instead
-/// of ending within the noise, however little other motions match. Without a search the share alone decides,
-/// and a small one is doubtful. A residual far above the noise is doubtful, too.
+/// Judges a motion. A right motion brings a much larger share of the surface within the noise than any other
+/// motion found by the search; if the motion is wrong, the search's other ends match about the same share.
+/// Motions that match equally much, each to within the noise, are equal answers of a symmetric shape. If
+/// their matches are small and differ, the motion is not right. Neither is a small match whose distances are
+/// scattered evenly instead of ending within the noise, however little other motions match. Without a search
+/// the share alone decides, and a small one is doubtful. A residual far above the noise is doubtful, too.
 FitTrust trust_of(const glm::dmat4& motion, const TrustedFrom& from);
 
 }  // namespace octotomy::brep

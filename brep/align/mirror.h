@@ -23,8 +23,8 @@ Mesh mirrored(const Mesh& mesh, const MirrorPlane& plane);
 Solid mirrored(const Solid& solid, const MirrorPlane& plane);
 
 struct MirrorFitOptions {
-  /// The plane near which the result lies, to about 20 degrees. None: tries the planes square to the
-  /// surface's three axes, and those about which most pairs of points are mirror images.
+  /// The plane near which the result lies, to about 20 degrees. None: tries the planes perpendicular to the
+  /// surface's three axes, and the planes about which the most pairs of points are mirror images.
   std::optional<MirrorPlane> start = std::nullopt;
   /// Share of the surface's area that has a counterpart on the other side, as in SurfaceFitOptions: the
   /// missing or crooked part of one side must be less than the rest. Without a start, half of this share is
@@ -37,8 +37,8 @@ struct MirrorFitOptions {
 };
 
 struct MirrorFit {
-  MirrorPlane plane;  ///< its point is as near to the surface's centre as possible; the largest component of
-                      ///< its normal is positive
+  MirrorPlane plane;    ///< its point is the plane's nearest point to the surface's centre; the largest
+                        ///< component of its normal is positive
   double rms_mm = 0.0;  ///< distance of the mirrored surface from the surface, over the samples kept
   double kept_share = 0.0;
   /// The remaining motion that would fit the mirror image to the surface best, as rotation about the normal

@@ -160,8 +160,8 @@ LandmarkFit register_landmarks(const std::vector<Landmark>& moving, const std::v
                                    motion == MotionModel::three_points ? pairs.begin() + 3 : pairs.end());
   if (on_a_line(deciding, &Pair::from) || on_a_line(deciding, &Pair::to))
     throw InvalidInput(
-        "register: the landmarks found in both sets lie on one line, so the rotation about it is "
-        "undetermined: add a landmark beside it");
+        "register: the landmarks found in both sets lie on one line, so the rotation about that line is "
+        "undetermined: add a landmark off the line");
 
   const glm::dmat3 turn = motion == MotionModel::three_points
                               ? frame_of(pairs, &Pair::to) * glm::transpose(frame_of(pairs, &Pair::from))

@@ -34,9 +34,9 @@ enum class MotionModel {
 /// never a reflection. three_points matches the first pair (in the moving set's order) exactly, for sets in
 /// which one landmark is the most reliable. Throws std::invalid_argument, which names the landmark or what is
 /// missing, if a name occurs twice in one set, a weight or point is out of range, fewer than three names
-/// occur in both sets, or these lie on one line, which leaves a rotation undetermined. Cost: linear. Source:
-/// Horn, "Closed-form solution of absolute orientation using unit quaternions", JOSA A 4, 1987; three points:
-/// Ong 1992, 8.3.
+/// occur in both sets, or the shared landmarks lie on one line, which leaves a rotation undetermined. Cost:
+/// linear. Source: Horn, "Closed-form solution of absolute orientation using unit quaternions", JOSA A 4,
+/// 1987; three points: Ong 1992, 8.3.
 LandmarkFit register_landmarks(const std::vector<Landmark>& moving, const std::vector<Landmark>& fixed,
                                MotionModel motion = MotionModel::rigid);
 

@@ -52,7 +52,7 @@ constexpr double rest_share() {
 }
 
 /// A fit that hardly improves for this many rounds counts as at rest: samples at the trimming limit are then
-/// kept and dropped in turn, and none of these choices is better than another.
+/// kept and dropped in turn, and all these choices are equally good.
 constexpr int cycle_rounds = 12;
 
 /// A fit hardly improves if its rms falls by less than this share in cycle_rounds rounds.
@@ -528,7 +528,7 @@ void tell_trust(SurfaceFit& fit) {
                               " mm, the surfaces' own noise " + short_text(trust.noise_mm) + " mm";
   if (trust.verdict == FitVerdict::Failed)
     fit.findings.push_back("FAIL registration: no position was found at which the surfaces match: " +
-                           figures + ": give --landmarks, or keep only what both surfaces show");
+                           figures + ": give --landmarks, or keep only the parts that both surfaces show");
   else
     fit.findings.push_back("WARN registration: the position is doubtful: " + figures +
                            ": look at the result, or give --landmarks");

@@ -85,15 +85,16 @@ struct SurfaceFit {
 
 /// The rigid motion that fits the moving surface to the fixed one, both in LPS millimetres. Parts of either
 /// may be missing: samples whose nearest point lies on the other's border, or whose normal points the other
-/// way, have no counterpart, and the furthest of the others are trimmed. The last refinement uses all samples whose
-/// distance is within three standard deviations of the kept ones' noise. Without a start, a fit that is not trusted
-/// is repeated with a half and a quarter of the overlap; a finding reports if such a fit is returned. Throws
-/// std::invalid_argument if a surface has no area, an option is out of its range, or the overlap keeps fewer than six
-/// samples; Stopped. The same bits on any number of threads. Cost: about 75 short searches of 500 samples, then about
-/// 50 rounds of `samples`: a second for heads, up to three times that for a fit that is tried again. Source: Chen and
-/// Medioni, "Object modelling by registration of multiple range images", IVC 10, 1992 (point to plane); Chetverikov
-/// et al., "Robust Euclidean alignment of 3D point sets: the trimmed iterative closest point algorithm", IVC 23,
-/// 2005; Turk and Levoy 1994 (borders).
+/// way, have no counterpart, and of the remaining samples the farthest are trimmed. The last refinement uses
+/// all samples whose distance is within three standard deviations of the kept ones' noise. Without a start, a
+/// fit that is not trusted is repeated with a half and a quarter of the overlap; a finding reports if such a
+/// fit is returned. Throws std::invalid_argument if a surface has no area, an option is out of its range, or
+/// the overlap keeps fewer than six samples; Stopped. The same bits on any number of threads. Cost: about 75
+/// short searches of 500 samples, then about 50 rounds of `samples`: a second for heads, up to three times
+/// that for a fit that is tried again. Source: Chen and Medioni, "Object modelling by registration of
+/// multiple range images", IVC 10, 1992 (point to plane); Chetverikov et al., "Robust Euclidean alignment of
+/// 3D point sets: the trimmed iterative closest point algorithm", IVC 23, 2005; Turk and Levoy 1994
+/// (borders).
 SurfaceFit register_surfaces(const Mesh& moving, const Mesh& fixed, const SurfaceFitOptions& options = {});
 
 }  // namespace octotomy::brep

@@ -44,8 +44,8 @@ constexpr double patch_mm = 4.0;       ///< about half a tooth
 constexpr std::uint32_t held_one_in = 4;
 constexpr std::size_t least_held = 8;
 constexpr double sample_every_mm = 0.4;
-/// The least share of the held patches that lies near the object's surface. Right scans of the head phantom's
-/// teeth reach 0.8, those of the other jaw less than 0.4.
+/// Smallest accepted share of the held patches that lies near the object's surface. Right scans of the head
+/// phantom's teeth reach 0.8, those of the other jaw less than 0.4.
 constexpr double least_matched = 0.55;
 /// Shares of the samples' spacing. The first is the largest error that the object's surface has on all teeth
 /// alike, the second the largest root mean square of its error. Isosurfaces of partial volumes stay within
@@ -395,14 +395,14 @@ LaidToothScan lay_tooth_scan(const Mesh& scan, const Solid& fixed, const ToothPo
                 mirrored);
     if (matches(mirrored)) refuse(options.scan + mirrored_words);
     refuse("the roots of " + options.scan + " point away from those of " + options.fixed +
-           ": it is a scan of the other jaw, or left and right are exchanged in the order of the points");
+           ": the scan shows the other jaw, or left and right are exchanged in the order of the points");
   }
   fit_patches(crowns_of(surface, start.fixed_from_moving, points, laid, options), near_surface, near,
               start.fixed_from_moving, options, laid);
   if (!matches(laid))
     refuse("only " + short_text(100.0 * laid.matched_share) + " % of the crowns of " + options.scan +
            " lie within " + short_text(match_mm(options)) + " mm of the teeth of " + options.fixed +
-           ": it is a scan of the other jaw or of another patient, or its points are at other places");
+           ": the scan shows the other jaw or another patient, or its points mark other places");
   bound_error(options, laid);
   return laid;
 }

@@ -13,8 +13,8 @@
 
 namespace octotomy::brep {
 
-/// The same places of the teeth on both surfaces, in the same order: at least three, on biting surfaces, not on
-/// one line. Each lies within 3 mm of its surface, because such points are placed by hand.
+/// The same places of the teeth on both surfaces, in the same order: at least three points on biting
+/// surfaces, not on one line. Each lies within 3 mm of its surface, because such points are placed by hand.
 struct ToothPoints {
   std::vector<glm::dvec3> fixed_mm, scan_mm;
 };

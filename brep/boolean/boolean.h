@@ -40,8 +40,8 @@ BooleanResult boolean(const Solid& a, Operation operation, const Solid& b, const
 
 /// The Boolean of any number of solids: their union, their intersection, or the first minus all others. The
 /// residual is the largest of all steps; findings of all steps are listed. Throws std::invalid_argument if
-/// there are no operands, and as above. Cost: unions are computed in pairs, so that each triangle takes part
-/// in log n of them.
+/// there are no operands, and as above. Cost: unions are computed in pairs, so each triangle takes part in
+/// log n unions.
 BooleanResult boolean(const std::vector<Solid>& operands, Operation operation,
                       const std::stop_token& stop = {});
 
@@ -60,18 +60,18 @@ struct Booleans {
   std::optional<Solid> a_minus_b;
   std::optional<Solid> b_minus_a;
   /// The largest of |(A + B) - (A u B + A n B)|, |A - (A-B) - (A n B)| and |B - (B-A) - (A n B)|, as volumes
-  /// relative to A + B; only those whose volumes were all computed.
+  /// relative to A + B; an identity counts only if all its volumes were computed.
   std::optional<double> residual;
   /// The distance by which an operand was moved (see "shifted"): about 4e-6 of the operands' extent, 1 um for
   /// a head. The error of each volume is at most this length times the area of the operand's surface.
   double shift_mm = 0.0;
-  /// Doubts. "shifted": the operands touch so that a difference or intersection would not be manifold (a shared
-  /// edge), or intersect in a way that corefinement cannot resolve, so the named operand was moved. "touches
-  /// itself": sheets of a result share a point, which has a vertex for each sheet. "crosses itself": rounding
-  /// left triangles that intersect, which settled() could not take out. "meets itself": an
-  /// operand's triangles intersect near the cut, usually because an earlier cut was rounded. "film": shells
-  /// thinner than the rounding of points were left out. "without area": an operand's triangles without area
-  /// were removed by another diagonal, which does not change its surface.
+  /// Doubts. "shifted": the operands touch so that a difference or intersection would not be manifold (a
+  /// shared edge), or intersect in a way that corefinement cannot resolve, so the named operand was moved.
+  /// "touches itself": sheets of a result share a point, which has a vertex for each sheet. "crosses itself":
+  /// rounding made triangles intersect, and settled() could not remove these intersections. "meets itself":
+  /// an operand's triangles intersect near the cut, usually because an earlier cut was rounded. "film":
+  /// shells thinner than the rounding of points were left out. "without area": an operand's triangles without
+  /// area were removed by another diagonal, which does not change its surface.
   std::vector<std::string> findings;
 };
 

@@ -137,7 +137,7 @@ Triangles CommonFrame::moved_back(const Triangles& triangles) const {
     p = is_given[v] ? given->second : origin_mm + lps_from_frame * p;
   }
   // Crossing points that coincide except for rounding become one, because the triangles between them are
-  // turned over.
+  // reversed.
   for (const auto& face : back.faces)
     for (std::size_t k = 0; k < 3; ++k) {
       std::uint32_t v = face[k], w = face[(k + 1) % 3];
@@ -191,8 +191,8 @@ std::optional<CommonFrame> common_frame(const Solid& a, const Solid& b) {
   }
   if (!are_apart(of_a.points_mm, turned_a.points_mm) || !are_apart(of_b.points_mm, turned_b.points_mm))
     return std::nullopt;
-  // Points that lay off a plane by more than the last places of doubles are not moved back: that could turn
-  // over the triangles cut beside them.
+  // Points that lay off a plane by more than the last places of doubles are not moved back: that could
+  // reverse the triangles cut beside them.
   frame.kept_mm = apart_along_axis() * std::numeric_limits<double>::epsilon() * rounding.reach_mm;
   const auto keep = [&](const Triangles& given, const Triangles& exact, const Triangles& turned) {
     for (std::size_t i = 0; i < turned.points_mm.size(); ++i) {

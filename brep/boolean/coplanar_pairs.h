@@ -19,7 +19,7 @@ struct PointRounding {
 PointRounding point_rounding(const Triangles& a, const Triangles& b);
 
 /// Normals that differ by less than this count as one direction. Rounding of the points turns a triangle's
-/// normal by the rounding divided by the triangle's height, so that triangles whose height is below a million
+/// normal by the rounding divided by the triangle's height, so triangles with a height below a million
 /// roundings may be missed.
 constexpr double same_direction() {
   return 1e-6;

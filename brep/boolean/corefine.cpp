@@ -39,7 +39,7 @@ inline bool Constrained_Delaunay_triangulation_2<CutTraits, CutLinks>::is_valid(
 
 namespace Box_intersection_d {
 /// The boxes by which corefinement finds edges and faces that meet. CGAL orders equal boxes by address and
-/// computes a point on several of them from the first pair that it finds, so the last digits of points would
+/// computes a point on several boxes from the first pair that it finds, so the last digits of points would
 /// depend on the heap. These boxes are ordered by a number assigned at creation.
 template <>
 class Box_with_info_d<double, 3, OpenMesh::HalfedgeHandle, ID_FROM_BOX_ADDRESS>
@@ -242,9 +242,8 @@ Triangles finished(const Mesh& mesh) {
   return in_coordinate_order(ordered);
 }
 
-/// A number of steps far above that of any correct corefinement, which takes about 100 steps per triangle
-/// (measured), and n^2 for a fan of n triangles around a point. An endless ring uses up all steps, a
-/// nanosecond each.
+/// Limit of steps, far above the number in any correct corefinement: about 100 steps per triangle (measured),
+/// and n^2 for a fan of n triangles around a point. An endless ring uses up all steps, a nanosecond each.
 std::size_t step_limit(const Mesh& a, const Mesh& b) {
   const std::size_t triangles = a.n_faces() + b.n_faces();
   return std::min<std::size_t>(10'000 * triangles, 100'000'000 + 500 * triangles);

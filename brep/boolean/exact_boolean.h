@@ -19,12 +19,12 @@ struct ExactBoolean {
 /// boolean() with exact numbers for every new point, and a proof: |A| + |B| = |A u B| + |A n B| and, for a
 /// difference, |A| = |A - B| + |A n B| hold as rational numbers; otherwise Error (Geometry) states the
 /// difference. If the union is not manifold and not wanted, |B| = |B - A| + |A n B| replaces the first
-/// equation. The result is also checked by the lines of boolean(). Nothing is ever shifted: throws Error
-/// (Geometry) if the wanted result, or another one that the proof needs, would not be manifold, or if an operand
-/// touches itself within the other's box. Also throws
-/// Stopped, and std::invalid_argument if an operand is inside out. Cost: four times boolean()'s corefinement
-/// of whole surfaces, twice that if the union is not manifold, and about 100 us per triangle for the volumes.
-/// Source: CGAL's corefinement over its kernel of exact constructions.
+/// equation. The result is also checked by the lines of boolean(). Never shifts an operand: throws Error
+/// (Geometry) if the wanted result, or another one that the proof needs, would not be manifold, or if an
+/// operand touches itself within the other's box. Also throws Stopped, and std::invalid_argument if an
+/// operand is inside out. Cost: four times boolean()'s corefinement of whole surfaces, twice that if the
+/// union is not manifold, and about 100 us per triangle for the volumes. Source: CGAL's corefinement over its
+/// kernel of exact constructions.
 ExactBoolean exact_boolean(const Solid& a, Operation operation, const Solid& b,
                            const Progress& progress = {});
 

@@ -42,7 +42,8 @@ double tolerance_mm(double reach) {
   return 0x1p20 * std::numeric_limits<double>::epsilon() * reach;
 }
 
-/// The least height of a triangle, as seen along x, at which a line through it avoids its sides.
+/// Smallest height of a triangle, as seen along x, for which a line through the triangle is sure to avoid its
+/// sides.
 double clearance_mm(double reach) {
   return 0x1p12 * std::numeric_limits<double>::epsilon() * reach;
 }

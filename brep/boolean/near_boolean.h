@@ -24,11 +24,12 @@ struct NearBoolean {
 /// The Booleans of two solids, with little work for triangles that do not meet the other surface. Triangles
 /// that meet it are cut out, corefined as open surfaces and joined again along their unchanged borders, point
 /// by point. The remaining triangles form parts, each wholly inside or outside the other solid; the borders
-/// decide which, and a ray confirms it. The volume of a wanted result is that of its triangles; the volume of
-/// a result that serves only as a check is computed from near triangles and parts. Gives up, with the reason
-/// in `obstacle`, if this method would not be faster or not certain: more than half of the triangles are
-/// near, the surfaces only touch, faces nearly coincide, a result is not manifold, or border, ray and seam
-/// disagree. Cost: linear in all triangles, about 0.2 us each, plus corefine() for the near ones.
+/// decide which, and a ray confirms it. The volume of a wanted result is computed from its triangles; the
+/// volume of a result that serves only as a check is computed from near triangles and parts. Gives up, with
+/// the reason in `obstacle`, if this method would be no faster, or its answer uncertain: more than half of
+/// the triangles are near, the surfaces only touch, faces nearly coincide, a result is not manifold, or
+/// border, ray and seam disagree. Cost: linear in all triangles, about 0.2 us each, plus corefine() for the
+/// near ones.
 NearBoolean near_boolean(const Solid& a, const Solid& b, const Wanted& wanted,
                          const std::stop_token& stop = {});
 

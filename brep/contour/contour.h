@@ -55,8 +55,8 @@ double perimeter_mm(const Contour& contour);
 
 /// For each contour, the index of the smallest one around it, or none. Precondition: contours are closed and
 /// simple and do not cross each other; they may touch. Throws std::invalid_argument if one is open. Cost: n
-/// log n in the points, and one test for each pair of contours of which the larger one's bounding box
-/// contains the smaller.
+/// log n in the points, and one test for each pair of contours whose larger bounding box contains the smaller
+/// one.
 std::vector<std::optional<std::size_t>> nest(const std::vector<Contour>& contours);
 
 /// The number of contours around each, from the result of nest(): outer boundaries have an even depth, holes

@@ -34,10 +34,9 @@ struct CrossSection {
 /// one may stay open. Cost: linear.
 CrossSection cross_section(const Mesh& mesh, const Plane& plane);
 
-/// Separates contours that touch themselves or each other at a point, which they contain more than once. A
-/// plane through a saddle's vertex makes such contours, and tile_sections() refuses them. Cuts off the corner
-/// at 1/1024 of each of its sides, the share by which follow() keeps crossings away from samples. Cost: n log
-/// n in the points.
+/// Separates contours that touch themselves or each other at a shared point. A plane through a saddle's
+/// vertex makes such contours, and tile_sections() refuses them. Cuts off the corner at 1/1024 of each of its
+/// sides, the share by which follow() keeps crossings away from samples. Cost: n log n in the points.
 void part_touching(std::vector<Contour>& contours);
 
 }  // namespace octotomy::brep

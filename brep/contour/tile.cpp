@@ -1,15 +1,15 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// A strip is a path in a graph: node (i, j) is the span from the lower ring's point i to the upper ring's
-// point j, and a step to (i + 1, j) or (i, j + 1) is a triangle. A path's sum is first the blame of its spans,
-// which is 0 unless spans are to be clear of contours, then its cost. Passes: 1 choose the start; 2 walk greedily
-// from there, or 3 find the path with the least sum among those near the greedy one. No better path has a larger sum
-// at any node, so 4 find the path with the least sum over nodes whose sums do not exceed that limit, after trials
-// with smaller limits of the blame. If costs depend on single triangles, the strip may start elsewhere: every strip
-// has a span at the lower ring's first point. Therefore 5 find the path that starts half way between two known ones,
-// which it need not cross, and so on; 6 write the triangles of the best.
-// Over 600 lines, because all passes share the rings' scores, costs and bounds.
-// Departure from Fuchs, Kedem and Uselton: nodes whose sums exceed that of a known path are left out, which changes no
-// result, because steps have no cost below zero; of greatest_volume only the blame is limited.
+// SPDX-License-Identifier: AGPL-3.0-or-later A strip is a path in a graph: node (i, j) is the span from the
+// lower ring's point i to the upper ring's point j, and a step to (i + 1, j) or (i, j + 1) is a triangle. A
+// path's sum is first the blame of its spans, which is 0 unless spans are to be clear of contours, then its
+// cost. Passes: 1 choose the start; 2 walk greedily from there, or 3 find the path with the least sum among
+// those near the greedy one. No better path has a larger sum at any node, so 4 find the path with the least
+// sum over nodes whose sums do not exceed that limit, after trials with smaller limits of the blame. If costs
+// depend on single triangles, the strip may start elsewhere: every strip has a span at the lower ring's first
+// point. Therefore 5 find the path that starts half way between two known ones, which it need not cross, and
+// so on; 6 write the triangles of the best. Over 600 lines, because all passes share the rings' scores, costs
+// and bounds. Departure from Fuchs, Kedem and Uselton: nodes with a larger sum than a known path are left
+// out. This changes no result, because no step has a negative cost; of greatest_volume only the blame is
+// limited.
 #include "brep/contour/tile.h"
 
 #include <algorithm>
@@ -105,8 +105,8 @@ class Blame {
     return {least_of(m_, n_, [&](std::size_t i, std::size_t j) { return (*this)(i, j); }),
             least_of(n_, m_, [&](std::size_t j, std::size_t i) { return (*this)(i, j); })};
   }
-  /// The score of a step from a span: the score of the step's triangle plus that of the span to which the
-  /// step leads.
+  /// The score of a step from a span: the score of the step's triangle plus the score of the span to which
+  /// the step leads.
   int of(std::size_t i, std::size_t j, Step step) const {
     const int of_span = (*this)(i + (step == along_lower), j + (step == along_upper));
     if (of_step_[step].empty()) return of_span;
@@ -345,9 +345,9 @@ class LeastPath {
     return best;
   }
 
-  /// The path of least sum from (0, 0) to (m, n) whose strip is a surface, which means that its steps along
-  /// the upper ring start at two or more points of the lower ring. Any other strip contains a span twice.
-  /// With three points on each ring such a path exists. For costs of single triangles.
+  /// The path of least sum from (0, 0) to (m, n) whose strip is a surface: its steps along the upper ring
+  /// start at two or more points of the lower ring. Any other strip contains a span twice. With three points
+  /// on each ring such a path exists. For costs of single triangles.
   std::vector<Step> surface_steps() const {
     // The points of the lower ring at which the steps along the upper ring have started so far.
     enum Held : std::uint8_t { nowhere, at_start, here, behind, at_two, held_count };

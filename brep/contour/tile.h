@@ -30,10 +30,10 @@ struct Ring {
 /// The other two start at the span that is shortest after both rings' boxes are scaled to coincide, so that
 /// shifted shapes are matched by shape; least_angle is optimal among the strips through this span. A strip
 /// may cross itself if the rings differ much. Throws std::invalid_argument if a ring has fewer than three
-/// points or the lower one is not lower, Error (Resource) if tables would take more than a gigabyte. Cost: m
-/// n time with a small factor, plus that of the pairs of points that may be on the best strip: few for least_area
-/// between similar rings, all for least_angle and greatest_volume; at worst m n log n, and 2 m n bytes. Source: the
-/// papers named above.
+/// points or the lower one is not lower, Error (Resource) if tables would take more than a gigabyte. Cost:
+/// time m n with a small factor, plus time for each pair of points that may be on the best strip: few pairs
+/// for least_area between similar rings, all pairs for least_angle and greatest_volume; at worst m n log n,
+/// and 2 m n bytes. Source: the papers named above.
 std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& upper, TileCost cost);
 
 /// The best strip by the cost among those near the strip of shortest spans: at each lower point, its spans
@@ -45,22 +45,23 @@ std::vector<std::array<std::uint32_t, 3>> tile_near(const Ring& lower, const Rin
 /// The best strip by the cost among those whose spans cross the fewest sides of contours in projection and
 /// lie over the area of exactly one ring. This keeps a strip from crossing itself: apart from crossings of
 /// the rings themselves, such a strip exists unless one ring has folds that are invisible from the other.
-/// Spans longer than twice the largest distance from a point to the nearest point of the other ring, plus the longest
-/// side, count as crossing the most sides. `avoided` are triangles of earlier strips of these rings that crossed
-/// something, repeated once for each crossing: each weighs as a side that a span crosses. shortest_span and
-/// least_angle start at the shortest of the best spans. With triangles to avoid, shortest_span minimises the sum of
-/// its spans instead of choosing step by step, because a single step does not show which triangles follow; rings too
-/// long for the tables are still tiled step by step. If the best strip by least_area or greatest_volume is two cones
-/// that meet at one span, which is no surface, the best surface that contains this span is returned. `scores` keeps a
-/// byte per pair of points from one call for the same rings and sides to the next; empty at first. Throws and costs
-/// as tile(), plus, for each span that a good strip may contain, a test against the sides near the span.
+/// Spans longer than twice the largest distance from a point to the nearest point of the other ring, plus the
+/// longest side, count as crossing the most sides. `avoided` lists triangles of earlier strips of these rings
+/// that crossed another triangle, once for each crossing. Each entry has the weight of a side that a span
+/// crosses. shortest_span and least_angle start at the shortest of the best spans. With triangles to avoid,
+/// shortest_span minimises the sum of its spans instead of choosing step by step, because a single step does
+/// not show which triangles follow; rings too long for the tables are still tiled step by step. If the best
+/// strip by least_area or greatest_volume is no surface but two cones that meet at one span, returns the best
+/// surface that contains this span. `scores` keeps a byte per pair of points from one call for the same rings
+/// and sides to the next; empty at first. Throws and costs as tile(), plus, for each span that a good strip
+/// may contain, a test against the sides near the span.
 std::vector<std::array<std::uint32_t, 3>> tile_clear(
     const Ring& lower, const Ring& upper, TileCost cost, const SpanClearance& sides,
     std::vector<std::uint8_t>& scores, const std::vector<std::array<std::uint32_t, 3>>& avoided = {});
 
-/// The same, with both rings scaled for the test so that their boxes coincide, and tested against their own sides
-/// only. This serves thin walls that lean by more than their thickness: a good span of the outer side then crosses
-/// the inner side in projection, but nothing in space.
+/// As above, but both rings are scaled for the test so that their boxes coincide, and are tested against
+/// their own sides only. This serves thin walls that lean by more than their thickness: a good span of the
+/// outer side then crosses the inner side in projection, but nothing in space.
 std::vector<std::array<std::uint32_t, 3>> tile_clear_aligned(
     const Ring& lower, const Ring& upper, TileCost cost, std::vector<std::uint8_t>& scores,
     const std::vector<std::array<std::uint32_t, 3>>& avoided = {});

@@ -28,8 +28,8 @@ struct TextStatement {
 std::vector<TextStatement> stated_units(std::string_view text);
 
 /// Statements that follow "space", "coordinate system" or "coordinateSystem". After =, any name that
-/// frame_named() accepts is a frame; elsewhere only capitals that are not an English word, lps, ras, or words
-/// joined by hyphens.
+/// frame_named() accepts is a frame; elsewhere a frame is one of: "lps" or "ras" in any case, words joined by
+/// hyphens, or capitals that are no English word.
 std::vector<TextStatement> stated_frames(std::string_view text);
 
 }  // namespace octotomy::brep

@@ -139,7 +139,7 @@ std::vector<MeshFinding> findings_beside(const Extent& mesh, const Extent& other
                       {-mesh.low_mm.x, -mesh.low_mm.y, mesh.high_mm.z}};
   findings.push_back({"place", MeshVerdict::Warn,
                       "it lies wholly outside of " + beside +
-                          (meet(turned, other) ? "; with x and y negated it lies inside: try --frame RAS, or "
+                          (meet(turned, other) ? "; with x and y negated the two meet: try --frame RAS, or "
                                                  "--frame LPS where the file says RAS"
                                                : "")});
   return findings;

@@ -8,7 +8,7 @@
 #include <vector>
 
 // Findings about a mesh file: its statements on frame, unit, program and polygons, the values that were used,
-// and those that were assumed because the file states none. A guess is a Warn.
+// and the values that were assumed because the file states none. A guess is a Warn.
 namespace octotomy::brep {
 
 enum class MeshVerdict { Pass, Warn, Fail };
@@ -48,10 +48,10 @@ struct Extent {
 };
 
 /// Reasons to doubt a mesh that is used together with a larger object, which `beside` names ("the scan"):
-/// - scale: its longest side is shorter than a hundredth of the other's, or longer than ten times that. A
+/// - scale: its longest side is shorter than a hundredth or longer than ten times the other's longest side. A
 ///   screw is a fiftieth of a head, a cutting box at most a few heads. Names the unit in which the mesh would
 ///   fit.
-/// - place: it lies wholly outside the other. Reports if it would lie inside with x and y negated.
+/// - place: it lies wholly outside the other. Reports if it would meet the other with x and y negated.
 /// Empty if there is no doubt.
 std::vector<MeshFinding> findings_beside(const Extent& mesh, const Extent& other, const std::string& beside);
 

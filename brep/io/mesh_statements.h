@@ -16,7 +16,7 @@ namespace octotomy::brep {
 class MeshStatements {
  public:
   /// Adds the statements that stated_frames() and stated_units() (free_text.h) find in a header, comment or
-  /// title, which `where` names ("the header"). "LPS millimetres", which this program writes, states both.
+  /// title, named by `where` ("the header"). "LPS millimetres", which this program writes, states both.
   void read_text(std::string_view text, const std::string& where);
   /// Adds a statement of the format itself or of a field.
   void add_frame(const std::string& name, const std::string& words);

@@ -49,7 +49,7 @@ bool is_mesh_file(const std::filesystem::path& path);
 /// are those of the options, else those stated by the file (mesh_statements.h; glTF has metres with y up and
 /// z to the front, 3MF names its unit), else LPS millimetres are assumed. The audit reports which.
 /// Coordinates beyond 1.2e19 mm are refused. Throws Error (Input) with path, place and reason; never
-/// allocates beyond a fixed multiple of what the file's size can hold.
+/// allocates more than a fixed multiple of the triangles that fit into the file's size.
 MeshFile read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
 /// The triangles of read_mesh() alone.

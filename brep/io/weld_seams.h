@@ -14,7 +14,7 @@ namespace octotomy::brep {
 /// - A seam is a pair of open sides between the same two positions in opposite directions, without a third
 ///   open side there. Its points are merged if their coordinates are equal bit for bit; 0.0 and -0.0 are
 ///   equal. Closed shells have no open sides, so they stay separate where they touch.
-/// - A triangle that has a point twice is left out, and so is one whose corners coincide and that shares no
+/// - Leaves out a triangle that names a point twice, and a triangle with coinciding corners that shares no
 ///   side with another.
 /// - If joining would create an edge of more than two triangles, or of two with the same direction, nothing
 ///   is joined. Points that are no longer used are removed; the others keep their order. Returns the audit's

@@ -32,8 +32,8 @@ Triangles surface_of_part(const PartedSurface& parted, int part);
 bool is_parts_file(const std::filesystem::path& path);
 
 /// Writes all parts as one file. .vtp: each triangle once, doubles, with `part_behind` and `part_in_front`
-/// per triangle and `part_numbers` and `part_names` for the file; .obj: a group per part, as text that reads
-/// back to the same doubles; .glb: a named node per part, all with the same points, single precision,
+/// per triangle and `part_numbers` and `part_names` for the file; .obj: a group per part, in text from which
+/// readers get the same doubles; .glb: a named node per part, all with the same points, single precision,
 /// transformed as by write_mesh(). In .obj and .glb both parts contain each triangle between them, one of
 /// them reversed. LPS millimetres. Written to a temporary file and renamed into place. Preconditions: each
 /// triangle has sides, of two different parts, and every part has a name. Throws std::invalid_argument if

@@ -19,8 +19,8 @@ struct DifferenceOptions {
   std::size_t bins = 41;  ///< bins of the histogram, at least 1; with an odd number one is centred at zero
 };
 
-/// Distances from one surface's points to the nearest points of the other, weighted by the area that they
-/// represent.
+/// Distances from one surface's points to the nearest points of the other, weighted by the area that each
+/// point represents.
 struct OneWay {
   double mean_mm = 0.0;  ///< of the absolute distances
   double rms_mm = 0.0;

@@ -283,8 +283,8 @@ LargestBall::LargestBall(std::vector<Ball> balls) : balls_(balls.size()) {
 Ball LargestBall::about(const glm::dvec3& p_mm, const Ball& known) const {
   Ball best = known;
   if (nodes_.empty()) return best;
-  // The largest radius that a node can still contribute: that of its largest ball if that could reach the
-  // point, else 0.
+  // The largest radius that a node can still contribute: its largest ball's radius if that ball could reach
+  // the point, else 0.
   const auto offers = [&](std::uint32_t number) {
     const Node& node = nodes_[number];
     const double square = squared_distance_to_box(p_mm, node.low_mm, node.high_mm);

@@ -66,9 +66,9 @@ class LargestBall {
  public:
   explicit LargestBall(std::vector<Ball> balls);
 
-  /// The largest ball that holds the point, or `known` if that is larger. The radius may be too small by up
-  /// to 0.1 %, so that not all balls of nearly one size are compared. Cost: about log n where radii vary
-  /// slowly from place to place.
+  /// The largest ball that contains the point, or `known` if `known` is larger. The radius may be too small
+  /// by up to 0.1 %, so that not all balls of nearly one size are compared. Cost: about log n where radii
+  /// vary slowly from place to place.
   Ball about(const glm::dvec3& p_mm, const Ball& known) const;
 
  private:

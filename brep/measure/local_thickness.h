@@ -69,8 +69,8 @@ struct ThinnestWall {
   double reach_mm = 0.0;               ///< as of LocalThickness
 };
 
-/// The thinnest wall alone, by the same samples of the surface and their balls, but without the balls of the
-/// volume's points: thicknesses are at most those of local_thickness(), because fewer balls are tried. Throws
+/// The thinnest wall alone, from the same samples of the surface and their balls, but without the balls of
+/// the volume's points. Because fewer balls are tried, no thickness exceeds that of local_thickness(). Throws
 /// as local_thickness(). The same bits on any number of threads. Cost: less than half of local_thickness().
 ThinnestWall thinnest_wall(const Solid& solid, const LocalThicknessOptions& options = {});
 

@@ -145,7 +145,7 @@ std::vector<Component> components(const Mesh& mesh) {
   for (const auto e : mesh.edges()) {
     if (mesh.is_boundary(e))
       throw InvalidInput("the components of an open mesh have no volume: edge " + std::to_string(e.idx()) +
-                         " has one triangle; close it first");
+                         " belongs to one triangle only: close the mesh first");
     const auto h = mesh.halfedge_handle(e, 0);
     joined.join(static_cast<std::uint32_t>(mesh.face_handle(h).idx()),
                 static_cast<std::uint32_t>(mesh.opposite_face_handle(h).idx()));

@@ -29,7 +29,7 @@ std::vector<Component> components(const Mesh& mesh);
 /// are cavities. Cost: linear, one ray per cavity.
 std::vector<Component> components(const Linked& linked, const std::function<const SurfaceTree&()>& tree);
 
-/// The mesh of some of a mesh's faces, in the order given, without other vertices.
+/// A mesh of the given faces of a mesh, in the given order, without vertices of other faces.
 Mesh part_of(const Mesh& mesh, const std::vector<std::uint32_t>& faces);
 
 }  // namespace octotomy::brep

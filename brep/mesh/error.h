@@ -14,7 +14,7 @@ enum class ErrorCode {
   Resource,   ///< memory, disk or time was exhausted
 };
 
-/// The mesh kernel's error: a code and a message that names the place, the cause and what to do next.
+/// The mesh kernel's error: a code and a message that names the place, the cause and the next step.
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
@@ -29,8 +29,8 @@ struct Stopped : Error {
   explicit Stopped(const std::string& message) : Error(ErrorCode::Cancelled, message) {}
 };
 
-/// Refuses a value or data that may come from outside the program: what is wrong and, if it helps, what to do.
-/// A precondition that only the caller can break throws a plain std::invalid_argument.
+/// Refuses a value or data that may come from outside the program. The message states the fault and, if it
+/// helps, the remedy. A precondition that only the caller can break throws a plain std::invalid_argument.
 struct InvalidInput : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };

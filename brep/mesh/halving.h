@@ -37,8 +37,8 @@ struct Centred {
 
 /// Builds a binary tree over items by halving. Each node is split at the median centre along its longest
 /// axis; equal centres are ordered by number. Calls leaf(node, begin, end) for each leaf, whose items are
-/// begin .. end - 1, and inner(node, second) for each other node after its children, which are `node` + 1 and
-/// `second`; in parallel. Precondition: item numbers are unique. The result is the same on any number of
+/// begin .. end - 1, and inner(node, second) for each other node, after the calls for its children `node` + 1
+/// and `second`; in parallel. Precondition: item numbers are unique. The result is the same on any number of
 /// threads. Cost: n log n.
 template <typename Leaf, typename Inner>
 void halve(std::vector<Centred>& items, std::uint32_t leaf_size, const Leaf& leaf, const Inner& inner,

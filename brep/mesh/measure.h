@@ -31,8 +31,8 @@ struct Measures {
 /// same bits on any number of threads. Cost: linear, parallel, 24 bytes per face.
 Measures measure(const Mesh& mesh);
 
-/// Measures linked triangles. If they are closed, the bits are those of measure(mesh_of(linked)). Cost:
-/// linear, parallel, 30 bytes per triangle.
+/// Measures linked triangles. If the triangles are closed, the result equals measure(mesh_of(linked)) bit for
+/// bit. Cost: linear, parallel, 30 bytes per triangle.
 Measures measure(const Linked& linked);
 
 /// V - E + F of a closed surface, counting points in use. Precondition: each edge has two triangles. Cost:
@@ -46,7 +46,7 @@ struct Size {
   glm::dvec3 low_mm{0.0}, high_mm{0.0};
 };
 
-/// The same bits as those of measure() at a fraction of the cost, because no edges are visited.
+/// Returns the same bits as measure() at a fraction of the cost, because no edges are visited.
 Size size_of(const Triangles& triangles);
 Size size_of(const Mesh& mesh);
 double volume_mm3(const Mesh& mesh);

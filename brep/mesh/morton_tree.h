@@ -59,8 +59,8 @@ struct MortonOrder {
   std::vector<std::uint32_t> numbers;
   std::vector<std::uint64_t> cells;  ///< along the curve, ascending; 20 bits an axis, x lowest
 
-  /// The position at which a run of two or more is split: at the face of the largest cube that divides it, or
-  /// in its middle if all points are in one cell. Cost: log n.
+  /// The position at which a run of two or more items is split: at the face of the largest cube that divides
+  /// the run, or in the run's middle if all points are in one cell. Cost: log n.
   std::size_t split(std::size_t begin, std::size_t end) const;
 };
 

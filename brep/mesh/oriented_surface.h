@@ -19,11 +19,11 @@ struct SignedFoot {
 };
 
 /// A copy of a mesh's surface that computes signed distances of points. The sign comes from the normal at the
-/// nearest point: that of the triangle or, on an edge or vertex, the sum of its triangles' unit normals
-/// weighted by their angles. This sign is correct if the surface is closed. Open surfaces are allowed; see
-/// `on_border`. Points in LPS millimetres. Building: n log n, about 250 bytes per triangle. Source:
-/// Baerentzen and Aanaes, "Signed distance computation using the angle weighted pseudonormal", TVCG 11(3),
-/// 2005.
+/// nearest point: the triangle's normal or, on an edge or vertex, the sum of the adjacent triangles' unit
+/// normals weighted by their angles. This sign is correct if the surface is closed. Open surfaces are
+/// allowed; see `on_border`. Points in LPS millimetres. Building: n log n, about 250 bytes per triangle.
+/// Source: Baerentzen and Aanaes, "Signed distance computation using the angle weighted pseudonormal", TVCG
+/// 11(3), 2005.
 class OrientedSurface {
  public:
   explicit OrientedSurface(const Mesh& mesh);

@@ -10,9 +10,8 @@
 #include <utility>
 
 // Crossings of lines along x and a triangle, for volumes and inside tests. The point where a row meets a side
-// is computed from the side's lower end, whichever triangle the side belongs to, and the sign of a crossing
-// follows from the direction of that side. Lines through a closed surface therefore leave it as often as they
-// enter it.
+// is computed from the side's lower end, for every triangle at that side, and the sign of a crossing follows
+// from the side's direction. Lines through a closed surface therefore leave it as often as they enter it.
 
 namespace octotomy::brep {
 

@@ -159,8 +159,8 @@ SurfaceSamples sample_surface(const Triangles& triangles, double spacing_mm, std
                   "samples " + short_text(spacing_mm) + " mm apart are too many: the triangle at (" +
                       short_text(split.grid.a.x) + ", " + short_text(split.grid.a.y) + ", " +
                       short_text(split.grid.a.z) + ") mm, which is " + short_text(split.longest_mm) +
-                      " mm long, brings them over " + std::to_string(most_samples) +
-                      "; take them further apart or mend the triangle");
+                      " mm long, brings their number above " + std::to_string(most_samples) +
+                      "; increase the distance between samples or mend the triangle");
     first[f + 1] = first[f] + static_cast<std::size_t>(split.count);
   }
   samples.points_mm.resize(first.back());

@@ -28,7 +28,7 @@ struct IntersectionSearch {
 
 /// Finds the pairs exactly, including triangles with the same points. The result is the same on any number of
 /// threads. Cost: n log n, and constant for each pair of triangles whose boxes overlap. Among 64 or more
-/// triangles around one point, only pairs in about the same direction from the point are tested.
+/// triangles around one point, only pairs that lie in nearly the same direction from the point are tested.
 SelfIntersections self_intersections(const IntersectionSearch& search);
 
 }  // namespace octotomy::brep

@@ -34,8 +34,8 @@ class SurePlane {
     pz_ = std::abs(xy) + std::abs(yx);
   }
   /// The side of a point; 0 if rounding may decide. In half epsilons of the products, the error is at most
-  /// four for a component of the normal, six for its product with a difference, and eight for the sum of
-  /// these products.
+  /// four for a component of the normal, six for a component's product with a difference, and eight for the
+  /// sum of these products.
   int side(const glm::dvec3& p) const {
     const double x = p.x - a_.x, y = p.y - a_.y, z = p.z - a_.z;
     return sure_sign(nx_ * x + ny_ * y + nz_ * z, px_ * std::abs(x) + py_ * std::abs(y) + pz_ * std::abs(z));

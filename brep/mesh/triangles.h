@@ -27,7 +27,7 @@ struct Triangles {
 Mesh mesh_of(const Triangles& triangles);
 
 /// Triangles with their neighbours. A side has the number of the corner at which it starts: 3 f + k is side k
-/// of triangle f, from that corner to the next.
+/// of triangle f, from corner k to the next.
 struct Linked {
   /// There is no opposite side: the side is on the boundary.
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();

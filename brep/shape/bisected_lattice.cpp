@@ -358,7 +358,7 @@ class Bisection {
            });
   }
 
-  /// Bisects a tetrahedron, and its halves in turn, until none has the middle of a neighbour's edge.
+  /// Bisects a tetrahedron, and its halves in turn, until no edge has a hanging node.
   void bisect(const Simplex& simplex, std::vector<Simplex>& closed, std::vector<std::uint64_t>& added) {
     if (middles_.insert(middle_of(simplex), {})) added.push_back(middle_of(simplex));
     for (const Simplex& half : halves(simplex))

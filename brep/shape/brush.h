@@ -23,8 +23,8 @@ struct BrushTrace {
   std::optional<Disc> disc = {};      ///< none: a ball
 };
 
-/// The union of all traces. A trace is the union of the polyhedra at its points and the convex hulls of each two
-/// consecutive polyhedra. The findings, shift and residual are those of the Booleans that unite them. Throws
+/// The union of all traces. A trace is the union of the polyhedra at its points and the convex hulls of each
+/// two consecutive polyhedra. The Booleans that unite them supply the findings, shift and residual. Throws
 /// std::invalid_argument if there is no trace or point, or a length is not positive and finite; otherwise as
 /// boolean(). Cost: one boolean() of about 200 triangles for each point.
 BooleanResult brush_solid(const std::vector<BrushTrace>& traces, const std::stop_token& stop = {});

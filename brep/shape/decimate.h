@@ -20,17 +20,17 @@ struct DecimateOptions {
 };
 
 /// A coarser mesh of the same topology whose vertices are vertices of the given one: edges are collapsed in
-/// the order of the error they make. Borders of an open mesh stay as they are. A collapse does not test
-/// triangles farther along the surface, and its error is a distance from planes. If a round makes the mesh
-/// intersect itself, or moves a surface by more than the largest error (surface_error.h), the vertices
-/// about those places are locked. The next round repeats the other collapses as far as they are still
-/// allowed; the last rounds also halve the error. If `faces` is set, each round searches for its collapses
-/// again. If the last round still exceeds the largest error, returns the mesh unchanged. Precondition:
-/// manifold, without self-intersection; so is the result. Throws std::invalid_argument where an option is out
-/// of its range, Error (Geometry) if self-intersections remain after `max_rounds`. Deterministic. Cost: n log
-/// n for the first round; usually there are two to four rounds, and each later one costs a fraction of the
-/// first. Source: Garland and Heckbert, "Surface simplification using quadric error metrics", SIGGRAPH 1997,
-/// by OpenMesh's Decimater, halfedge collapses.
+/// the order of the error that each collapse causes. Borders of an open mesh stay as they are. A collapse
+/// does not test triangles farther along the surface, and its error is a distance from planes. If a round
+/// makes the mesh intersect itself, or moves a surface by more than the largest error (surface_error.h), the
+/// vertices about those places are locked. The next round repeats the other collapses as far as they are
+/// still allowed; the last rounds also halve the error. If `faces` is set, each round searches for its
+/// collapses again. If the last round still exceeds the largest error, returns the mesh unchanged.
+/// Precondition: manifold, without self-intersection; so is the result. Throws std::invalid_argument where an
+/// option is out of its range, Error (Geometry) if self-intersections remain after `max_rounds`.
+/// Deterministic. Cost: n log n for the first round; usually there are two to four rounds, and each later one
+/// costs a fraction of the first. Source: Garland and Heckbert, "Surface simplification using quadric error
+/// metrics", SIGGRAPH 1997, by OpenMesh's Decimater, halfedge collapses.
 Mesh decimate(const Mesh& mesh, const DecimateOptions& options = {});
 
 }  // namespace octotomy::brep

@@ -10,8 +10,7 @@
 // triangles.
 namespace octotomy::brep {
 
-/// The points within by_mm of a solid or, if by_mm is negative, the points inside it that are deeper than
-/// that.
+/// The points within by_mm of a solid or, if by_mm is negative, the points deeper than |by_mm| inside it.
 struct Level {
   Solid solid;  ///< not empty
   double by_mm = 0.0;

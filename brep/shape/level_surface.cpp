@@ -137,7 +137,8 @@ std::vector<glm::dvec3> points_on(const std::vector<CutEdge>& edges, std::vector
 
 Solid level_surface(const LevelField& field, const Size& size, const OffsetOptions& options) {
   const Lattice lattice = lattice_about(size, options);
-  // A ball of the offset's length can roll along the surface, so bumps and dents are at least that wide.
+  // A ball of radius |by_mm| rolls along one side of the surface: the bumps of an outward offset and the
+  // dents of an inward one are at least that wide.
   const BisectionOptions bisection{.side = lattice.side,
                                    .step_mm = lattice.step_mm,
                                    .tolerance_mm = offset_tolerance_mm(options),

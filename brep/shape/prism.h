@@ -19,7 +19,7 @@ struct Prism {
 };
 
 /// The solid of a prism, by Construction; oriented outward for any winding of the polygons. A point that
-/// repeats the one before it, or a last point that repeats the first, is one point. Throws
+/// repeats its predecessor, or a last point that repeats the first, is counted once. Throws
 /// std::invalid_argument, which names the polygon, if polygons cross or touch each other or themselves (the
 /// solid would not be manifold) or have fewer than three points or no area; also if the frame is not
 /// orthonormal or the depths are not in order. Cost: n log n for n points, more where many sides overlap in

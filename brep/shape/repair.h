@@ -62,11 +62,11 @@ struct Repair {
 /// triangles last, until health() finds them consistent. Removes triangles with points that are not finite if
 /// `solid` is set. health() reports the faults that remain. Throws std::invalid_argument if an option is out
 /// of its range, Error (Input) if a triangle refers to no point or to one that is not finite, Error
-/// (Geometry) as enclose(), or if the volume changes by more than `max_volume_share`: with both volumes and,
-/// after enclosing, with options that would be accepted; Stopped. Cost: n log n; removing intersections costs
-/// most. With `solid`, which can enclose instead, they are removed only from surfaces of up to 100 000
-/// triangles. Source: holes after Liepa, "Filling holes in meshes", SGP 2003; holes and intersections as
-/// implemented in CGAL.
+/// (Geometry) as enclose(), or if the volume changes by more than `max_volume_share`. That message contains
+/// both volumes and, after enclosing, options that would be accepted; Stopped. Cost: n log n; removing
+/// intersections costs most. With `solid`, which can enclose instead, they are removed only from surfaces of
+/// up to 100 000 triangles. Source: holes after Liepa, "Filling holes in meshes", SGP 2003; holes and
+/// intersections as implemented in CGAL.
 Repair repair(const Triangles& surface, const RepairOptions& options);
 
 /// A surface whose triangles wind alike.

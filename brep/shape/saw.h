@@ -18,8 +18,8 @@ struct SawCut {
 };
 
 /// The solid that a saw cut removes, to be subtracted. Pieces of the line meet in mitres; its ends are
-/// square. Throws std::invalid_argument if the line has fewer than two points apart as seen along the
-/// direction, depth or kerf is not positive, or the line turns so sharply for the kerf that its sides cross.
+/// square. Throws std::invalid_argument if the line has fewer than two distinct points as seen along the
+/// direction, if depth or kerf is not positive, or if the line turns so sharply that the kerf's sides cross.
 Solid saw_blade(const SawCut& cut);
 
 }  // namespace octotomy::brep

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // 1 A weight at every point: 1 where the scan counts, 0 where the solid does. It grows along the width of the
-//   border with the least of four lengths: the distance of the scan's nearest point from the scan's border, the
-//   height of the point above the depth, its distance within the radius of the chosen crowns, and what is left of
-//   the reach.
-// 2 In a box about the crowns: the surface on which the mixed distances, (1 - w) solid + w scan, are 0. It is made
-//   from cells of one size, of six tetrahedra each; its corners are searched on the cells' edges. It ends at the box's
-//   walls. Blocks of cells far from it are skipped and keep one value.
-// 3 The solid less a slightly smaller box, united with that. Between both boxes the new surface lies a little
-//   within the solid, so that both cross each other nowhere but at the box.
+// border with the least of four lengths: the distance of the scan's nearest point from the scan's border, the
+// height of the point above the depth, its distance within the radius of the chosen crowns, and the remaining
+// reach. 2 In a box about the crowns: the surface on which the mixed distances, (1 - w) solid + w scan, are
+// 0. It is made from cells of one size, of six tetrahedra each; its corners are searched on the cells' edges.
+// It ends at the box's walls. Blocks of cells far from it are skipped and keep one value. 3 The solid less a
+// slightly smaller box, united with that. Between both boxes the new surface lies a little within the solid,
+// so that both cross each other nowhere but at the box.
 //
 // The side of a point of the scan follows from the scan's winding number. Above the plane through its border,
 // this number is at least 1/2 inside a scan of crowns and at most 0 outside. Between these values, which
@@ -453,8 +452,8 @@ Solid without_specks(const Solid& solid, ScanBlend& made) {
   return trusted_solid(part_of(solid.mesh(), kept), proof_of_part(solid.proof()));
 }
 
-/// Measures the surface's area by source, and the largest distance of its part from the scan to the solid
-/// before.
+/// Measures the surface's area by source, and the largest distance to the former solid from the part that the
+/// scan supplied.
 void find_sources(const Solid& before, const Weight& weight, const TurnedBox& box, ScanBlend& made) {
   const Triangles& surface = made.solid.triangles();
   std::vector<glm::dvec3> middles_mm;
@@ -516,9 +515,8 @@ ScanBlend blended_with_scan(const Solid& solid, const Mesh& scan, const ScanBlen
     if (const glm::dvec3 at(p[0], p[1], p[2]); weight.within_mm(at) > 0.0) crowns_mm.push_back(at);
   }
   if (crowns_mm.empty())
-    throw Error(
-        ErrorCode::Geometry,
-        "the scan shows none of the crowns that it is to replace: give points on crowns that it shows");
+    throw Error(ErrorCode::Geometry,
+                "the scan shows none of the crowns that it is to replace: give points on crowns in the scan");
   const double strip_mm = 2.0 * options.cell_mm, inset_mm = options.cell_mm / 8.0;
   const TurnedBox box(options.to_roots, crowns_mm, weight.far_mm() + 2.0 * strip_mm);
   ScanBlend made;

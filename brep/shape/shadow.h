@@ -14,7 +14,7 @@ double far_end_mm(const Solid& solid, const glm::dvec3& direction);
 
 struct ShadowOptions {
   glm::dvec3 direction{0.0, 1.0, 0.0};  ///< unit, LPS: direction in which a part is put on
-  double end_mm = 0.0;                  ///< p . direction of the plane at which the shadow ends
+  double end_mm = 0.0;                  ///< position along `direction` of the plane at which the shadow ends
   Progress progress = {};
 };
 

@@ -10,7 +10,7 @@
 
 #include "brep/mesh/triangles.h"
 
-// Which triangles form a shell, and which of them have to be reversed so that it winds one way.
+// The triangles of each shell, and the triangles to reverse so that the shell is consistently oriented.
 namespace octotomy::brep {
 
 /// For each side of each triangle, the other triangle that shares it.
@@ -48,9 +48,9 @@ struct Shell {
 std::map<std::uint32_t, Shell> shells_of(const Triangles& wound, const Neighbours& neighbours,
                                          const Shells& shells);
 
-/// How closed shells within others are oriented. Alternating: inward within an odd number of them, otherwise
-/// outward. AsGiven: a shell with consistent winding in the input keeps it. An outward shell is a body to unite;
-/// an inward shell is a cavity, if the shells around it form a body there.
+/// How closed shells within others are oriented. Alternating: inward if the shell lies within an odd number
+/// of other shells, otherwise outward. AsGiven: a shell with consistent winding in the input keeps it. An
+/// outward shell is a body to unite; an inward shell is a cavity, if the shells around it form a body there.
 enum class Nested { Alternating, AsGiven };
 
 /// Orients closed shells outward or inward by `nested`, and each open shell so that fewer of its triangles

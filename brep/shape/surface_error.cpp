@@ -102,7 +102,7 @@ bool has(const std::vector<Triple>& sorted, const Triple& triple) {
   return std::binary_search(sorted.begin(), sorted.end(), triple);
 }
 
-/// The triangles of a surface by the numbers of their corners, in the surface's order and sorted.
+/// The triangles of a surface as corner numbers, once in the surface's order and once sorted.
 struct Triples {
   std::vector<Triple> of_face, sorted;
 

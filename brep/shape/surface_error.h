@@ -17,12 +17,12 @@ struct FarPlaces {
 };
 
 /// Measures the distances between a surface and its coarse version, both ways, in LPS millimetres: at the
-/// given surface's points and the middles of its sides, and at points of the coarse surface no further apart
-/// than the mean side of the given one. If the middle of a side is too far, both ends of the side are
-/// reported. If a coarse face is too far, the corners of the nearest given triangle are reported, too. A
-/// search ends at the first distance below `enough_mm`, which is at most the limit; a `largest_mm` below that
-/// is not exact. Precondition: `tree` is of `given`, both have triangles. The same answer on any number of
-/// threads. Cost: n log n, parallel.
+/// given surface's points and the middles of its sides, and at points of the coarse surface that are no
+/// farther apart than the given surface's mean side. If the middle of a side is too far, both ends of the
+/// side are reported. If a coarse face is too far, the corners of the nearest given triangle are reported,
+/// too. A search ends at the first distance below `enough_mm`, which is at most the limit; a `largest_mm`
+/// below that is not exact. Precondition: `tree` is of `given`, both have triangles. The same answer on any
+/// number of threads. Cost: n log n, parallel.
 FarPlaces far_places(const Triangles& given, const SurfaceTree& tree, const Triangles& coarse,
                      double limit_mm, double enough_mm = 0.0);
 

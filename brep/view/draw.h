@@ -55,7 +55,7 @@ struct DrawOptions {
   Lighting lighting;
   glm::vec3 background{1.0f};  ///< sRGB, 0..1
   bool cull = false;           ///< leaves out triangles that face away from the observer
-  bool hide = false;           ///< Wire: triangles hide what lies behind them
+  bool hide = false;           ///< Wire: triangles hide edges behind them
   double wire_px = 1.0;        ///< Wire: width of the edges
 };
 
@@ -76,11 +76,11 @@ struct ViewExtent {
 ViewExtent extent(const DrawnScene& scene, const glm::dvec3& right, const glm::dvec3& up,
                   const glm::dvec3& look);
 
-/// Draws a scene. A point that lies on an edge of two triangles belongs to one of them. At equal depths the
+/// Draws a scene. A point on an edge of two triangles belongs to exactly one triangle. At equal depths the
 /// item of lower number wins, and within it the earlier triangle. A line comes before a surface that is
 /// nearer by less than the line's width, so that outlines of a surface show on it. What lies behind the
-/// observer is cut off. Throws InvalidInput if the size or the pixel is not positive, and Stopped. Parallel over
-/// bands of rows; same bits on any thread count. Memory: 8 bytes per pixel, 100 per triangle.
+/// observer is cut off. Throws InvalidInput if the size or the pixel is not positive, and Stopped. Parallel
+/// over bands of rows; same bits on any thread count. Memory: 8 bytes per pixel, 100 per triangle.
 DrawnPicture draw(const DrawnScene& scene, const DrawOptions& options, const Progress& progress = {});
 
 }  // namespace octotomy::brep

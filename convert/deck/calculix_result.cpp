@@ -87,8 +87,8 @@ void read_nodes(std::ifstream& in, Line& line, Tetrahedra& tetrahedra) {
 }
 
 /// Divides a second-order tetrahedron, by its ten nodes, into eight linear ones: one at each corner, and four
-/// about the line between the middles of the first and the last side. Neighbours divide their common face in
-/// the same way.
+/// around the line that joins the middles of the first and the last side. Neighbours divide their common face
+/// in the same way.
 constexpr std::array<std::array<std::uint8_t, 4>, 8> linear_parts{{{0, 4, 6, 7},
                                                                    {1, 5, 4, 8},
                                                                    {2, 6, 5, 9},

@@ -233,7 +233,7 @@ void need_own_deck_files(const std::filesystem::path& path) {
         !is_own_tetgen_file(file))
       throw voxel::Error(voxel::ErrorCode::Input,
                          path.string() + ": the deck would replace " + file.string() +
-                             ", which is not Octotomy's: move that file away, or choose another name");
+                             ", which Octotomy did not write: move that file away, or choose another name");
 }
 
 void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path, const DeckOptions& options) {

@@ -53,7 +53,8 @@ Taken own_surfaces(const Tetrahedra& tetrahedra, const DeckOptions& options) {
   return taken;
 }
 
-/// Calls visit(names in use of its kind, what, name) for each name that may be changed, in the deck's order.
+/// Calls visit(names of the same kind in use, kind, name) for each name that may be changed, in the deck's
+/// order.
 template <typename Options, typename Visit>
 void for_each_name(const Tetrahedra& tetrahedra, Options& options, const Visit& visit) {
   Taken materials;

@@ -41,10 +41,10 @@ class DisplacementField {
   /// log n outside.
   std::vector<glm::dvec3> at(const std::vector<glm::dvec3>& points_mm) const;
 
-  /// The field that moves displaced points back. The inverse is exact within the elements if none is turned
-  /// over, and beyond their box if the displacement is uniform along their surface.
+  /// The field that moves displaced points back. The inverse is exact within the elements if none is
+  /// inverted, and beyond their box if the displacement is uniform along their surface.
   DisplacementField inverse() const;
-  /// The elements that the displacements turn over, in the elements' order.
+  /// The elements that the displacements invert (negative volume), in the elements' order.
   std::vector<TurnedOver> turned_over() const;
 
  private:
@@ -83,8 +83,8 @@ class DisplacementField {
 brep::Mesh warped(const brep::Mesh& mesh, const DisplacementField& field);
 
 /// The scan of a displaced body: each voxel gets the trilinear sample at the position from which it moved.
-/// Precondition: no element is turned over.
-/// int16 samples are rounded to the nearest integer. Throws voxel::Stopped.
+/// Precondition: no element is inverted. int16 samples are rounded to the nearest integer. Throws
+/// voxel::Stopped.
 voxel::Scene warped(const voxel::Scene& scan, const DisplacementField& field,
                     const voxel::Progress& progress = {});
 

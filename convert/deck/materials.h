@@ -52,8 +52,8 @@ struct MaterialOptions {
   /// elements at the surface.
   double least_mpa = 1.0;
   /// Voxels at the surface hold bone and its surroundings. A point nearer to the surface than this depth is
-  /// moved to this depth, away from its nearest surface point, and gets the scan's value there if it is
-  /// larger. 0: every point keeps its own value. A depth of a voxel's diagonal avoids all voxels at the
+  /// moved to this depth, away from its nearest surface point, and gets the scan's value there if that value
+  /// is larger. 0: every point keeps its own value. A depth of a voxel's diagonal avoids all voxels at the
   /// surface. Bone thinner than twice the depth has no point at this depth.
   double surface_depth_mm = 0.0;
   voxel::Progress progress{};  ///< of the elements

@@ -24,7 +24,7 @@ class ScanSampler {
            glm::all(glm::lessThanEqual(v, glm::dvec3(scan_.lattice.dims) - 0.5)) &&
            !(scan_.padding && at(v) == *scan_.padding);
   }
-  /// The interpolated value. Positions beyond the outermost samples are moved to the nearest of them. Returns
+  /// The interpolated value. Positions beyond the outermost samples are moved to the nearest sample. Returns
   /// the padding if one of the samples needed is padding.
   double at(const glm::dvec3& v) const {
     const glm::dvec3 most(scan_.lattice.dims - 1);

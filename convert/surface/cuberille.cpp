@@ -13,8 +13,8 @@
 #include "voxel/space/shared_progress.h"
 #include "voxel/tree/corner_patterns.h"
 
-// The surface is dual to that of marching cubes: the eight voxels about a corner are a cube of samples, the
-// faces that meet there are its crossed edges, and the sheets are its loops. The passes:
+// The surface is dual to that of marching cubes: the eight voxels around a corner are a cube of samples. The
+// faces that meet at the corner are the cube's crossed edges, and the sheets are its loops. The passes:
 //
 // 1 Every plane of corners counts its sheets; a running sum gives every plane its first point.
 // 2 Every layer of voxels, with the planes below and above it, writes the planes' points and the layer's
@@ -225,7 +225,8 @@ class Cuberille {
     layer.faces.push_back({quad.points[0], quad.points[2], quad.points[3]});
   }
 
-  /// The marching cube's edge that the face crosses, in the cube of voxels about one of the face's corners.
+  /// Number (0..11) of the marching-cubes edge that passes through the face, in the cube of eight voxels
+  /// around `corner`.
   static int edge_at(const glm::ivec3& v, const glm::ivec3& corner, int axis) {
     const int b = axis == 0 ? 1 : 0;
     const int c = axis == 2 ? 1 : 2;

@@ -18,12 +18,12 @@ namespace octotomy::convert {
 /// not numbers, and the scene's padding, are outside; the surface closes half way to them. Empty if nothing is
 /// inside.
 ///
-/// If there are samples on both sides of the window, its surface is that of the lower bound and that of the upper
-/// bound, inside out. Between a sample below and one above, the object is the layer that passes through the window,
-/// at least a thousandth of the edge thick; at the scan's border and at padding the layer ends with the outermost
-/// samples. Between neighbours the volumes of adjoining windows add up. If there are samples on one side
-/// only, the surface has the same bits as with the bound on that side alone. The surface of a window of a
-/// single value encloses the samples of that value.
+/// If there are samples on both sides of the window, its surface consists of the lower bound's surface and
+/// the upper bound's surface turned inside out. Between a sample below and one above, the object is the layer
+/// that passes through the window, at least a thousandth of the edge thick; at the scan's border and at
+/// padding the layer ends with the outermost samples. Between neighbours the volumes of adjoining windows add
+/// up. If there are samples on one side only, the surface has the same bits as with the bound on that side
+/// alone. The surface of a window of a single value encloses the samples of that value.
 ///
 /// For partial-volume samples of a sphere with a radius of r voxels, the relative volume is too small by 0.82
 /// / r^2: 0.6 / r^2 because triangles are chords, the rest because a voxel's mean is not its centre's value.

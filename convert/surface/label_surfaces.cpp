@@ -33,7 +33,7 @@
 // its samples, which is a regular neighbourhood of the complex that they span, so its boundary is a closed
 // manifold (Rourke and Sanderson, Introduction to Piecewise-Linear Topology, chapter 3). In a tetrahedron the
 // triangles are a cone from a point, which sees every point of the boundary of a convex body once, so they
-// cross nowhere for any points inside the edges and faces that they belong to.
+// never cross, wherever the points lie inside their edges and faces.
 
 namespace octotomy::convert {
 namespace {

@@ -10,9 +10,9 @@ namespace octotomy::convert {
 /// The surface, in LPS millimetres, of a solid known by the share of each voxel that it fills. It starts
 /// where shares, interpolated linearly between voxel centres, pass a half. Then it moves along its normals
 /// until its own shares, by voxelise_partial(), are the given ones on average over the 3 x 3 x 3 voxels about
-/// each point. This removes the loss of chords and the difference between a voxel's mean and its centre's
-/// value, by which isosurface() of a scene makes a ball of r voxels too small, by 0.8 / r^2. It also removes
-/// most of the ripple.
+/// each point. This corrects the loss from chords and the difference between a voxel's mean and its centre's
+/// value. Because of both, isosurface() of a scene makes a ball of r voxels too small by 0.8 / r^2. It also
+/// removes most of the ripple.
 ///
 /// Closed, manifold, oriented outward. Points move by at most a tenth of a voxel's shortest edge, so details
 /// finer than voxels stay as interpolated. Precondition: passes check(). Throws as isosurface() of a scene.

@@ -42,7 +42,7 @@ std::uint64_t crossed_x(const std::uint64_t* row, std::size_t word, std::size_t 
 // Rows of the whole lattice take many megabytes, so threads fill them and nothing initialises them before.
 
 /// The words of a row, or of neighbouring rows, that may hold a crossed edge: the words with a bit, and the
-/// word before them, whose last edge ends in the first of these words.
+/// word before the first of them, because that word's last edge ends in it.
 struct Words {
   std::uint32_t begin, end;
 };
@@ -59,9 +59,9 @@ struct RowCount {
 };
 
 /// A case as the inner loop reads it. Eight rows of edges run along a row of cells: along x at (y, z) = (0,
-/// 0), (1, 0), (0, 1), (1, 1), along y at z = 0, 1, along z at y = 0, 1. A cell has the edges of the first
-/// four rows, then those of the others at its lower x, then those at its upper x, which are the next cell's
-/// lower ones.
+/// 0), (1, 0), (0, 1), (1, 1), along y at z = 0, 1, along z at y = 0, 1. A cell's edges are, in order: along
+/// x in the first four rows, then the other edges at its lower x, then those at its upper x, which are the
+/// next cell's lower edges.
 struct FlatCase {
   std::array<std::uint32_t, 8> crossed{};  ///< 1 if the row's edge at the cell's lower x is crossed
   std::uint32_t count = 0;

@@ -17,9 +17,10 @@ struct WindowBits {
 };
 
 /// The closed surface of the region between two levels of a lattice's samples, in LPS millimetres, oriented
-/// outward: the surface of the lower level, and that of the upper one inside out. The two neither cross nor
-/// touch. In a cell with a sample that was not measured, the surface separates samples in the window from all
-/// others; there, a layer that passes through the window between two samples ends at the outermost samples.
+/// outward: the surface of the lower level, and the surface of the upper level turned inside out. The two
+/// neither cross nor touch. In a cell with a sample that was not measured, the surface separates samples in
+/// the window from all others; there, a layer that passes through the window between two samples ends at the
+/// outermost samples.
 ///
 /// `low` and `high` write where edges cross the lower and the upper level. Precondition: where both cross an
 /// edge, the crossings are in order, and more than 2^-11 of the edge apart and away from its ends. Throws and

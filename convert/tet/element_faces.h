@@ -26,8 +26,8 @@ brep::Triangles surface_of(const Tetrahedra& tetrahedra);
 struct Interface {
   std::uint32_t from = 0, to = 0;  ///< regions, from < to
   std::vector<ElementFace> faces;
-  std::vector<ElementFace> opposite;  ///< the same faces, as those of the second region's elements, in the
-                                      ///< same order
+  std::vector<ElementFace> opposite;  ///< the same faces, seen from the second region's elements, in the same
+                                      ///< order
 };
 /// All interfaces, in the order of their regions; faces in the elements' order. Cost: that of
 /// surface_faces(); none if there is one region.

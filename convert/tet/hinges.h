@@ -9,9 +9,9 @@
 namespace octotomy::convert {
 
 /// A finding on parts of a filling that are connected by edges or nodes alone, like two voxels that share an
-/// edge: in the solver they turn there as on a hinge, or the stiffness is singular. None if all elements that
-/// share a node are also connected by faces. Parts that share no node are separate bodies and not reported.
-/// Cost: n log n.
+/// edge: in the solver such parts turn about that edge or node as about a hinge, or the stiffness is
+/// singular. None if all elements that share a node are also connected by faces. Parts that share no node are
+/// separate bodies and not reported. Cost: n log n.
 std::optional<std::string> hinge_in(const Tetrahedra& tetrahedra);
 
 }  // namespace octotomy::convert

@@ -288,7 +288,8 @@ int improve(Tetrahedra& tetrahedra, const ImproveOptions& options) {
     throw voxel::InvalidInput("improve: the dihedral angle to reach must be 0 to 60 degrees");
   if (!options.surface_play_mm.empty() && options.surface_play_mm.size() != tetrahedra.boundary_nodes.size())
     throw std::invalid_argument(
-        "improve: the surface's play must have one value for each of its nodes, or none");
+        "improve: the list of distances that surface nodes may move must be empty or have one value for each "
+        "surface node");
   if (std::any_of(options.surface_play_mm.begin(), options.surface_play_mm.end(),
                   [](double play_mm) { return !(play_mm >= 0.0); }) ||
       options.rounds < 1)

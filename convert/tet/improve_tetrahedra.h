@@ -11,8 +11,8 @@ namespace octotomy::convert {
 struct ImproveOptions {
   double min_dihedral_deg = 8.0;  ///< goal for every element, 0..60; better ones stay as they are
   /// How far each node of the surface may move, in the order of `boundary_nodes`. Empty: they stay, to the
-  /// bit. With `keeps_flat` nodes of flat faces of the surface and between regions stay in their planes, those
-  /// of straight edges on their lines, and corners where they are.
+  /// bit. With `keeps_flat` nodes of flat faces of the surface and between regions stay in their planes,
+  /// nodes of straight edges stay on their lines, and corners do not move.
   std::vector<double> surface_play_mm{};
   bool keeps_flat = true;  ///< nodes of flat faces and straight edges stay in and on them
   int rounds = 10;         ///< over all elements below the goal, at least 1

@@ -18,16 +18,17 @@ struct StuffingOptions {
 };
 
 /// Fills a closed surface with the tetrahedra of a body-centred cubic lattice, cut where the surface crosses
-/// their sides. All are about as large; nodes on the boundary lie on the given surface, and chords between
-/// them cut its edges off within a cell. Guaranteed, however bad the triangles are: all volumes are positive
-/// and every dihedral angle is over stuffed_dihedral_deg(). The volume is the surface's to within what cells
-/// miss. Parts thinner than a cell may be lost, joined or hang together by a node or a side only. `method` is
-/// "isosurface stuffing". In LPS millimetres. Empty where no lattice point is inside. Precondition: closed
-/// and not empty; where triangles cross, points that are inside an odd number of times count as inside.
-/// Throws std::invalid_argument if the cell is not above 0 or the surface has no triangles; voxel::Error
-/// (Resource) if the surface's box has over 2^29 lattice points; voxel::Stopped. Deterministic. Cost: n log n
-/// and the lattice points of the box; about 12 elements a cube. Source: Labelle, Shewchuk, "Isosurface
-/// stuffing: fast tetrahedral meshes with good dihedral angles", ACM TOG 26(3), 2007, uniform lattice.
+/// their sides. All elements have about the same size. Nodes on the boundary lie on the given surface, and
+/// chords between them cut its edges off within a cell. Guaranteed, however bad the triangles are: all
+/// volumes are positive and every dihedral angle is above stuffed_dihedral_deg(). The volume differs from the
+/// surface's only by edges cut off and parts missed within a cell. Parts thinner than a cell may be lost,
+/// joined or connected by a single node or side. `method` is "isosurface stuffing". In LPS millimetres. Empty
+/// where no lattice point is inside. Precondition: closed and not empty; where triangles cross, points that
+/// are inside an odd number of times count as inside. Throws std::invalid_argument if the cell is not above 0
+/// or the surface has no triangles; voxel::Error (Resource) if the surface's box has more than 2^29 lattice
+/// points; voxel::Stopped. Deterministic. Cost: n log n and the lattice points of the box; about 12 elements
+/// a cube. Source: Labelle, Shewchuk, "Isosurface stuffing: fast tetrahedral meshes with good dihedral
+/// angles", ACM TOG 26(3), 2007, uniform lattice.
 Tetrahedra stuff(const brep::Triangles& surface, const StuffingOptions& options);
 
 /// The edge of the lattice's cubes with which about this number of elements fills a volume. A cube has two

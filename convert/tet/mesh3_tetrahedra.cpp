@@ -12,15 +12,14 @@
 #include "voxel/space/rounded.h"
 
 // 1 Mesh_3 refines a Delaunay triangulation until facets and cells have the requested sizes, and exudes
-//   slivers. Nodes beside sharp edges of the given surface move onto these (sharp_edges.h).
-// 2 The nodes of its surface lie on the given one, so its facets are chords: they lose volume on a convex
-//   surface and gain some on a hollow one. Every node of the surface, except those of flat faces and sharp
-//   edges, moves along its normal by the same share of the distance that the middle of a facet may lie off
-//   the given surface there. The share is at most 1: a larger one would mean that something else was lost.
-// 3 Nodes move to mend flat elements (improve_tetrahedra.h).
-// 4 The answer counts only if the volumes are positive, their sum is the surface's, each point of the given
-//   surface is near the new one, and little of the volume lies outside: otherwise the loss of a thin spike or
-//   wall that no cell met would go unnoticed.
+// slivers. Nodes beside sharp edges of the given surface move onto these (sharp_edges.h). 2 The nodes of its
+// surface lie on the given one, so its facets are chords: they lose volume on a convex surface and gain some
+// on a hollow one. Every node of the surface, except those of flat faces and sharp edges, moves along its
+// normal by the same share of the distance allowed there between a facet's middle and the given surface. The
+// share is at most 1: a larger one would mean that something else was lost. 3 Nodes move to mend flat
+// elements (improve_tetrahedra.h). 4 The answer counts only if the volumes are positive, their sum is the
+// surface's, each point of the given surface is near the new surface, and little of the volume lies outside.
+// Without these checks the loss of a thin spike or wall that no cell met would go unnoticed.
 
 namespace octotomy::convert {
 namespace {
@@ -310,10 +309,10 @@ std::optional<std::string> finish(Try& t, const Given& given, const TetOptions& 
       brep::SurfaceTree(surface_of(t.made)).distances_mm(given.surface.points_mm);
   const Apart own = apart(to_own_mm);
   const Apart nodes = apart(given.tree.distances_mm(boundary_mm(t.made)));
-  t.made.findings.push_back("Mesh_3 made a surface of its own: its nodes are within " +
-                            rounded(nodes.max_mm) +
-                            " mm of the given one; 95 % of the given points are within " +
-                            rounded(own.p95_mm) + " mm of it, all within " + rounded(own.max_mm) + " mm");
+  t.made.findings.push_back(
+      "Mesh_3 made a surface of its own: its nodes are within " + rounded(nodes.max_mm) +
+      " mm of the given one; 95 % of the given surface's points are within " + rounded(own.p95_mm) +
+      " mm of the new surface, all within " + rounded(own.max_mm) + " mm");
   if (std::optional<std::string> lost = lost_details(t, given, to_own_mm)) return lost;
   if (std::optional<std::string> lost = misplaced(t.made, given)) return lost;
   return fault;

@@ -7,8 +7,8 @@
 
 namespace octotomy::convert {
 
-/// Largest relative difference of the total volume from the surface's if the mesher makes a surface of its
-/// own: a tenth of the least uncertainty that a scan's voxels leave in a bone's volume.
+/// Largest relative difference between the elements' total volume and the given surface's if the mesher makes
+/// its own surface: a tenth of the least uncertainty of a bone's volume in a scan's voxels.
 constexpr double own_surface_volume_tolerance() {
   return 1e-3;
 }
@@ -21,13 +21,13 @@ struct Mesh3Filling {
 };
 
 /// Fills a closed surface by CGAL's Mesh_3, in a process of its own. Mesh_3 makes its own surface with
-/// triangles about as large as the given ones (surface_sizes.h); their middles lie within a tenth of their
-/// circumradius of the given surface. Nodes move to mend slivers, those of the surface by no more than that
+/// triangles about as large as the given ones (surface_sizes.h); their middles are at most a tenth of a
+/// circumradius from the given surface. Nodes move to mend slivers; surface nodes move by no more than that
 /// distance. The surface moves along its normals until the volume is the given one. `surface.holes_mm` are
-/// start points, some on every connected part. If more than thin spikes of the surface is lost, another try
-/// starts there with finer elements; closed shells that are lost whole are left out, with a finding, where
-/// they hold less than the volume's tolerance. Guaranteed of an answer: all volumes positive, total volume
-/// within own_surface_volume_tolerance(). Findings say how far the surfaces lie apart. Throws as run_mesh3().
+/// start points, some on every connected part. If a part other than thin spikes is lost, another try starts
+/// there with finer elements. Closed shells that are lost whole are left out, with a finding, if their total
+/// volume is below the volume's tolerance. Guaranteed of an answer: all volumes positive, total volume within
+/// own_surface_volume_tolerance(). Findings say how far the surfaces lie apart. Throws as run_mesh3().
 Mesh3Filling fill_by_mesh3(const MesherInput& surface, const SizeLimits& limits, double surface_mm3,
                            const TetOptions& options);
 

@@ -21,7 +21,7 @@
 #include "voxel/tree/slice_build.h"
 
 // 1 The regions' voxels become an image of labels: their box and a voxel all round.
-//   An interface that is flat to within the voxels' resolution counts as a plane, and the side of the plane
+//   An interface that is flat within the voxels' resolution counts as a plane, and the side of the plane
 //   decides between its regions.
 // 2 Mesh_3 starts from the middles between voxels of different labels, a size apart, so that it misses no
 //   region and no part of one, and from rims, where three labels meet, because it would otherwise put the
@@ -30,7 +30,7 @@
 // 3 The nodes are moved to the patient's frame. Where regions meet in a plane, the nodes along its rim, where
 //   three labels meet, are put on it, because surfaces in contact that are not flat interlock. Then nodes
 //   move to mend flat elements. Where that leaves nodes off the plane, elements are split at it.
-// 4 The answer counts only if all volumes are positive and each region's is near that of its voxels.
+// 4 The answer counts only if all volumes are positive and each region's volume is near its voxels' volume.
 
 namespace octotomy::convert {
 namespace {
@@ -43,7 +43,8 @@ using voxel::rounded;
 
 void check(const std::vector<voxel::Octree>& regions, const RegionMeshOptions& options) {
   if (regions.empty()) refuse_regions("there is no region");
-  if (regions.size() > std::numeric_limits<std::uint8_t>::max()) refuse_regions("there are over 255 regions");
+  if (regions.size() > std::numeric_limits<std::uint8_t>::max())
+    refuse_regions("there are more than 255 regions");
   for (const voxel::Octree& region : regions) {
     if (region.is_empty()) refuse_regions("a region is empty");
     if (!(region.universe() == regions.front().universe()))
@@ -134,9 +135,8 @@ struct Counted {
 using LabelPair = std::pair<std::uint8_t, std::uint8_t>;  // the lower first
 
 /// Planes of the interfaces that may be plane cuts. If a plane cuts two regions apart, the middle between two
-/// voxels on either side of it lies within half a voxel's edge of it; an interface is flat to within the
-/// voxels' resolution if this holds for all its middles. The fitted plane is not the cut itself, hence a
-/// tenth of an edge more.
+/// voxels on either side of it lies within half a voxel's edge of it; an interface is flat within the voxels'
+/// resolution if all its middles do. The fitted plane is not the cut itself, hence a tenth of an edge more.
 std::vector<LabelPlane> planes_between(const Labelled& labelled) {
   constexpr std::size_t fewest = 16;
   constexpr double most_edges = 0.6, near_share = 0.99;

@@ -26,7 +26,7 @@ constexpr double longest_share() {
 }
 
 [[noreturn]] void refuse_number() {
-  throw voxel::Error(voxel::ErrorCode::Resource, "refinement would take a surface of over " +
+  throw voxel::Error(voxel::ErrorCode::Resource, "refinement would take a surface of more than " +
                                                      std::to_string(most_triangles) +
                                                      " triangles: request larger elements");
 }

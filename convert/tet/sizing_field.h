@@ -53,16 +53,16 @@ class SizingField {
 };
 
 /// The same surface with smaller triangles at refinements. Sides longer than 4/3 of the size at their middles
-/// are halved, the longest of a triangle first, so that angles stay over half the smallest before (Rivara
-/// 1984). Points keep their numbers and new ones follow. Faces keep their planes and winding, so a closed
-/// surface stays closed and keeps its volume. Throws voxel::Error (Resource) beyond four million triangles.
-/// Cost: n log n of the answer.
+/// are halved, the longest of a triangle first, so that angles stay above half of the smallest former angle
+/// (Rivara 1984). Points keep their numbers and new ones follow. Faces keep their planes and winding, so a
+/// closed surface stays closed and keeps its volume. Throws voxel::Error (Resource) beyond four million
+/// triangles. Cost: n log n of the answer.
 brep::Triangles refined_surface(const brep::Triangles& surface, const SizingField& sizes);
 
-/// Describes places where elements are over three times as large as a refinement allows at their middle,
-/// which happens deep inside a refined surface: the worst place, its size and the requested size, and the
-/// number of places. Checks the element nearest to each point, and to a hundred points of a surface. None if
-/// there is no such place. Cost: places times elements, parallel.
+/// Describes places where elements are more than three times the size that a refinement allows at their
+/// middle, which happens deep inside a refined surface: the worst place, its size and the requested size, and
+/// the number of places. Checks the element nearest to each point, and to a hundred points of a surface. None
+/// if there is no such place. Cost: places times elements, parallel.
 std::optional<std::string> coarse_place(const Tetrahedra& tetrahedra, const std::vector<Refinement>& finer);
 
 }  // namespace octotomy::convert

@@ -11,15 +11,15 @@ namespace octotomy::convert {
 /// Whether the volume is positive and no dihedral angle is below `least_deg`.
 bool is_fit(const TetCorners& corners_mm, double least_deg);
 
-/// For each node, the elements that have it, ascending.
+/// For each node, the elements with this corner, ascending.
 std::vector<std::vector<std::uint32_t>> elements_about(const Tetrahedra& tetrahedra);
 
 /// Splits sides of elements one after the other. Elements and nodes keep their numbers; new ones come after
 /// them. `boundary_nodes` stay as they are.
 class SideSplitter {
  public:
-  /// No split makes an element that is turned over or has a smaller dihedral angle than `least_deg`, or than
-  /// the flattest of the divided elements if that was smaller.
+  /// No split makes an inverted element, or one with a dihedral angle below `least_deg` and below the
+  /// smallest angle of the divided elements.
   SideSplitter(Tetrahedra& tetrahedra, double least_deg);
 
   /// Divides the elements about a side by a new node, which need not lie on the side. False, and nothing

@@ -19,7 +19,7 @@ struct SizeLimits {
 };
 
 /// The size of triangles about each point of a surface, and so of a mesher's elements: lengths in mm that
-/// grow along the triangles' sides by a given share of the distance at most.
+/// grow along the triangles' sides by at most a given share of the distance.
 class SurfaceSizes {
  public:
   /// The side of an equilateral triangle of the mean area of the triangles at a point. At most the mean side

@@ -61,8 +61,8 @@ constexpr double volume_tolerance() {
   return 1e-9;
 }
 
-/// The volume, relative to the cube of the largest extent, under which a solid is flat for TetGen: TetGen
-/// takes points for coplanar within 1e-8 of the largest extent, so a plate that thin has no inside.
+/// The volume, relative to the cube of the largest extent, below which a solid is flat for TetGen: TetGen
+/// treats points within 1e-8 of the largest extent as coplanar, so such a thin plate has no inside.
 constexpr double flat_volume() {
   return 1e-8;
 }
@@ -430,9 +430,9 @@ std::optional<Tetrahedra> by_stuffing(const MesherInput& surface, double surface
   made.findings.push_back("isosurface stuffing made the elements; their nodes on the surface lie on the " +
                           std::string("given one, with cells of ") + rounded(cell_mm) + " mm: volume " +
                           switch_number(quality(made).volume_mm3) + " of " + switch_number(surface_mm3) +
-                          " mm3; 95 % of the given points are within " +
-                          rounded(apart_mm[apart_mm.size() * 95 / 100]) + " mm of it, all within " +
-                          rounded(apart_mm.back()) + " mm");
+                          " mm3; 95 % of the given surface's points are within " +
+                          rounded(apart_mm[apart_mm.size() * 95 / 100]) +
+                          " mm of the elements' surface, all within " + rounded(apart_mm.back()) + " mm");
   if (!options.finer.empty())
     made.findings.push_back("elements are not finer where requested: stuffing makes elements of one size");
   return made;
@@ -492,7 +492,8 @@ Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options) {
   constexpr double most_elements = 2e7;
   if (options.max_volume_mm3 && surface_mm3 > most_elements * *options.max_volume_mm3)
     refuse_option("elements of at most " + rounded(*options.max_volume_mm3) +
-                  " mm3 would be over 20 million in " + rounded(surface_mm3) + " mm3: allow larger ones");
+                  " mm3 would be more than 20 million in " + rounded(surface_mm3) +
+                  " mm3: allow larger ones");
   for (const Part& part : parts)
     if (part.six_volumes_mm3 < 0.0) surface.holes_mm.push_back(hole_point(surface, parts, part));
 

@@ -16,7 +16,7 @@ namespace octotomy::convert {
 
 /// TetGen keeps the surface, to the bit with `keep_boundary`. Mesh3 (CGAL's Mesh_3, mesh3_tetrahedra.h) makes
 /// a surface of its own and so has no flat elements. Stuffing (isosurface_stuffing.h) fills a lattice's
-/// cells: it succeeds on any triangles, and loses what is thinner than a cell. Best runs TetGen, and Mesh3 if
+/// cells: it succeeds on any triangles, and loses parts thinner than a cell. Best runs TetGen, and Mesh3 if
 /// TetGen fails or leaves a dihedral angle under `min_dihedral_deg`, and takes the answer whose smallest
 /// angle is larger; Stuffing if neither reaches fit_dihedral_deg(), or without trying them if the surface has
 /// over five triangles per millisecond of the time limit.
@@ -38,8 +38,8 @@ struct TetOptions {
 
 /// The smallest dihedral angle that is fit for a solver. The largest eigenvalue of an element's stiffness
 /// grows as the cotangent of the angle: at 5 degrees it is cot(5) / cot(70.5) = 32 times the regular
-/// element's, so a conjugate gradient takes sqrt(32), under 6 times, as many steps; at 0.1 degrees 40 times.
-/// Source: Shewchuk, "What is a good linear finite element?", 2002, section 3.
+/// element's, so a conjugate gradient solver takes sqrt(32), less than 6, times as many steps; at 0.1 degrees
+/// 40 times. Source: Shewchuk, "What is a good linear finite element?", 2002, section 3.
 constexpr double fit_dihedral_deg() {
   return 5.0;
 }
@@ -50,20 +50,20 @@ std::optional<std::string> fault_in_shape(const Tetrahedra& tetrahedra);
 /// stay there.
 ///
 /// If TetGen fails it runs again with fewer demands: with quality (-pYq), without (-pY), with new points on
-/// the surface (-p), and without the largest volume last; `method` and `findings` report which. Nodes
-/// inside then move to improve flat elements (improve_tetrahedra.h). Short edges of an isosurface make
-/// quality expensive: run brep::decimate() first. Refinements divide the surface's triangles in their
-/// planes, and elements grow inward from there. Stuffing's cells are as large as the triangles' mean side,
-/// or larger if these cells would make over two million elements; findings report how far its surface lies
-/// from the given one, and where refinements had no effect.
+/// the surface (-p), and without the largest volume last; `method` and `findings` report which. Nodes inside
+/// then move to improve flat elements (improve_tetrahedra.h). Short edges of an isosurface make quality
+/// expensive: run brep::decimate() first. Refinements divide the surface's triangles in their planes, and
+/// elements grow inward from there. Stuffing's cells are as large as the triangles' mean side, or larger if
+/// these cells would make more than two million elements; findings report how far its surface lies from the
+/// given one, and where refinements had no effect.
 ///
-/// Guaranteed: all volumes positive; the total volume is the surface's to 1e-9 by TetGen, to 1e-3 by
-/// Mesh_3, to 5e-2 by Stuffing. Throws voxel::Error: Geometry if the mesh is open, inside out, flat or
-/// tiny, or the meshers fail on it; Resource if a limit of time or memory ends the last of them, or a
-/// mesher is not installed beside the running program. The message names the switches tried and what to try
-/// next. Throws std::invalid_argument if an option is out of range, or the largest volume asks for over 2e7
-/// elements; voxel::Stopped. Source: Si, "TetGen, a Delaunay-based quality tetrahedral mesh generator", ACM
-/// TOMS 41(2), 2015.
+/// Guaranteed: all volumes positive; the total volume differs from the surface's by a share of at most 1e-9
+/// for TetGen, 1e-3 for Mesh_3, 5e-2 for Stuffing. Throws voxel::Error: Geometry if the mesh is open, inside
+/// out, flat or tiny, or the meshers fail on it; Resource if a limit of time or memory ends the last of them,
+/// or a mesher is not installed beside the running program. The message names the switches tried and the next
+/// remedy. Throws std::invalid_argument if an option is out of range, or the largest volume requires more
+/// than 2e7 elements; voxel::Stopped. Source: Si, "TetGen, a Delaunay-based quality tetrahedral mesh
+/// generator", ACM TOMS 41(2), 2015.
 Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options = {});
 
 /// Describes the fault of tetrahedra that should fill a surface of this volume within a relative tolerance:

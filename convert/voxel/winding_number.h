@@ -14,10 +14,10 @@ namespace octotomy::convert {
 double winding_number(const brep::Triangles& triangles, const glm::dvec3& p_mm);
 
 /// The voxels about whose centre the triangles have a winding number above 1/2: those that the surface
-/// encloses, even if it has holes, crosses itself, or has edges with one, three or inconsistently oriented
-/// triangles. For a closed surface these are the voxels that it encloses at least once. A surface that is
-/// inside out encloses nothing. A centre exactly on the surface is inside if the solid lies further along x,
-/// y or z. Throws voxel::Error (Geometry) if a triangle names no point or a point is not finite;
+/// encloses, even if the surface has holes, crosses itself, or has edges with one, three or inconsistently
+/// oriented triangles. For a closed surface these are the voxels that it encloses at least once. A surface
+/// that is inside out encloses nothing. A centre exactly on the surface is inside if the solid lies further
+/// along x, y or z. Throws voxel::Error (Geometry) if a triangle names no point or a point is not finite;
 /// voxel::Stopped. Parallel; same bits on any thread count. Cost: the triangles' footprint in the yz plane
 /// and the blocks of 16^3 voxels that they touch, in time and memory; not the universe. Holes add a cost:
 /// for each voxel near a rim or near the sheet across a hole, the logarithm of the number of edges of the rims.

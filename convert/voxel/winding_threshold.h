@@ -26,7 +26,7 @@ struct Cube {
   int side = slab_layers;
 };
 
-/// A voxel is inside if the surface's own winding number about its centre is more than 1/2. The surface
+/// A voxel is inside if the surface's own winding number about the voxel's centre is more than 1/2. The surface
 /// together with its cap has a whole winding number there. The threshold is the least such number with which
 /// the voxel is inside: 1 away from holes. Cost of a cube: about log n for n triangles of the cap; n for a
 /// voxel about which the winding number is 1/2.

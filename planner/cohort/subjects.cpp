@@ -144,7 +144,8 @@ void add_subject(const std::string& label, const fs::path& folder, const Plan& p
 Subject missing_subject(const std::string& label, const fs::path& table) {
   Subject subject{label, {}};
   subject.place = fs::absolute(table).parent_path() / ("sub-" + label);
-  subject.trouble = table.string() + ": lists sub-" + label + ", of which there is no folder beside it";
+  subject.trouble =
+      table.string() + ": lists sub-" + label + ", but there is no folder of this name beside it";
   return subject;
 }
 

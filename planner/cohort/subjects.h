@@ -35,15 +35,15 @@ struct Subject {
 ///   column. A subject whose scans are unknown has `trouble` set.
 std::vector<Subject> find_subjects(const std::filesystem::path& input, const Plan& plan);
 
-/// Doubts about a cohort as a whole, one sentence each: subjects with the same path of a scan, and unused
+/// Doubts about the whole cohort, one sentence each: subjects that share the path of a scan, and unused
 /// columns of a table of scans. None for BIDS's participants.tsv, whose columns describe people. Throws as
 /// find_subjects() does if the table cannot be read.
 std::vector<std::string> doubts_of_cohort(const std::filesystem::path& input, const Plan& plan,
                                           const std::vector<Subject>& subjects);
 
-/// A file that a step reads and that is not beside the plan: the file in the subject's folder with this name,
-/// or whose name ends in "_" and this name. Empty if there is none or the subject has no folder. Throws
-/// voxel::Error (Input) if there are several.
+/// A file that a step reads and that is not beside the plan: the file in the subject's folder that has this
+/// name, or a name that ends in "_" and this name. Empty if there is none or the subject has no folder.
+/// Throws voxel::Error (Input) if there are several.
 std::filesystem::path file_of_subject(const Subject& subject, const std::filesystem::path& name);
 
 /// The subjects with one of these labels, with or without "sub-"; if no subject has exactly this label, all

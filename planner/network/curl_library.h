@@ -21,9 +21,9 @@ struct CurlLibrary {
   decltype(&curl_slist_free_all) slist_free_all;
 };
 
-/// Loads and starts libcurl at the first call. It is not linked, because it brings some thirty libraries whose
-/// loading would take a third of the time in which the program starts. Throws voxel::Error, Resource, if it is
-/// not installed or cannot start. May be called from several threads.
+/// Loads and starts libcurl at the first call. The program does not link it, because it depends on about
+/// thirty libraries, and loading them would take a third of the program's starting time. Throws voxel::Error,
+/// Resource, if it is not installed or cannot start. May be called from several threads.
 const CurlLibrary& curl_library();
 
 }  // namespace octotomy::planner

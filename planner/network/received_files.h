@@ -39,8 +39,8 @@ class ReceivedFiles {
     ~Part();
     /// Throws PeerError beyond the limits, std::runtime_error if the disk is full.
     void write(std::string_view bytes);
-    /// Checks that the bytes are a DICOM file whose attributes end within it and which has the given class
-    /// and instance, unless these are empty; renames it into place. Throws PeerError.
+    /// Checks that the bytes are a DICOM file, that its attributes end within the file, and that it has the
+    /// given class and instance, unless these are empty; renames it into place. Throws PeerError.
     ReceivedFile finish(const std::string& class_uid, const std::string& instance_uid);
 
    private:

@@ -50,7 +50,7 @@ struct ReceiveOptions {
   /// Ends after this number of objects. None: runs until it is stopped.
   std::optional<std::size_t> objects = std::nullopt;
   std::function<void(int port)> listening = {};
-  /// called with what a peer did wrong; one call at a time
+  /// called with a description of a peer's fault; one call at a time
   std::function<void(const std::string&)> refused = {};
 };
 

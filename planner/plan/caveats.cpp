@@ -164,7 +164,7 @@ void add_unmeasured(const MadeOf& from, Object& made) {
                          (are_nonfinite    ? "no finite numbers"
                           : left_by_motion ? "holes that no object fills"
                                            : "padding") +
-                         ", and both kernels leave out what lies there";
+                         ", and both kernels leave out the object there";
     if (enclosed > 0)
       reason += ": " + std::to_string(enclosed) + " of them lie between samples of this object, where " +
                 three_figures(static_cast<double>(enclosed) * scene.lattice.voxel_mm3()) +
@@ -295,13 +295,13 @@ void add_kept_parts(std::vector<verify::OpenPart> kept, const std::vector<verify
     list.push_back({{"at_mm", to_json(part.bridge.at_mm)}, {"volume_mm3", part.bridge.volume_mm3}});
   }
   made.mesh.details["kept_bridges"] = std::move(list);
-  const std::string text = std::to_string(kept.size()) + (kept.size() == 1 ? " part of " : " parts of ") +
-                           voxel::rounded(all_mm3) + " mm\u00b3 " +
-                           (kept.size() == 1 ? "hangs on a neck" : "hang on necks") + " thinner than " +
-                           verify::thin_neck + ", the largest near " +
-                           voxel::rounded(kept.front().bridge.at_mm) +
-                           ": both kernels keep the parts that only one of them connects; "
-                           "'keep_bridges_mm' and 'cut_bridges_mm' of the step decide it";
+  const std::string text =
+      std::to_string(kept.size()) + (kept.size() == 1 ? " part of " : " parts with a total of ") +
+      voxel::rounded(all_mm3) + " mm\u00b3 " +
+      (kept.size() == 1 ? "is connected by a neck" : "are connected by necks") + " thinner than " +
+      verify::thin_neck + ", the largest near " + voxel::rounded(kept.front().bridge.at_mm) +
+      ": both kernels keep the parts that only one of them connects; "
+      "'keep_bridges_mm' and 'cut_bridges_mm' of the step decide it";
   made.findings.push_back(text);
   made.shared_values.push_back(
       made.kind + ": the choice of parts beyond thin necks, which stay if one kernel connects them");

@@ -334,7 +334,7 @@ class PlanHistory::Database {
     const bool is_folder = ::access(plan_.parent_path().c_str(), W_OK) != 0;
     throw std::runtime_error((is_folder ? plan_.parent_path() : path_).string() +
                              ": cannot be written, so the plan's states cannot be stored there: copy the "
-                             "plan and its .history to a folder of yours");
+                             "plan and its .history to a folder in which you may write");
   }
   /// Called if an edit does not follow its parent, or its text does not have the stored checksum.
   [[noreturn]] void refuse_damaged(std::int64_t edit) const {

@@ -127,7 +127,7 @@ Merged merge(const Plan& base_plan, const Plan& a_plan, const Plan& b_plan) {
   try {
     parse_plan(text, a_plan.folder);
   } catch (const std::exception& error) {
-    rethrow_at("merged, the changes of both make no valid plan: ", error);
+    rethrow_at("the merged plan is invalid: ", error);
   }
   return {text, {}};
 }

@@ -19,11 +19,12 @@ struct Signature {
   std::map<std::string, std::string> scans_sha256;  ///< by the plan's names of scans
 };
 
-/// The SHA-256 of a plan's content: its JSON without signatures and paths of scans, with sorted keys, so that
-/// it depends neither on layout nor on the folder.
+/// The SHA-256 of a plan's content: its JSON without signatures and paths of scans, with sorted keys, so it
+/// depends neither on the layout nor on the folder.
 std::string sum_of_plan(const std::string& text);
 
-/// The signatures in a plan's text, in their order. Throws std::runtime_error with the position in the text.
+/// The signatures in a plan's text, in the order of the text. Throws std::runtime_error with the position in
+/// the text.
 std::vector<Signature> signatures_of(const std::string& text);
 
 /// A reader's signature of the current plan and scans. Throws std::runtime_error if a scan cannot be read.

@@ -17,9 +17,9 @@ namespace octotomy::planner {
 ///
 /// Motions are computed exactly from the marks that define them. Gaps and overlaps are computed to first
 /// order: each surface point near the other surface is displaced along the shortest line between the two; the
-/// overlap is the area times its depth, scaled to that of the voxels. A pair without meshes is left out, with
-/// a finding. The same seed produces the same bits on any number of threads. Cost: about a second for 10 000
-/// trials of ten pairs.
+/// overlap is the area times its depth, scaled to the voxels' overlap. A pair without meshes is left out,
+/// with a finding. The same seed produces the same bits on any number of threads. Cost: about a second for
+/// 10,000 trials of ten pairs.
 nlohmann::ordered_json trials_json(const Plan& plan, const Evaluation& evaluation, const Trials& asked);
 
 }  // namespace octotomy::planner

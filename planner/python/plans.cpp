@@ -97,11 +97,10 @@ void add_plans(py::module_& module) {
       .def("write", &written, py::arg("folder"),
            "Writes the result's folder: result.json, report.html, pictures and files. Returns result.json.");
 
-  module.def(
-      "evaluate", &evaluate_plan, py::arg("plan_json"), py::arg("folder"), py::arg("certify") = true,
-      py::arg("progress") = nullptr,
-      "Evaluates a plan's JSON; relative paths are relative to `folder`. `progress` is called with what "
-      "is being done and the fraction done.");
+  module.def("evaluate", &evaluate_plan, py::arg("plan_json"), py::arg("folder"), py::arg("certify") = true,
+             py::arg("progress") = nullptr,
+             "Evaluates a plan's JSON; relative paths are relative to `folder`. `progress` is called with "
+             "the name of the present stage and the fraction done.");
 }
 
 }  // namespace octotomy::planner::python

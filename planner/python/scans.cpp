@@ -167,7 +167,7 @@ void add_scans(py::module_& module) {
              "Reads a scan: DICOM folder or file, NIfTI, NRRD, MetaImage, images. `series` chooses a DICOM "
              "series by number, UID or part of its description; `join` combines slices of one geometry whose "
              "identifiers differ; the audit then has a FAIL. `frame` (\"RAS\") and `unit` (\"um\") "
-             "state what the file omits or states wrongly.");
+             "replace statements that the file omits or makes wrongly.");
 }
 
 }  // namespace octotomy::planner::python

@@ -231,8 +231,8 @@ class CountVariance {
   double area_ = 0.0;
 };
 
-/// Flat parts of this area or more, in voxel faces, are summed by their transforms. Smaller parts are
-/// numerous and their errors independent.
+/// The count's variance of flat parts of this area or more, in voxel faces, is computed from their Fourier
+/// transforms. Smaller parts are numerous and their errors independent.
 constexpr double large_facet = 16.0;
 
 /// The cosine of 15 degrees. A part within that angle of an axis lies between two layers of centres over
@@ -375,13 +375,15 @@ class Modeller {
     add_nearly_rims();
   }
 
-  /// A face nearly along the lattice. `way` is the number of its normal's axis from 1 on, negative for a
-  /// normal along the negative axis, and 0 for any other face. `mm3` is the volume that the face gains.
+  /// A face nearly along the lattice. `way`: its normal's axis, 1 to 3, negative for a normal along the
+  /// negative axis; 0 if the face is not nearly along the lattice. `mm3`: volume of the voxels beyond the
+  /// face, negative where voxels are lacking.
   struct Displaced {
     int way = 0;
     double mm3 = 0.0;
   };
-  /// The volumes that the pieces of a face nearly along the lattice gain; any other face has no pieces.
+  /// The volumes of the voxels beyond the pieces of a face nearly along the lattice; any other face has no
+  /// pieces.
   struct NearlyPlane {
     std::size_t count = 0;
     int way = 0;

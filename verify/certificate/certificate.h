@@ -81,7 +81,7 @@ struct DetectionLimit {
   std::optional<double> shift_mm;
 };
 
-/// Both kernels' answers to one question, the difference, what theory allows, and a verdict.
+/// Both kernels' answers to one question, their difference, the difference that theory allows, and a verdict.
 struct Certificate {
   std::string operation;
   Tier tier = Tier::Bounded;
@@ -124,7 +124,7 @@ struct Certificate {
 /// evident_share of its volume.
 bool is_evident(const Certificate& certificate);
 /// Sets `unresolved` if a wrong part of more than evident_share of the object could pass, or if the volume's
-/// tolerance is larger than that share. Keeps an `unresolved` that is set already.
+/// tolerance exceeds that share of the object. Keeps an `unresolved` that is set already.
 void judge_evidence(Certificate& certificate);
 /// Lowers the verdict to WARN where both answers are empty, because nothing was compared. The reason states
 /// `missed_mm3`, the volume of a part that could have been missed.

@@ -84,12 +84,13 @@ Certificate certify_alone(const voxel::Octree& octree, const AloneInputs& inputs
                       mm3(count.by_witness), 0.0, std::nullopt, inputs.makers};
   certificate.difference_mm3 = certificate.voxel.volume_mm3 - certificate.mesh.volume_mm3;
   certificate.symmetric_difference_mm3 = mm3(count.surplus + count.lacking);
-  add_comparison(certificate, {.quantity = "centres of voxels on the wrong side",
-                               .unit = "",
-                               .difference = static_cast<double>(count.surplus + count.lacking),
-                               .tolerance = 0.0,
-                               .formula = "0: the witness reads every centre",
-                               .statement = "Centres of % voxels are on the wrong side"});
+  add_comparison(certificate,
+                 {.quantity = "voxel centres on a side that the witness excludes",
+                  .unit = "",
+                  .difference = static_cast<double>(count.surplus + count.lacking),
+                  .tolerance = 0.0,
+                  .formula = "0: the witness reads every centre",
+                  .statement = "The centres of % voxels are on a side that the witness excludes"});
   if (count.surplus + count.lacking > 0) {
     const bool is_lack = count.lacking > count.surplus;
     const double volume_mm3 = mm3(is_lack ? count.lacking : count.surplus);

@@ -18,11 +18,11 @@ struct AloneInputs {
   Witness witness;                  ///< not empty; ends with the universe, as the voxels do
 };
 
-/// Judges an object that the voxel kernel alone made (tier Bounded). At the centre of every voxel of the universe,
-/// inside and outside the object, its witness must allow the object's side. The witness's reading takes the place of
-/// the mesh kernel's answer, with the makers of the voxels. So the certificate is not independent, states this, and
-/// is a WARN at best. It states the volume in which the witness allows both sides. Throws voxel::Stopped. Cost: a
-/// reading of the witness for each voxel of the universe.
+/// Judges an object that the voxel kernel alone made (tier Bounded). At the centre of every voxel of the
+/// universe, inside and outside the object, its witness must allow the object's side. The witness's reading
+/// replaces the mesh kernel's answer and has the same makers as the voxels. So the certificate is not
+/// independent, states this, and is a WARN at best. It states the volume in which the witness allows both
+/// sides. Throws voxel::Stopped. Cost: a reading of the witness for each voxel of the universe.
 Certificate certify_alone(const voxel::Octree& octree, const AloneInputs& inputs,
                           const voxel::Progress& progress = {});
 

@@ -98,16 +98,18 @@ void add_specks(Certificate& certificate, const Specks& specks) {
   if (specks.count == 0) return;
   const double largest_mm3 = specks.largest->volume_mm3;
   if (certificate.limit) certificate.limit->volume_mm3 = std::max(certificate.limit->volume_mm3, largest_mm3);
-  add_comparison(certificate,
-                 {.quantity = "parts and cavities between voxels' centres",
-                  .unit = "mm3",
-                  .difference = specks.volume_mm3,
-                  .tolerance = certificate.tolerance_mm3,
-                  .formula = "the volume's tolerance; the mesh has " + std::to_string(specks.count) +
-                             ", the largest of " + voxel::rounded(largest_mm3) + " mm3 near " +
-                             voxel::rounded(specks.largest->at_mm) + ", and distances leave them out",
-                  .statement = "The mesh has parts and cavities of % that hold no voxel's centre"},
-                 Verdict::Warn);
+  add_comparison(
+      certificate,
+      {.quantity = "parts and cavities between voxels' centres",
+       .unit = "mm3",
+       .difference = specks.volume_mm3,
+       .tolerance = certificate.tolerance_mm3,
+       .formula = "the volume's tolerance; the mesh has " + std::to_string(specks.count) +
+                  ", the largest of " + voxel::rounded(largest_mm3) + " mm3 near " +
+                  voxel::rounded(specks.largest->at_mm) + ", and distances leave them out",
+       .statement =
+           "The mesh has parts and cavities with a total volume of % that contain no voxel's centre"},
+      Verdict::Warn);
   judge_evidence(certificate);
 }
 
@@ -194,7 +196,7 @@ void judge_by_witness(Certificate& certificate, const Evidence& evidence, const 
                   .difference = voxels_mm3,
                   .tolerance = 0.0,
                   .formula = "0: voxels at which the scan and the plan allow a kernel only one answer",
-                  .statement = "Voxels of % contradict the scan"},
+                  .statement = "Voxels with a total volume of % contradict the scan"},
                  most);
   add_comparison(certificate,
                  {.quantity = "stray surface",
@@ -202,7 +204,7 @@ void judge_by_witness(Certificate& certificate, const Evidence& evidence, const 
                   .difference = places.stray_mm2,
                   .tolerance = 0.0,
                   .formula = "0: a triangle must lie where the scan and the plan have a surface",
-                  .statement = "Triangles of % lie where the scan has no surface"},
+                  .statement = "Triangles with a total area of % lie where the scan has no surface"},
                  most);
 }
 
@@ -222,7 +224,7 @@ void judge_bridges(Certificate& certificate, const Places& places) {
                                .difference = certificate.bridges.front().volume_mm3,
                                .formula = "no verdict up to the limit; the largest of " +
                                           std::to_string(certificate.bridges.size()) +
-                                          " parts that hang on necks which one kernel cuts"});
+                                          " parts that are connected by necks which one kernel cuts"});
   for (std::size_t i = 0; i < std::min(large, most_told); ++i) {
     const WorstPlace& bridge = certificate.bridges[i];
     lower(certificate, Verdict::Warn,
@@ -253,8 +255,8 @@ void judge_lost(Certificate& certificate, const Evidence& evidence, const Places
        .difference = static_cast<double>(places.lost.size()) * evidence.voxel_mm3,
        .tolerance = stated_share * certificate.larger_mm3(),
        .formula = "0.002 V; voxels that lack or fill walls or gaps thinner than a voxel, most near " + near,
-       .statement = "At this voxel size resampling loses walls or gaps thinner than a voxel: voxels of % "
-                    "lack or fill what this step made of them, most near " +
+       .statement = "At this voxel size resampling loses walls or gaps thinner than a voxel: voxels with a "
+                    "total volume of % differ from this step's result, most of them near " +
                     near + ". The scan confirms the mesh there: take smaller voxels"},
       Verdict::Warn);
   if (!certificate.worst) certificate.worst = places.worst_lost;
@@ -294,8 +296,8 @@ void judge_volume(Certificate& certificate, const Evidence& evidence) {
   if (!evidence.witnessed && (voxels.voxel_count == 0) != (mesh.area_mm2 == 0.0)) {
     const bool lost_by_voxels = voxels.voxel_count == 0;
     lower(certificate, Verdict::Fail,
-          lost_by_voxels ? "The voxel kernel's object is empty, the mesh kernel's is not."
-                         : "The mesh kernel's object is empty, the voxel kernel's is not.");
+          lost_by_voxels ? "The voxel kernel's object is empty, but the mesh kernel's is not."
+                         : "The mesh kernel's object is empty, but the voxel kernel's is not.");
     const glm::dvec3 low_mm = lost_by_voxels ? mesh.low_mm : voxels.extents->low_mm,
                      high_mm = lost_by_voxels ? mesh.high_mm : voxels.extents->high_mm;
     certificate.worst = {0.5 * (low_mm + high_mm), longest(high_mm - low_mm),
@@ -310,7 +312,7 @@ void judge_volume(Certificate& certificate, const Evidence& evidence) {
            .difference = certificate.symmetric_difference_mm3,
            .tolerance = certificate.symmetric_difference_tolerance_mm3,
            .formula = "layers of voxels that may differ, and three standard deviations of their number",
-           .statement = "Voxels of % are inside for one kernel only"});
+           .statement = "Voxels with a total volume of % are inside for one kernel only"});
   if (certificate.centroid_distance_mm && certificate.centroid_tolerance_mm)
     compare(certificate, evidence,
             {.quantity = "centroid",
@@ -325,13 +327,12 @@ void judge_volume(Certificate& certificate, const Evidence& evidence) {
 /// times count once among the centres.
 void compare_counted(Certificate& certificate, const Evidence& evidence, const voxel::Octree& digitised) {
   const double counted_mm3 = static_cast<double>(digitised.voxel_count()) * evidence.voxel_mm3;
-  add_comparison(
-      certificate,
-      {"volume counted inside of the mesh", "mm3", counted_mm3, evidence.mesh.volume_mm3,
-       std::abs(counted_mm3 - evidence.mesh.volume_mm3), certificate.tolerance_mm3 + evidence.voxel_mm3,
-       "the volume's tolerance, and a voxel",
-       "The mesh's volume and its inside, counted by voxels' centres, are % apart, as where it has a part "
-       "several times"});
+  add_comparison(certificate,
+                 {"volume counted inside of the mesh", "mm3", counted_mm3, evidence.mesh.volume_mm3,
+                  std::abs(counted_mm3 - evidence.mesh.volume_mm3),
+                  certificate.tolerance_mm3 + evidence.voxel_mm3, "the volume's tolerance, and a voxel",
+                  "The mesh's volume and its inside, counted by voxels' centres, are % apart, for example "
+                  "because the mesh contains a part several times"});
 }
 
 /// Indices of the keys that share a slot of a hash table with at least eight slots per key: all equal keys,
@@ -383,7 +384,7 @@ void compare_repeated(Certificate& certificate, const brep::Triangles& mesh) {
                                .difference = area_mm2,
                                .tolerance = 0.0,
                                .formula = "0: no triangle may occur twice",
-                               .statement = "Triangles of % occur several times in the mesh"});
+                               .statement = "Triangles with a total area of % are repeated in the mesh"});
 }
 
 /// Compares amounts measured along lines with both answers. If the answers agree with each other and not with
@@ -407,7 +408,7 @@ void compare_with_lines(Certificate& certificate, const Evidence& evidence, cons
                                std::min(of_voxels, of_mesh), tolerance_mm3,
                                "the volume's tolerance, five deviations of the lines, and a voxel",
                                "Lines through the scan find " + voxel::rounded(third.volume_mm3) +
-                                   " mm3, from which the nearer answer is % off"});
+                                   " mm3; the nearer answer differs from that by %"});
   if (both_stray || std::abs(certificate.difference_mm3) <= certificate.tolerance_mm3) return;
   const auto told = [&](const char* kernel, double volume_mm3) {
     const double lost_mm3 = third.volume_mm3 - volume_mm3;
@@ -435,11 +436,11 @@ void judge_emptiness(Certificate& certificate, const voxel::Octree& octree, cons
   if (octree.is_empty() == solid.empty()) return;
   lower(certificate, Verdict::Warn,
         octree.is_empty()
-            ? "No voxel holds the object, of which the mesh has " +
+            ? "The object has no voxel, but its mesh encloses " +
                   voxel::rounded(certificate.mesh.volume_mm3) +
-                  " mm3, so that no surfaces were compared: take smaller voxels."
-            : "The mesh is empty, and the voxels have " + voxel::rounded(certificate.voxel.volume_mm3) +
-                  " mm3, so that no surfaces were compared.");
+                  " mm3, so no surfaces were compared: take smaller voxels."
+            : "The mesh is empty, but the voxels hold " + voxel::rounded(certificate.voxel.volume_mm3) +
+                  " mm3, so no surfaces were compared.");
 }
 
 }  // namespace

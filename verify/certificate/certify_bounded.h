@@ -40,7 +40,7 @@ struct BoundInputs {
 
 /// Compares an octree with a solid that other code computed (tier Bounded). The source derives the terms of
 /// the tolerance. A solid with Proof::Connection may be inside out or meet itself; the comparison reports
-/// that. Throws as convert::voxelise(); voxel::Stopped. Cost: about that of computing both objects.
+/// that. Throws as convert::voxelise(); voxel::Stopped. Cost: about as much as computing both objects.
 Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& solid, const BoundInputs& inputs,
                             const voxel::Progress& progress = {});
 

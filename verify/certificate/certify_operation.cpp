@@ -66,8 +66,8 @@ voxel::Expression expression_of(const voxel::Octree& a, brep::Operation operatio
   return voxel::Expression(a) - b;
 }
 
-/// A part without a voxel's centre is not detected. A ball of more than this volume holds a centre wherever
-/// it lies, because its radius exceeds half a voxel's diagonal.
+/// A part without a voxel's centre is not detected. A ball of more than this volume contains a voxel's centre
+/// at any position, because its radius exceeds half a voxel's diagonal.
 double unseen_ball_mm3(const voxel::Lattice& lattice) {
   const double radius_mm = 0.5 * glm::length(lattice.spacing_mm());
   return 4.0 / 3.0 * std::numbers::pi * radius_mm * radius_mm * radius_mm;

@@ -385,9 +385,9 @@ Certificate certify_exact(const ExactAnswers& answers) {
          std::to_string(voxels) + ".");
   if (!differing.is_empty()) {
     certificate.worst = worst_of(answers, differing);
-    fail("Voxels of " + voxel::rounded(certificate.symmetric_difference_mm3) +
-         " mm3 are inside for one kernel only, over " + voxel::rounded(certificate.worst->size_mm) +
-         " mm about " + voxel::rounded(certificate.worst->at_mm) + ": " + certificate.worst->what + ".");
+    fail("Voxels with a total volume of " + voxel::rounded(certificate.symmetric_difference_mm3) +
+         " mm3 are inside for one kernel only; they extend " + voxel::rounded(certificate.worst->size_mm) +
+         " mm, near " + voxel::rounded(certificate.worst->at_mm) + ": " + certificate.worst->what + ".");
   }
   if (filled != united.voxel_count()) fail("Solids of the mesh kernel overlap that should only touch.");
   // Areas are whole numbers, too. They are sums of square roots with an error of one unit in the last place

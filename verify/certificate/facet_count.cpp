@@ -13,7 +13,7 @@
 //   3  For each k the product of three powers is a point's phase. J is the difference of a side's two phases
 //      divided by its turn, or a series where the turn is so small that the difference has lost digits.
 // A power of 65 errs by at most 65 roundings of a complex product, sqrt(5) half-units each (Brent, Percival
-// and Zimmermann, 2007): a phase by 5e-14 and J, of turns over 0.01, by 1e-11. The series leaves 2e-13.
+// and Zimmermann, 2007): a phase by 5e-14 and J, for turns above 0.01, by 1e-11. The series leaves 2e-13.
 #include "verify/certificate/facet_count.h"
 
 #include <algorithm>
@@ -208,7 +208,7 @@ class Part {
   bool is_first_;
   std::size_t sides_;
   std::vector<glm::dvec3> points_;
-  /// by axis: a side's turns for k = 1 along this axis, and its weights
+  /// by axis: each side's phase in radians for k = 1, and its outward weight
   std::array<std::vector<double>, 3> side_, outward_;
   std::array<std::vector<Phases>, 3> power_;
   glm::ivec3 last_{0};

@@ -23,13 +23,14 @@ struct GeneralPosition {
   std::vector<ExactOperand> operands;
 };
 
-/// Brings sets of voxels of one universe into general position, so that any Boolean of them has a manifold surface in
-/// which no two faces coincide. Each set is refined. It loses a quarter of a voxel all round, which separates voxels
-/// that only touched at edges or corners. It shifts by its own number of refined voxels along (-1,-1,-1). So no plane
-/// of one set is a plane of another set or of the universe's border. The sets differ a little from the input, but
-/// both kernels get the same sets. Throws std::invalid_argument if there is no set or the universes differ;
-/// voxel::Error (Resource) if the refined universe would be too large; voxel::Stopped. Cost: a lattice refined by
-/// twice the number of sets, rounded up to a power of two; eight times as many triangles as a cuberille has faces.
+/// Brings sets of voxels of one universe into general position, so that every Boolean of the sets has a
+/// manifold surface without coinciding faces. Each set is refined. It loses a quarter of a voxel all round,
+/// which separates voxels that only touched at edges or corners. It shifts by its own number of refined
+/// voxels along (-1,-1,-1). So no plane of one set is a plane of another set or of the universe's border. The
+/// sets differ a little from the input, but both kernels get the same sets. Throws std::invalid_argument if
+/// there is no set or the universes differ; voxel::Error (Resource) if the refined universe would be too
+/// large; voxel::Stopped. Cost: a lattice refined by twice the number of sets, rounded up to a power of two;
+/// eight times as many triangles as a cuberille has faces.
 GeneralPosition general_position(const std::vector<voxel::Octree>& sets,
                                  const voxel::Progress& progress = {});
 

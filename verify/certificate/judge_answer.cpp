@@ -164,9 +164,9 @@ std::vector<Certificate> judge_voxels(const KernelAnswers& kernels, const voxel:
     certificate.worst = {at_mm, std::cbrt(volume_mm3), answer.contains(voxel) ? has_more : lacks_part,
                          volume_mm3};
     lower(certificate, Verdict::Fail,
-          "Voxels of " + voxel::rounded(volume_mm3) +
-              " mm3 are inside for the answer or the voxel kernel only, some about " + voxel::rounded(at_mm) +
-              ": " + certificate.worst->what + ".");
+          "Voxels with a total volume of " + voxel::rounded(volume_mm3) +
+              " mm3 are inside for only one of the answer and the voxel kernel, for example near " +
+              voxel::rounded(at_mm) + ": " + certificate.worst->what + ".");
   }
   Certificate by_mesh = no_solid();
   if (kernels.solid) {

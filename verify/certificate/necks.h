@@ -22,12 +22,12 @@ inline constexpr const char* thin_neck =
     "3 voxels, a sample or the difference of the kernels' interpolations";
 static_assert(bridge_voxels == 3);
 
-/// Two answers that chose connected parts of one object, and the necks by which a part of one answer alone
-/// is connected to the voxels of both. Safe to call from several threads.
+/// Two answers that chose connected parts of one object, and the necks that connect a part found in one
+/// answer only to the voxels of both answers. Safe to call from several threads.
 class Necks {
  public:
-  /// The two answers, the mesh's as the voxels whose centre lies inside it, and a witness of the whole object
-  /// from which the parts were chosen.
+  /// `digitised` is the mesh kernel's answer: the voxels whose centre lies inside the mesh. `whole` is a
+  /// witness of the whole object from which the parts were chosen.
   Necks(voxel::Octree octree, voxel::Octree digitised, Witness whole);
   /// As above, but the mesh is digitised at the first use. A neck near one that the plan keeps or cuts is not
   /// reported.

@@ -227,7 +227,8 @@ std::vector<FailedVoxel> failed_inside(const voxel::Octree& octree, const voxel:
         const int bit = std::countr_zero(tried);
         const glm::ivec3 at = low + voxel::child_place(bit);
         const bool inside = ((voxels >> bit) & 1) != 0;
-        // The mesh's interpolation is enough: the voxel kernel's differs from it only at surfaces.
+        // The mesh's interpolation suffices, because the voxel kernel's interpolation differs from it only at
+        // surfaces.
         if (!is_within(at, octree) || witness.mesh_sides(lattice.lps_mm(glm::dvec3(at))).allows(inside) ||
             std::binary_search(compared.begin(), compared.end(), at, before))
           continue;

@@ -154,11 +154,11 @@ void compare(const voxel::Octree& octree, const brep::Solid& solid, double near,
       octree.universe(), voxel::Expression(octree) ^ convert::voxelise(octree.universe(), solid.linked()));
   certificate.symmetric_difference_mm3 = static_cast<double>(differing.voxel_count()) * unit_mm3;
   if (!differing.is_empty())
-    fail("Voxels of " + voxel::rounded(certificate.symmetric_difference_mm3) +
+    fail("Voxels with a total volume of " + voxel::rounded(certificate.symmetric_difference_mm3) +
          " mm3 are inside for one kernel only.");
 }
 
-/// The mesh kernel's answer in units, and what the corefinements found.
+/// The mesh kernel's answer in units, and the corefinements' findings.
 struct Corefined {
   brep::Solid solid;
   double shift_units = 0.0;  ///< how far operands were moved

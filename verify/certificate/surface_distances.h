@@ -14,7 +14,7 @@
 
 namespace octotomy::verify {
 
-/// How far the surfaces of an octree and of a solid are apart, in both directions: from the centres of the
+/// Distances between the surfaces of an octree and of a solid, in both directions: from the centres of the
 /// octree's boundary faces to the triangles, and from points spread over the triangles, at most two voxels
 /// apart, to the boundary faces. Each point stands for its share of the area.
 class SurfaceDistances {

@@ -135,7 +135,7 @@ void add_reach(Certificate& certificate, const FarSample& found, double reach_mm
                bool is_of_answer) {
   if (!(found.distance_mm >= 0.0))
     return lower(certificate, Verdict::Warn,
-                 std::string("No sample of ") + (is_of_answer ? "the answer" : "what the step makes") +
+                 std::string("No sample of ") + (is_of_answer ? "the answer" : "the step's right result") +
                      " lies far enough within the universe to be compared.");
   add_comparison(certificate,
                  {.quantity = is_of_answer ? "answer's surface from where it must lie"

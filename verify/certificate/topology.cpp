@@ -138,11 +138,12 @@ void compare_topology(Certificate& certificate, const Octree& octree, const Octr
                        const Unmatched& unmatched, const std::string& of_one_alone) {
     const std::string where =
         unmatched.largest ? ", the largest near " + voxel::rounded(unmatched.largest->at_mm) : "";
-    add_comparison(certificate,
-                   {quantity, "", static_cast<double>(in_voxels), static_cast<double>(in_mesh),
-                    static_cast<double>(unmatched.count), 0.0,
-                    "0: none may hold three voxels a side and share no voxel with the other kernel's",
-                    of_one_alone + where + ": %"});
+    add_comparison(
+        certificate,
+        {quantity, "", static_cast<double>(in_voxels), static_cast<double>(in_mesh),
+         static_cast<double>(unmatched.count), 0.0,
+         "0: no part of three voxels a side may be without a common voxel with the other kernel's parts",
+         of_one_alone + where + ": %"});
   };
   add("parts", of_voxels.parts, of_mesh.parts, are_equal ? Unmatched() : unmatched_parts(octree, digitised),
       "Parts that one kernel alone has");

@@ -149,8 +149,8 @@ std::optional<Interval> phase_area(const PhaseEvidence& found, const glm::dvec3&
   if (!(fit.misfit < most_misfit)) return std::nullopt;
   const double sample_mm3 = spacing_mm.x * spacing_mm.y * spacing_mm.z;
   const std::optional<LogRange> edges = by_edges(found, fit);
-  // A half level that loses over half of its area with the next blur is about to vanish. Its area follows no
-  // power of the blur.
+  // A half level that loses more than half of its area with the next blur is about to vanish. Its area
+  // follows no power of the blur.
   if (edges && found.level_mm2[3] >= 0.5 * found.level_mm2[2])
     return interval_of(
         *edges, "edges",

@@ -6,8 +6,8 @@
 #include <tbb/parallel_for.h>
 #include <vector>
 
-// A scan's samples as an array in the order of x, y, z, and filters of all of them. Parallel; same bits on
-// any thread count. Cost: order n.
+// A scan's samples as an array, x fastest, and filters of the whole array. Parallel; same bits on any thread
+// count. Cost: order n.
 namespace octotomy::verify {
 
 using SampleValues = std::vector<float>;

@@ -30,15 +30,14 @@
 // may also be a gradient of the object itself, such as a ramp or spongy bone.
 //
 // sources  interpolation: the whole loss at a half level, or the difference from the volume by counting
-//          samples if that is larger. Counting does not depend on the interpolation: between coarse slices
-//          the surface of a low threshold bulges, and that of thin walls shrinks. digitisation, edges: a
-//          share of that loss. blur: the loss by blur, and a share of it. flat: a plane along the lattice
-//          lies between samples of shares 1, f and 0, and linear interpolation displaces the whole plane
-//          equally, by up to 0.086 s. Noise tilts its triangles, so a part whose mean normal is along the
-//          lattice counts with its whole area. sheet: the blur of the other side lowers a sheet's samples
-//          (step_share()). window: the surface's shift for ten sample units. The constants were calibrated
-//          with solids of all groups in poses of other seeds than those of interval_suite(), so that the
-//          intervals hold at its 99th percentile.
+// samples if that is larger. Counting does not depend on the interpolation: between coarse slices the surface
+// of a low threshold bulges, and that of thin walls shrinks. digitisation, edges: a share of that loss. blur:
+// the loss by blur, and a share of it. flat: a plane along the lattice lies between samples of shares 1, f
+// and 0, and linear interpolation displaces the whole plane equally, by up to 0.086 s. Noise tilts its
+// triangles, so a part whose mean normal is along the lattice counts with its whole area. sheet: the blur of
+// the other side lowers a sheet's samples (step_share()). window: the surface's shift for ten sample units.
+// The constants were calibrated with solids of all groups in poses of other seeds than those of
+// interval_suite(), so that the intervals contain the truth at the suite's 99th percentile.
 #include "verify/interval/size_interval.h"
 
 #include <algorithm>
@@ -137,7 +136,7 @@ class Measuring {
   const glm::dvec3& point(std::uint32_t number) const { return triangles_.points_mm[number]; }
 
   /// The key of a lattice cell and of a direction's nearest axis with its sign. Precondition: the cell's
-  /// indices are below half a million.
+  /// indices are at least -2^19 and below 2^19.
   static std::uint64_t numbered(const glm::dvec3& cell, const glm::dvec3& along) {
     int direction = 0;
     for (int axis = 1; axis < 3; ++axis)

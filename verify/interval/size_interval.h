@@ -53,11 +53,12 @@ struct SizeIntervals {
 };
 /// The intervals of an isosurface of samples. Their values are the measures of the triangles. An edge sharper
 /// than an isosurface can have is a cut, which has no error. Motions do not change value and width. The width
-/// of a part comes from its own surface, so the widths of the parts add up to that of the whole. Cost: n log
-/// n in edges.
+/// of a part is computed from the part's own surface, so the parts' widths add up to the width of the whole.
+/// Cost: n log n in edges.
 SizeIntervals size_intervals(const brep::Solid& solid, const SampledFrom& from);
 
-/// The intervals of an empty object: upper bounds of what may have been missed, a ball two samples across.
+/// The intervals of an empty object: upper bounds of a part that may have been missed, a ball two samples
+/// across.
 SizeIntervals nothing_found(const glm::dvec3& sample_mm);
 
 /// For an object whose surface comes from several samplings: the intervals as if one of them had sampled the

@@ -44,8 +44,8 @@ struct TwoPhase {
 
 /// Measures the solid whose half level is `low`, in sample units. None if the solid and its surroundings do
 /// not have two densities: samples near it differ by more than noise; samples deep in it are not as far above
-/// `low` as the background is below; or nothing rises above noise. Also none if the solid meets the scan's
-/// border or a third density, if the scan's axes are not at right angles, or if parts of the scan were not
+/// `low` as the background is below; or nothing rises above noise. Also none if the solid touches the scan's
+/// border or a third density, if the scan's axes are not perpendicular, or if parts of the scan were not
 /// measured (Scene::padding). Where the solid reaches `low`, the scan may have other densities away from it.
 /// Throws voxel::Stopped. Parallel; same bits on any thread count. Memory: five times four bytes a sample.
 /// Cost: three blurs of the scan, and six where the first attempt with two densities fails. A scan of many

@@ -46,8 +46,8 @@ class HeadBricks {
   const Brick& at(const glm::dvec3& p_mm, double radius_mm = 0.0) const;
   /// Edge of the cubic bricks.
   static constexpr double edge_mm = 8.0;
-  /// The margin around a brick in which its steps are valid: enough for 4^3 voxels of 1 mm, or one of 4 mm,
-  /// about a point of the brick.
+  /// The margin around a brick in which its steps are valid: enough for 4^3 voxels of 1 mm, or one voxel of 4
+  /// mm, around a point of the brick.
   static constexpr double margin_mm = 3.5;
 
  private:

@@ -50,7 +50,7 @@ double value(const Primitive& form, const glm::dvec3& p_mm) {
 }
 
 // The polynomial smooth minimum. It equals the minimum where a and b differ by more than the width. Its
-// gradient is a convex combination of those of a and b, so it keeps their Lipschitz constant.
+// gradient is a convex combination of the gradients of a and b, so it keeps their Lipschitz constant.
 double smooth_min(double a, double b, double width) {
   const double lesser = std::min(a, b), apart = std::abs(a - b);
   if (apart >= width) return lesser;

@@ -22,8 +22,8 @@ class ImplicitSolid {
     const Primitive* primitive = nullptr;  ///< of a leaf
     double mm = 0.0;                       ///< blending width of a union or intersection; growth
   };
-  /// The steps that evaluate a solid: all of them, or only those that matter within a ball. Valid as long
-  /// as the solid.
+  /// The steps that evaluate a solid: all steps, or only the steps that change its value within a ball. Valid
+  /// as long as the solid.
   using Steps = std::vector<Step>;
 
   double operator()(const glm::dvec3& p_mm) const;

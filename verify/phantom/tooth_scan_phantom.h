@@ -25,7 +25,7 @@ struct ToothScanPhantomOptions {
 /// An open scan of one row of teeth with some of the gum, in a random pose.
 struct ToothScanPhantom {
   brep::Triangles scan;
-  /// The same points on the closed form of teeth and gum, LPS millimetres: where they would be without noise,
+  /// The same points on the closed form of teeth and gum, LPS millimetres: their positions without noise,
   /// bend and pose.
   std::vector<glm::dvec3> truth_mm;
   glm::dmat4 lps_from_scan{1.0};  ///< the pose

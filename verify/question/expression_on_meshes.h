@@ -20,8 +20,8 @@ namespace octotomy::verify {
 ExpressionTree expression_tree_of(std::string_view text, std::vector<std::string>& names);
 
 /// Evaluates Boolean expressions on solids, with code independent of voxel::combine() on octrees. The grammar
-/// is that of voxel::parse_expression(), with a separate parser, so that a wrong precedence in one of the
-/// parsers shows as disagreement.
+/// is that of voxel::parse_expression(). The parser is a separate one, so the kernels disagree if either
+/// parser has a wrong precedence.
 ///
 /// Complements stay symbolic (a & ~b is a - b, ~a & ~b is ~(a | b)), so no mesh is ever inside out. If the
 /// result is a complement, it is computed within `world`. An expression that names a solid several times is

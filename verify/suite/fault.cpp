@@ -248,10 +248,10 @@ const std::vector<Fault>& faults() {
       {window_sixteenth, "one kernel's window begins a sixteenth of the contrast higher", true},
       {stale_result, "one kernel has the object as it was before it was turned and moved", true},
       {stale_box, "one kernel has the box where it was before it moved by two voxels along each axis", true},
-      {wrong_pivot, "one kernel turns about the origin instead of the given point", true},
+      {wrong_pivot, "one kernel rotates about the origin instead of the given point", true},
       {shell_thrice, "the mesh contains its surface three times", true},
       {both_empty, "both kernels return an empty answer", true},
-      {lost_by_both, "both kernels have lost what lies in one half of the universe", true}};
+      {lost_by_both, "both kernels have lost the part in one half of the universe", true}};
   return all;
 }
 

@@ -20,7 +20,7 @@ struct IntervalCoverage {
   std::string group, spacing, sampling;
   int cases = 0;
   double held = 0.0;  ///< the share of cases whose interval holds the truth
-  /// 99th percentile of |error| / half-width; the width is 1 / p99_share times what is necessary
+  /// 99th percentile of |error| / half-width; the width is 1 / p99_share times the necessary width
   double p99_share = 0.0;
   double bias_percent = 0.0, p99_error_percent = 0.0;  ///< of the recommended value
   double median_width_percent = 0.0;                   ///< of the half-width, in per cent of the truth
@@ -38,8 +38,8 @@ struct IntervalSuiteOptions {
 };
 
 /// Tests solids of measured_groups() in random poses at spacings 1:1:1 to 5:1:1. They are sampled as shares,
-/// as a blurred scan with noise, and as such a scan with a tilted gantry that is straightened. Returns one
-/// row for each combination; before these, one row per quantity over all combinations. Throws
+/// as a blurred scan with noise, and as a blurred scan with noise whose tilted gantry is straightened.
+/// Returns one row for each combination; before these, one row per quantity over all combinations. Throws
 /// std::invalid_argument if there are no solids; voxel::Stopped. Parallel; same answer on any thread count.
 /// Cost: about 0.2 s a solid.
 std::vector<IntervalCoverage> interval_suite(const IntervalSuiteOptions& options = {});

@@ -65,7 +65,7 @@ voxel::GreyOctree grey_head() {
   return grey_octree_of(universe, scene, 0);
 }
 
-/// The visits of drawing a head from the front.
+/// Counts the tree nodes that are visited while an object is drawn from the front.
 voxel::Visits drawn(const voxel::DrawnObject& object, voxel::Algorithm algorithm) {
   voxel::RenderOptions options;
   options.view = voxel::parse_view("anterior");

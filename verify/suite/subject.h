@@ -22,7 +22,7 @@ struct Making {
   double slices_apart = 1.0;  ///< slice distance, as a multiple of the true distance
   bool swapped = false;       ///< box - window instead of window - box
   glm::dvec3 box_shift_mm{0.0};
-  bool pivot_forgotten = false;  ///< turned about the origin instead of the pivot
+  bool pivot_forgotten = false;  ///< rotated about the origin instead of the pivot
   bool not_moved = false;        ///< the motion is left out
 };
 

@@ -22,9 +22,10 @@ struct DrawnBrush {
   std::optional<Disc> disc = std::nullopt;
 };
 
-/// The points that the brush covers somewhere on one of the ways. Each straight piece is decided by the interval
-/// of positions at which the brush covers the point, so that no hull is computed. Throws std::invalid_argument if
-/// there is no way or a way has no point. Cost of a point: 50 ns for each piece whose box holds it.
+/// The points that the brush covers somewhere on one of the ways. Each straight piece is decided by the
+/// interval of positions at which the brush covers the point, so no hull is computed. Throws
+/// std::invalid_argument if there is no way or a way has no point. Cost of a point: 50 ns for each piece
+/// whose box holds it.
 Witness witness_of_brush(const std::vector<DrawnBrush>& ways);
 
 }  // namespace octotomy::verify

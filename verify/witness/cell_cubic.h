@@ -31,9 +31,9 @@ struct Shares {
   const Share* end() const { return parts.data() + count; }
 };
 
-/// The parts of 0..1 in which the cubic is at least `low` and at most `high`; both may be infinite. The cubic is
-/// monotonic between its extrema, so there is at most one part between two of them, and none is missed. Ends are
-/// exact to rounding. Precondition: the coefficients are finite.
+/// The parts of 0..1 in which the cubic is at least `low` and at most `high`; both may be infinite. The cubic
+/// is monotonic between its extrema, so there is at most one part between two extrema, and no part is missed.
+/// Ends are exact to rounding. Precondition: the coefficients are finite.
 Shares shares_within(const Cubic& cubic, double low, double high);
 
 }  // namespace octotomy::verify

@@ -22,7 +22,7 @@ class Classed {
         dims_(scan_->lattice.dims),
         voxel_from_lps_(glm::inverse(scan_->lattice.lps_from_voxel)) {
     if (by_.meant >= by_.centres.size())
-      throw voxel::InvalidInput("no class has the number of the described class");
+      throw voxel::InvalidInput("the described class's number is beyond the last class");
   }
 
   AllowedSides allowed(const glm::dvec3& p_mm) const {

@@ -30,9 +30,9 @@ struct AllowedSides {
 };
 inline constexpr AllowedSides certainly_in{true, false, false};
 inline constexpr AllowedSides certainly_out{false, true, false};
-/// On a surface, within a kernel's interpolation and rounding.
+/// The point is on a surface, within a kernel's interpolation and rounding.
 inline constexpr AllowedSides on_surface{true, true, true};
-/// Away from any surface, and the witness cannot decide the side.
+/// The point is away from any surface, but the witness cannot decide the side.
 inline constexpr AllowedSides either_side{true, true, false};
 inline constexpr AllowedSides either_by_choice{true, true, false, true};
 
@@ -45,8 +45,8 @@ struct Reading {
 };
 
 /// The parts of a reading that the caller needs. `Both` and `MeshOnly` include the surfaces; `BothSides` and
-/// `MeshSides` are sides only, which cost less, because one operand that decides alone makes the others
-/// unnecessary.
+/// `MeshSides` are sides only. They cost less, because the other operands are not read once one operand
+/// decides.
 enum class ReadingNeeds { Both, MeshOnly, BothSides, MeshSides };
 constexpr bool needs_voxels(ReadingNeeds asked) {
   return asked == ReadingNeeds::Both || asked == ReadingNeeds::BothSides;
@@ -70,8 +70,8 @@ class Witness {
   using Read = std::function<Reading(const glm::dvec3& p_mm, double slack_mm, ReadingNeeds asked)>;
 
   Witness() = default;
-  /// `read` returns the whole reading; with a third parameter of type ReadingNeeds it may leave out what is
-  /// not needed.
+  /// `read` returns the whole reading; with a third parameter of type ReadingNeeds it may leave out the parts
+  /// that are not needed.
   template <typename Reader>
   requires std::is_invocable_v<const Reader&, const glm::dvec3&, double> ||
       std::is_invocable_v<const Reader&, const glm::dvec3&, double, ReadingNeeds>
@@ -93,7 +93,7 @@ class Witness {
   const Reader* reader() const {
     return read_.target<Reader>();
   }
-  /// The same object's reading along lines, which separate code computes; may be empty.
+  /// The same object's reading along lines, computed by separate code; may be empty.
   const LineReading& lines() const { return lines_; }
   Witness with_lines(LineReading lines) && {
     lines_ = std::move(lines);

@@ -61,7 +61,8 @@ class ReshapedReader {
     if (cut_) return cut_(p_mm, slack_mm, asked);
     const Reshaped& by = made();
     if (by.sides) {
-      // The voxels are digitised triangles, so that the mesh's sides hold for both kernels.
+      // The voxels were digitised from these triangles, so the mesh's inside/outside result holds for both
+      // kernels.
       Reading reading =
           by.sides(p_mm, slack_mm, needs_surfaces(asked) ? ReadingNeeds::MeshOnly : ReadingNeeds::MeshSides);
       reading.voxel = reading.mesh;

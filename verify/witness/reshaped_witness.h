@@ -10,7 +10,7 @@
 #include "verify/witness/triangle_grid.h"
 #include "voxel/space/lattice.h"
 
-// Witnesses of objects whose surface one step made of another object's surface.
+// Witnesses of objects whose surface a single step, such as smoothing, derived from another object's surface.
 namespace octotomy::verify {
 
 /// Rounding of a point's coordinates by some operations on the way, such as a motion or a Boolean.

@@ -18,8 +18,9 @@ struct SampleSide {
   bool is_out = false;  ///< surely outside
 };
 
-/// At a sample its own side; elsewhere the side on which the samples about the point agree. Beyond the scan's
-/// voxels all is outside. `side` is called for indices that may lie outside of the scan by one.
+/// Returns the sample's side at a sample. Elsewhere returns the side on which all surrounding samples agree,
+/// or either_side if they do not. Points beyond the scan's voxels are outside. `side` is called for indices
+/// that may lie outside of the scan by one.
 template <typename Side>
 AllowedSides sides_by_samples(const glm::dvec3& place, const glm::ivec3& dims, const Side& side) {
   const glm::dvec3 nearest = glm::floor(place + 0.5);

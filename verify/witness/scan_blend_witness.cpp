@@ -127,8 +127,8 @@ class ScanBlendReader {
     return through(asked_.scan.faces[foot.face], foot.weights, values);
   }
 
-  /// Computes the normals at the points: sums, weighted by area, over all triangles that share a corner with a
-  /// triangle at the point. So small triangles that noise turned over do not count.
+  /// Computes the normals at the points: sums, weighted by area, over all triangles that share a corner with
+  /// a triangle at the point. So small triangles that noise reversed do not count.
   void find_normals() {
     const std::vector<glm::dvec3>& points = asked_.scan.points_mm;
     std::vector<glm::dvec3> own(points.size(), glm::dvec3(0.0));

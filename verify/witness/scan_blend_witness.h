@@ -19,13 +19,14 @@ struct WitnessedScan {
   double apart_mm = 0.0;  ///< how far a right answer's surface may lie from the scan's, and from the object's
 };
 
-/// The object with the scan's surface on its crowns. Where only the scan counts, the side of the scan's triangles
-/// decides; where only the object counts, its own witness does. Between both, along the border, both sides are
-/// allowed where the two differ. Both kernels' sides are the same, because voxels are digitised triangles. Empty if
-/// the object has no witness. Cost of a reading: some triangles, and the object's reading where it counts.
+/// The object with the scan's surface on its crowns. Where only the scan counts, the side of the scan's
+/// triangles decides; where only the object counts, its own witness does. Between both, along the border,
+/// both sides are allowed where the two differ. Both kernels' sides are the same, because voxels are
+/// digitised triangles. Empty if the object has no witness. Cost of a reading: some triangles, and a reading
+/// of the object where the object decides.
 Witness witness_of_scan_blend(Witness object, WitnessedScan asked);
 
-/// Whether a witness is that of a scan blend, and not a Boolean or a motion of others.
+/// Whether a witness belongs to a scan blend, and not to a Boolean or a motion of other witnesses.
 bool is_scan_blend(const Witness& witness);
 
 }  // namespace octotomy::verify

@@ -19,8 +19,8 @@ struct DrawnStack {
   /// Between two slices that are not empty, the sum of the distances to both outlines decides, weighted by
   /// nearness. False: the nearer slice decides.
   bool is_interpolated = true;
-  /// How far the mesh kernel's surface may lie from the interpolated one, in the plane and across it: its tiles are
-  /// straight between sections.
+  /// Largest distances of the mesh kernel's surface from the interpolated surface, in the plane and across
+  /// it, because tiles are straight between sections.
   double mesh_within_mm = 0.0;
 };
 

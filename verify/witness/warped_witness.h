@@ -26,8 +26,8 @@ class NodeMotion {
   glm::dvec3 displacement_mm(const glm::dvec3& p_mm) const;
   /// Whether the displacements turn an element over. Points then may have several origins.
   bool turns_over() const;
-  /// The origin of p_mm, the point that the field moves there: x = p - u(x), repeated until x rests. None
-  /// if that does not converge, for example where elements stretch or shear by their own length.
+  /// The origin of p_mm, the point that the field moves there: x = p - u(x), repeated until x rests. None if
+  /// the iteration does not converge, for example where elements stretch or shear by their own length.
   std::optional<glm::dvec3> origin_mm(const glm::dvec3& p_mm) const { return origin_mm(p_mm, p_mm); }
   /// The origin of a point, searched from a guess.
   std::optional<glm::dvec3> origin_mm(const glm::dvec3& p_mm, const glm::dvec3& guess_mm) const;
@@ -47,7 +47,7 @@ ReshapedSurface surface_warped(const brep::Triangles& still, const NodeMotion& m
 /// An object that moved with a field: at a point, the still object's witness at the origin of that point.
 /// Triangles stay flat between moved points; the witness allows the resulting error, which is measured at
 /// three points of each side and in the middle of each triangle. Where a point has no origin, any answer is
-/// allowed. Empty where the still object has no witness, and where elements turn over.
+/// allowed. Empty where the still object has no witness, and where elements are inverted.
 Witness witness_of_warped(Witness still, const brep::Triangles& still_surface,
                           std::shared_ptr<const NodeMotion> motion);
 

@@ -52,12 +52,13 @@ struct ScanFit {
   std::vector<std::string> findings;  ///< reasons for a verdict that is no PASS
 };
 
-/// The rigid motion of the moving scan at which the two are most alike. The search begins at 21 motions: as the scans
-/// lie, by their middles and by their centres of mass, each also turned by 30 degrees to both sides about each
-/// axis. The verdict is Fail if the likeness is no more than that of unrelated scans, and Warn if another motion is
-/// nearly as good, fewer than two starts agree, or a small motion loses no likeness. Throws InvalidInput if a scan has
-/// no measured sample or one value only, or an option is out of its range; Stopped. Deterministic on any thread
-/// count. Cost: about a thousand likenesses of up to 100,000 points.
+/// The rigid motion of the moving scan at which the two are most alike. The search begins at 21 motions: as
+/// the scans lie, by their middles and by their centres of mass, each also turned by 30 degrees to both sides
+/// about each axis. The verdict is Fail if the similarity is no higher than between unrelated scans. It is
+/// Warn if another motion is nearly as good, if fewer than two starts agree, or if a small motion loses no
+/// similarity. Throws InvalidInput if a scan has no measured sample or one value only, or an option is out of
+/// its range; Stopped. Deterministic on any thread count. Cost: about a thousand likenesses of up to 100,000
+/// points.
 ScanFit register_scans(const Scene& moving, const Scene& fixed, const ScanFitOptions& options = {});
 
 }  // namespace octotomy::voxel

@@ -24,7 +24,7 @@ struct CoarseScan {
            static_cast<std::size_t>(dims.x) *
                (static_cast<std::size_t>(y) + static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(z));
   }
-  /// The trilinear value within low..high; NaN outside and next to blocks without samples.
+  /// The trilinear value, clamped to low..high; NaN outside the scan and next to blocks without samples.
   float at(const glm::dvec3& p_voxel) const;
 };
 CoarseScan coarse_scan(const Scene& scene, double resolution_mm);

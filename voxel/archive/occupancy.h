@@ -9,9 +9,9 @@
 
 namespace octotomy::voxel {
 
-/// The share of each of a lattice's voxels that an octree's voxels fill, exact but for double precision, so
-/// that shares times the voxels' volume add up to the octree's volume within the lattice. None unless the axes
-/// of octree and lattice are parallel, in any order and direction. Throws Stopped. Cost: the octree's planes.
+/// For each voxel of a lattice, the share that an octree's voxels fill. Exact to double precision, so the
+/// shares times a voxel's volume add up to the octree's volume within the lattice. None unless the axes of
+/// octree and lattice are parallel, in any order and direction. Throws Stopped. Cost: the octree's planes.
 /// Memory: eight bytes a sample.
 std::optional<std::vector<double>> occupancy(const Octree& octree, const Lattice& lattice,
                                              const Progress& progress = {});

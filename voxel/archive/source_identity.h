@@ -21,7 +21,7 @@ enum class IdentityChoice {
 std::optional<IdentityChoice> identity_choice(std::string_view word);
 std::string_view word_of(IdentityChoice choice);
 
-/// The source that writers copy, and what was changed in it: "Patient's Name (0010,0010): emptied".
+/// The source that writers copy, and the changes made to it: "Patient's Name (0010,0010): emptied".
 struct DecidedIdentity {
   std::optional<DicomSource> source;
   std::vector<std::string> changes;

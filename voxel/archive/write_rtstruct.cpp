@@ -228,7 +228,7 @@ class StructureSetWriter {
     std::vector<PixelOutline> outlines;
   };
 
-  /// Draws the object's outlines on the planes, and records what they leave out.
+  /// Draws the object's outlines on the planes, and records the parts that the outlines leave out.
   std::vector<Outlined> outlined(std::size_t i, ContouredObject& drawn) {
     const Octree& object = objects_[i].object;
     const double step_mm = plane_distance_mm(universe_);

@@ -29,7 +29,7 @@ struct RtstructOptions {
   Progress progress = {};
 };
 
-/// What was drawn for an object, and what was left out.
+/// The outlines drawn for an object, and the parts that they leave out.
 struct ContouredObject {
   std::string name;
   std::size_t planes = 0, contours = 0, holes = 0, points = 0;

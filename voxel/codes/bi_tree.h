@@ -20,10 +20,11 @@ struct BiTree {
   std::string nodes;
 };
 
-/// The least bi-tree; among equal axes, the first. Throws std::length_error for universes deeper than
-/// max_depth. Cost: every box of halved edges is searched once, (2^(depth + 1) - 1)^3 of them, 6 bytes each.
+/// The bi-tree with the fewest nodes; of axes with equal counts, the first is halved. Throws
+/// std::length_error for universes deeper than max_depth. Cost: every box of halved edges is searched once,
+/// (2^(depth + 1) - 1)^3 of them, 6 bytes each.
 BiTree bi_tree(const Octree& octree);
-/// Throws std::invalid_argument with the position of a node that is missing or too many, that halves an edge
+/// Throws std::invalid_argument with the position of a node that is missing or surplus, that halves an edge
 /// of one voxel, or whose halves are both Full or both Empty.
 Octree octree_of(const BiTree& tree);
 

@@ -20,8 +20,8 @@ struct LinearOctree {
 
 /// Cost: one walk; 16 bytes per Full node.
 LinearOctree linear_octree(const Octree& octree);
-/// Throws std::invalid_argument that names a code that is too deep for the universe, does not come after its
-/// predecessor, lies inside its predecessor, or is the last of eight that form one Full node.
+/// Throws std::invalid_argument that names a code that is too deep for the universe, does not follow its
+/// predecessor in order, lies inside its predecessor, or is the last of eight codes that form one Full node.
 Octree octree_of(const LinearOctree& linear);
 
 /// For example `17, 2, 34, 61, 62, 65`; `root` for a full universe.

@@ -43,8 +43,8 @@ Octree octree_of(const MaskedOctree& masked);
 /// The nodes as one word: a status, E, F or P, its covered faces as two hexadecimal digits, and the eight children of
 /// a P in parentheses: `P00(E02F1f...)`.
 std::string text(const MaskedOctree& masked);
-/// The inverse of text(). Throws std::invalid_argument with the position of the character that is wrong, or of the
-/// node whose faces are not those that the other nodes cover. Cost: that of masked_octree().
+/// The inverse of text(). Throws std::invalid_argument with the position of the character that is wrong, or
+/// of the node whose faces differ from the faces that the other nodes cover. Cost: that of masked_octree().
 MaskedOctree parse_masked_octree(const Universe& universe, std::string_view text);
 
 /// The faces that an observer beyond an octant sees (table 4.1). Precondition: the octant is in 0..7.

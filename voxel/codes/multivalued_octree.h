@@ -23,8 +23,8 @@ struct MultivaluedOctree {
 /// them. Throws std::invalid_argument if there are no objects or more than 254, or if their universes differ.
 /// Cost: a walk of all objects together.
 MultivaluedOctree multivalued_octree(const std::vector<Octree>& objects);
-/// The voxels with the given number. Throws std::invalid_argument that names a node that is missing or too
-/// many, a voxel that is Partial, or a Partial node whose eight children have one number.
+/// The voxels with the given number. Throws std::invalid_argument that names a node that is missing or
+/// surplus, a voxel that is Partial, or a Partial node whose eight children have the same number.
 Octree object_of(const MultivaluedOctree& tree, int number);
 
 /// Numbers separated by spaces, and P(...) for Partial nodes: `P(0 0 1 2 0 0 P(1 1 0 0 0 0 0 0) 0)`.

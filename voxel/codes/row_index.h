@@ -16,8 +16,8 @@
 namespace octotomy::voxel {
 
 // The common part of codes that store an object as slices of rows (marginal_index.h, segment_index.h). An
-// `Index` has a universe, and a slice for each voxel of its side. A slice has as many rows, or none if it is
-// empty; a row without voxels is an empty list, the thesis's null pointer.
+// `Index` has a universe, and a slice for each voxel of its side. A slice has this number of rows, or no row
+// if it is empty; a row without voxels is an empty list, the thesis's null pointer.
 
 /// Throws std::invalid_argument that names the code, the place and the reason.
 [[noreturn]] inline void refuse_slice(const char* code, std::size_t slice, const std::string& why) {

@@ -31,7 +31,7 @@ class DicomFile {
   struct Deflated {
     std::size_t at = 0;
   };
-  /// Thrown if the given bytes, a file's beginning, end within its attributes.
+  /// Thrown if the given bytes are only the beginning of a file and end within its attributes.
   struct NeedsMore {};
 
   /// Whether a file's first 132 bytes are DICOM's: the prefix, or in older files an attribute of group 2
@@ -61,7 +61,8 @@ class DicomFile {
   std::optional<std::vector<double>> decimals(DicomTag tag) const;
   std::optional<double> decimal(DicomTag tag) const;
   /// The items of a sequence, with their own attributes and the character set around them; empty if the
-  /// sequence is absent. The file's bytes must outlive them. Throws Error (Input) if an item is damaged.
+  /// sequence is absent. The file's bytes must outlive the returned attributes. Throws Error (Input) if an
+  /// item is damaged.
   std::vector<DicomFile> items(DicomTag sequence) const;
 
   /// Whether a decimal string has a comma where the point belongs.

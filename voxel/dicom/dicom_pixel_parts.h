@@ -19,8 +19,8 @@ bool is_sound(const DicomPixels& pixels);
 /// lossless.
 std::string lossy_of(const DicomFile& file);
 
-/// The largest number of frames that the pixels can hold: one per fragment if they are compressed, otherwise
-/// as many as fit into their bytes.
+/// The largest number of frames that the pixels can hold: one per fragment if the pixels are compressed,
+/// otherwise the number of frames that fits into the bytes.
 std::size_t most_frames(const DicomFile& file, const DicomSlice& slice);
 
 /// Sets the positions of the pixels of `slices`, the frames of a file. Returns the reason if the pixels

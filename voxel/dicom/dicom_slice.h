@@ -97,7 +97,7 @@ struct DicomSlice {
   std::vector<RealWorldMapping> real_world;  ///< not applied
   std::optional<double> location_mm;         ///< SliceLocation, whose origin is not stated
   std::string patient_orientation;           ///< PatientOrientation: "L\\P"
-  std::string assumed_coding;          ///< how the file's coding differs from what its header states, to show
+  std::string assumed_coding;          ///< how the file's coding differs from the header's statement, to show
                                        ///< to users
   std::string doubts;                  ///< statements in the header that the image is not a measurement, to
                                        ///< show to users
@@ -130,7 +130,7 @@ struct NoSlice {
 
 /// Reads the header of a file and checks that its attributes and pixels end within it. Returns one slice, or
 /// one for each frame of an enhanced CT or MR. Never throws on a file's contents. Memory: the file's
-/// attributes, or the whole file if it is deflated. Numbers with a decimal comma are read. An image is
+/// attributes, or the whole file if the file is deflated. Numbers with a decimal comma are read. An image is
 /// unusable if it has a position beyond 1e9 mm, a spacing outside 1e-6 to 1e6 mm, a direction longer than a
 /// unit vector, rescaled values beyond single precision, a number that cannot be read, or a transfer syntax
 /// that this program cannot decode.

@@ -30,10 +30,10 @@ std::vector<std::vector<DicomSlice>> grouped(
     std::vector<DicomSlice> slices, const std::function<bool(const DicomSlice&, const DicomSlice&)>& alike);
 
 /// Splits the images of one series by size, orientation and identity. Splits images at one position by the
-/// attribute in which most of them differ (kernel, acquisition, phase); otherwise, if nearly every position
-/// has several images, by time or number. Groups with most images come first. Images at one position that
-/// differ in no attribute stay together. With `join`, images of several studies and frames of reference stay
-/// together. Scout views are left out unless there are no other images.
+/// attribute in which most of these images differ (kernel, acquisition, phase); otherwise, if nearly every
+/// position has several images, by time or number. Groups with most images come first. Images at one position
+/// that differ in no attribute stay together. With `join`, images of several studies and frames of reference
+/// stay together. Scout views are left out unless there are no other images.
 std::vector<DicomSubseries> subseries_of(const std::vector<DicomSlice>& series, bool join = false);
 
 /// Splits images of one size and orientation at one position, as subseries_of() does.

@@ -21,13 +21,13 @@ Scene zucker_hummel(const Scene& scene, const Progress& progress = {});
 /// gaussian(), and if the axes are not perpendicular. Memory: two float copies.
 Scene marr_hildreth(const Scene& scene, double sigma_mm, const Progress& progress = {});
 
-/// The length of the gradient, in sample units per millimetre, by Roberts's operator in three dimensions: the
-/// differences along the six diagonals of the three faces of a cell that meet at its first sample, fitted by
-/// least squares. Exact for linear fields on any lattice. Of all these operators, it makes the narrowest
-/// edges, one cell wide, and smooths noise least. Values belong to the cells' middles: the result's lattice
-/// lies half a voxel farther along each axis. Source: Roberts 1965, in three dimensions after Liu, Computer
-/// Graphics and Image Processing 6, 1977. Departure: the fit, in place of the largest difference. Memory: the
-/// result, in float.
+/// The length of the gradient, in sample units per millimetre, by Roberts's operator in three dimensions.
+/// Three faces of a cell meet at its first sample; the gradient fits the differences along their six
+/// diagonals by least squares. Exact for linear fields on any lattice. Of all these operators, it makes the
+/// narrowest edges, one cell wide, and smooths noise least. Values belong to the cells' middles: the result's
+/// lattice lies half a voxel farther along each axis. Source: Roberts 1965, in three dimensions after Liu,
+/// Computer Graphics and Image Processing 6, 1977. Departure: the fit, in place of the largest difference.
+/// Memory: the result, in float.
 Scene roberts(const Scene& scene, const Progress& progress = {});
 
 /// The length of the gradient, in sample units per millimetre, of the linear function fitted by least squares

@@ -40,10 +40,10 @@ struct Extrusion {
 /// Finds parts whose samples keep their values over at least 60 mm, or a third of the scan, along the
 /// lattice's axis nearest to the table's. The parts may be inclined to that axis by up to 24 degrees. A part
 /// is at least 40 mm wide, at most thick_mm thick where it is solid, and borders air along two fifths of its
-/// outline, which the core of a body does not. A part thicker than 20 mm must also be 2.5 times as long as
-/// thick, which a head, a neck or a limb is not. A part that the patient's tissue covers ends where its
-/// samples change. Throws std::invalid_argument if samples are not int16; Stopped. Same bits on any thread
-/// count. Cost: linear; memory: one byte per sample.
+/// outline; the core of a body does not. A part thicker than 20 mm must also be 2.5 times as long as thick,
+/// which a head, a neck or a limb is not. A part that the patient's tissue covers ends where its samples
+/// change. Throws std::invalid_argument if samples are not int16; Stopped. Same bits on any thread count.
+/// Cost: linear; memory: one byte per sample.
 Extrusion extrusion_of(const Scene& scene, const ExtrusionOptions& options);
 
 }  // namespace octotomy::voxel

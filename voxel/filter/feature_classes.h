@@ -8,8 +8,9 @@
 #include "voxel/space/scene.h"
 
 // Clusters of samples in the plane of density and gradient (thesis 2.3.4; Trivedi et al. 1986 after Panda and
-// Rosenfeld, IEEE Trans. Computers 27, 1978). A sample between two tissues has a density of neither, but a
-// gradient that no tissue of that density has inside: it falls into another class than that tissue.
+// Rosenfeld, IEEE Trans. Computers 27, 1978). A sample between two tissues has the density of neither tissue.
+// It may have a third tissue's density, but its gradient is larger than inside that tissue, so it falls into
+// another class.
 namespace octotomy::voxel {
 
 /// A cluster's middle: density in the scan's unit, and the length of the gradient in that unit per millimetre.

@@ -224,7 +224,7 @@ std::vector<LabelLayer> label_layers(const Scene& scene) {
   const std::vector<Label> all = labels(scene);
   if (all.size() > 32767)
     throw TooLarge(scene.source + ": holds " + std::to_string(all.size()) +
-                   " labels, more than 32767: choose some of them");
+                   " labels, more than 32767: choose fewer labels");
   const auto overlap = [&](int a, int b) {
     return std::any_of(scene.overlaps.begin(), scene.overlaps.end(), [&](const auto& each) {
       return std::count(each.second.begin(), each.second.end(), a) > 0 &&

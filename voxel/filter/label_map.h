@@ -23,7 +23,8 @@ Universe universe_on(const Lattice& lattice);
 /// both outside it, the sample is in the object if that voxel is. Otherwise, the up to eight voxels around
 /// the sample decide: a sample in the base is in the object if one of these voxels is, and a sample outside
 /// the base is in the object if one of them was added to the base. So a sample at a voxel's centre is in the
-/// object exactly if that voxel is, and an unchanged base keeps exactly its samples. Parallel over blocks.
+/// object exactly if the voxel is in it, and an unchanged base keeps exactly its samples. Parallel over
+/// blocks.
 Octree chosen_samples(const Lattice& lattice, const Octree& own, const Octree& base, const Octree& made);
 
 /// The label map of objects on a lattice: a sample is i + 1 if objects[i] is the first object with a voxel at
@@ -53,9 +54,8 @@ struct Label {
 };
 std::vector<Label> labels(const Scene& scene);
 
-/// The same labels on another lattice, for a map that was cropped, or whose axes were reversed or exchanged.
-/// None if a sample of the scene lies between the lattice's samples, or a sample with a label beyond the
-/// lattice.
+/// The same labels on another lattice, for a map that was cropped or has reversed or exchanged axes. None if
+/// a sample of the scene lies between the lattice's samples, or a sample with a label beyond the lattice.
 std::optional<Scene> laid_on(const Scene& scene, const Lattice& lattice);
 
 /// The voxels of a universe whose nearest sample has that label; voxels beyond the scan are empty. Parallel

@@ -18,8 +18,8 @@ namespace octotomy::voxel {
 /// crossings of a lattice square, and the middle of a cell's crossings where they form one ring. On a plane
 /// every point of the surface is within D / sqrt(12) of one of these, where D is a voxel's diagonal. So a
 /// distance d is overstated by at most D^2 / (24 d), on average by a third of that. At a corner or edge of
-/// the solid, which cells cut off, it may be overstated by up to 2/3 D. A part of the solid that contains no
-/// voxel's centre is not found. Samples are rounded down to steps of a power of two below D / 1024.
+/// the solid, which cells cut off, the distance may be overstated by up to 2/3 D. A part of the solid that
+/// contains no voxel's centre is missed. Samples are rounded down to steps of a power of two below D / 1024.
 ///
 /// Throws std::invalid_argument if by_mm is 0 or not finite; Stopped. Parallel; same bits on any thread
 /// count. Cost: grows with the surfaces of the solid and the offset solid, about log n for each voxel beside

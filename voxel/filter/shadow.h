@@ -12,7 +12,7 @@ namespace octotomy::voxel {
 
 struct ShadowOptions {
   glm::dvec3 direction{0.0, 1.0, 0.0};  ///< unit, LPS: the way in which a part is put on
-  double end_mm = 0.0;                  ///< p . direction of the plane at which the shadow ends
+  double end_mm = 0.0;                  ///< position along `direction` of the plane at which the shadow ends
   Progress progress = {};
 };
 
@@ -20,7 +20,8 @@ struct Shadow {
   /// Samples are the share of a voxel in the shadow less one half, so that the window can be combined, moved
   /// and sampled between voxels.
   Window window;
-  double far_end_mm = 0.0;  ///< the largest p . direction of the object's surface, computed from its voxels
+  double far_end_mm = 0.0;  ///< the surface's farthest position along `direction`, computed from the object's
+                            ///< voxels
 };
 
 /// The points of an object and all points behind it as seen along a direction, up to a plane across that
@@ -41,7 +42,7 @@ struct Shadow {
 /// a side that hold a part of the shadow.
 Shadow shadow(const Octree& octree, const Expression& solid, const ShadowOptions& options);
 
-/// The largest p . direction of the object's surface, computed from its voxels, for a unit direction.
+/// The farthest position of the object's surface along a unit direction, computed from the object's voxels.
 /// Throws as shadow(). Cost: the crossings.
 double far_end_mm(const Octree& octree, const Expression& solid, const glm::dvec3& direction);
 

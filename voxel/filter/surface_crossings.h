@@ -23,12 +23,12 @@ class SurfaceCrossings {
   SurfaceCrossings(const Octree& octree, const Expression& solid);
 
   const std::vector<glm::dvec3>& points() const { return points_; }
-  /// The crossings, the middles of the chords between two of them in a lattice square, and the middles of
+  /// The crossings, the middles of the chords between two crossings in a lattice square, and the middles of
   /// the cells whose crossings form one ring.
   std::vector<glm::dvec3> with_middles() const;
   /// Calls `visit`, from several threads, with the triangles of a surface through the crossings: a fan about
-  /// the middle of each ring of a cell, moved outward to the solid's surface, so that edges are cut off very
-  /// little. Neighbouring cells share the chords of their rings, so that the surface is closed where the
+  /// the middle of each ring of a cell, moved outward to the solid's surface, so that little of an edge is
+  /// cut off. Neighbouring cells share the chords of their rings, so that the surface is closed where the
   /// solid ends within the universe. The triangles' winding is arbitrary.
   void for_triangles(const std::function<void(const std::array<glm::dvec3, 3>& corners)>& visit) const;
 

@@ -212,7 +212,7 @@ LatticeBall ball_about(const glm::ivec3& centre, const Pyramid& pyramid, double 
   return ball;
 }
 
-/// Every voxel, or about the given number of them, chosen by a multiplicative hash of their number.
+/// All voxels, or about `wanted` of them, chosen by a multiplicative hash of their position in the list.
 std::vector<glm::ivec3> some_of(const std::vector<glm::ivec3>& voxels, std::size_t wanted) {
   if (voxels.size() <= wanted) return voxels;
   const double share = static_cast<double>(wanted) / static_cast<double>(voxels.size());
@@ -358,7 +358,7 @@ Pyramid pyramid_of(const Octree& octree) {
   const VoxelRange range = grown(range_of(octree), 1);
   constexpr std::size_t most_fine = std::size_t{1} << 26, most = std::size_t{1} << 28;
   if (count_of(range.dims()) > most)
-    throw TooLarge("local thickness: the object's extent has more than 2^28 voxels: take larger ones");
+    throw TooLarge("local thickness: the object's extent has more than 2^28 voxels: take larger voxels");
   return Pyramid(octree, range, count_of(2 * range.dims()) <= most_fine ? 2 : 1);
 }
 

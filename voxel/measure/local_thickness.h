@@ -42,15 +42,16 @@ struct VoxelThickness {
 
 /// Local thickness of an octree's voxels: the diameter of the largest ball inside that holds a voxel's
 /// centre. Centres of balls are voxels' centres and the points half-way between them; if these are more than
-/// 2^26 points, voxels' centres alone. A ball's radius is the distance to the nearest of those places that no
-/// voxel of the object touches, less half the distance between lattice planes across that direction: a flat
-/// wall along the lattice is measured to its voxels' faces, an oblique or round one to where the outside
-/// begins. Voxels beyond the universe are outside. All zero for an empty octree. Throws std::invalid_argument
-/// if the universe's axes are not perpendicular or an option is out of its range, std::length_error above
-/// 2^28 voxels in the object's extent; Stopped. The same bits on any number of threads. Cost: linear in the
-/// extent, 5 bytes for each centre, and about log n a sample; parallel. Source: Hildebrand and Ruegsegger,
-/// Journal of Microscopy 185, 1997; distances as distance_map(). Departure: a pyramid of largest distances is
-/// searched at sampled voxels, where the source paints a ball at each point of the distance ridge.
+/// 2^26 points, voxels' centres alone. A ball's radius is its distance to the nearest candidate centre that
+/// touches no voxel of the object, less half the distance between lattice planes across that direction. So a
+/// flat wall along the lattice is measured to its voxels' faces, an oblique or round wall to the first point
+/// outside. Voxels beyond the universe are outside. All zero for an empty octree. Throws
+/// std::invalid_argument if the universe's axes are not perpendicular or an option is out of its range,
+/// std::length_error above 2^28 voxels in the object's extent; Stopped. The same bits on any number of
+/// threads. Cost: linear in the extent, 5 bytes for each centre, and about log n a sample; parallel. Source:
+/// Hildebrand and Ruegsegger, Journal of Microscopy 185, 1997; distances as distance_map(). Departure: a
+/// pyramid of largest distances is searched at sampled voxels, where the source paints a ball at each point
+/// of the distance ridge.
 VoxelThickness local_thickness(const Octree& octree, const LocalThicknessOptions& options = {});
 
 /// The thinnest wall alone, as local_thickness() reports it; none if no sampled voxel belongs to a wall.

@@ -271,8 +271,8 @@ std::string numbered_alike(const SliceNames& names) {
       first_name = name;
     } else if (std::count_if(numbers.begin(), numbers.end(), is_first_too) > 1) {
       return "names that begin with '" + first_name + "' and with '" + name +
-             "' have the same last numbers, and their pictures are taken as slices of one stack: if they are "
-             "several, put each into a folder of its own";
+             "' have the same last numbers, and their pictures are read as slices of one stack: if they "
+             "belong to several stacks, put each stack into its own folder";
     }
   }
   return {};

@@ -41,8 +41,8 @@ std::optional<Finding> lost_sign_finding(const Scene& scene, bool is_ct);
 /// HU, thus below air and its noise. At least 64 samples and one in ten thousand have this value. The hundred
 /// units above it hold at most one sample for each hundred samples of this value. The audit then has a WARN,
 /// because this is a guess. If a condition fails, the scene is unchanged. In a scene that already has
-/// padding, the samples take the value of that padding. Precondition: samples in Hounsfield units. Cost: two
-/// passes over the samples.
+/// padding, these samples are set to the padding's value. Precondition: samples in Hounsfield units. Cost:
+/// two passes over the samples.
 void take_unstated_padding(Scene& scene);
 
 }  // namespace octotomy::voxel

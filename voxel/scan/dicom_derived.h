@@ -15,10 +15,10 @@ namespace octotomy::voxel {
 /// Patient Identity Removed.
 constexpr DicomTag identity_removed_tag = 0x00120062;
 
-/// Writes patient, study, frame of reference and series: those of the source, or those of a phantom in a
-/// study of its own. If the source states that its identity was removed, also writes the code of the profile.
-/// Texts keep the source's character set, or are converted to UTF-8 if `in_utf8` is set. Throws Error (Input)
-/// if the source's set cannot be converted.
+/// Writes patient, study, frame of reference and series: the source's, or those of a phantom with its own
+/// study. If the source states that its identity was removed, also writes the code of the profile. Texts keep
+/// the source's character set, or are converted to UTF-8 if `in_utf8` is set. Throws Error (Input) if the
+/// source's set cannot be converted.
 void put_study(DicomAttributes& attributes, const DicomOptions& options, const DicomDigest& digest,
                bool in_utf8);
 

@@ -6,7 +6,7 @@
 //   3 keep the commonest patient, study, modality and frame of reference, size and orientation
 //   4 if several stacks lie at one place, keep the largest
 //   5 order the slices by position along their normal and drop repeated ones
-//   6 keep the requested slices and check what they have in common
+//   6 keep the requested slices and check the attributes that they must share
 // Longer than most sources because the steps share the list of the folder's contents and of the caller's
 // choices.
 #include "voxel/scan/dicom_series.h"
@@ -499,8 +499,8 @@ class SeriesAssembler {
            "PixelSpacing is absent; " + stack.first().assumed_spacing + " replaces it");
     if (!stack.first().pixels.states_sign)
       find("pixel_representation", Verdict::Warn,
-           "PixelRepresentation is absent: samples are taken as unsigned. If samples below 0 show as values "
-           "over 32767, set the attribute to 1");
+           "PixelRepresentation is absent: samples are taken as unsigned. If samples below 0 appear as "
+           "values above 32767, set the attribute to 1");
     return stack;
   }
 

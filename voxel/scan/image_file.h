@@ -20,8 +20,8 @@ struct ImageText {
 /// Encodes 8-bit sRGB pixels, row by row from the top left, as `format` ("png", "jpeg", "webp"). JPEG and
 /// WebP are lossy, at quality 92 of 100. A PNG also stores `text` (png_chunk.h). OpenImageIO is in
 /// octotomy_image_io.so, loaded on first use: linked in, it would add 0.2 s to every start of the program.
-/// Throws std::invalid_argument if the size is not positive or not that of the pixels; Error (Input) for any
-/// other format; Error (Resource) if the library cannot be loaded. Safe from several threads.
+/// Throws std::invalid_argument if the size is not positive or does not match the number of pixels; Error
+/// (Input) for any other format; Error (Resource) if the library cannot be loaded. Safe from several threads.
 std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ivec2& size_px,
                                        const std::vector<std::uint8_t>& rgb,
                                        const std::optional<ImageText>& text = std::nullopt);

@@ -171,8 +171,8 @@ class NeighbourAudit {
     return best;
   }
 
-  /// Whether a slice has about the contrast of its neighbours and agrees with none of them, although they
-  /// agree with each other.
+  /// Whether a slice has about the same contrast as its neighbours but agrees with none of them, although the
+  /// neighbours agree with each other.
   bool is_unlike(std::size_t slice) const {
     double most = -1.0, contrast = 0.0;
     for (const std::size_t pair : pairs_of(slice)) {

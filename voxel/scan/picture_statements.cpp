@@ -205,8 +205,8 @@ void PictureStatements::report(Scene& scene, bool is_stated) const {
   if (first_.images > static_cast<double>(count_))
     scene.audit.push_back(
         {"picture_count", Verdict::Fail,
-         print("the file states %g images and %zu were found: ImageJ writes stacks over 4 GB as one picture "
-               "followed by raw samples; save it as NIfTI or NRRD, or as one picture per slice",
+         print("the file states %g images and %zu were found: ImageJ writes stacks larger than 4 GB as one "
+               "picture followed by raw samples; save it as NIfTI or NRRD, or as one picture per slice",
                first_.images, count_)});
   std::array<std::optional<double>, 3> stated_mm = first_.size_mm;
   for (int axis = 0; axis < 2 && first_.page_mm; ++axis)
@@ -230,10 +230,9 @@ void PictureStatements::report(Scene& scene, bool is_stated) const {
          "the pictures state an origin, in pixels of their own: it is not used, the volume's centre is the "
          "origin");
   if (white_zero_ > 0)
-    warn("polarity",
-         print("%zu of %zu pictures state that 0 is white (WhiteIsZero): their numbers are taken as "
-               "stored, so that bright and dark may be exchanged",
-               white_zero_, count_));
+    warn("polarity", print("%zu of %zu pictures state that 0 is white (WhiteIsZero): their numbers are used "
+                           "as stored, so bright and dark may be exchanged",
+                           white_zero_, count_));
   if (lossy_ > 0)
     warn("compression", print("%zu of %zu pictures lost values by JPEG's compression", lossy_, count_));
 }

@@ -39,8 +39,8 @@ class PictureStatements {
   /// own.
   void add(const StoredImage& image, bool is_first_of_file);
 
-  /// The spacing that ImageJ or OME states. Throws Error (Input) naming `path` and what is missing. Does not
-  /// use the resolution of a page, because programs write 72 dpi into any picture.
+  /// The spacing that ImageJ or OME states. Throws Error (Input) naming `path` and the missing statement.
+  /// Does not use the resolution of a page, because programs write 72 dpi into any picture.
   KnownSpacing spacing(const std::filesystem::path& path) const;
 
   /// Adds the audit's lines; `is_stated`: the scene's spacing is spacing().

@@ -317,7 +317,7 @@ class SeriesReader {
     int step = 0;
     for (const std::int16_t sample : *samples)
       if ((step = std::gcd(step, is_padding(sample) ? 0 : sample - origin)) == 1) break;
-    // Scanners measure to about one unit; steps of four units are below the noise of any head protocol.
+    // CT scanners resolve about 1 HU; steps of 4 HU are below the noise of any head protocol.
     if (step > 4)
       find("sample_steps", Verdict::Warn,
            print("samples come in steps of %d: finer differences were lost before this file was written",

@@ -147,8 +147,8 @@ class SegReader {
     for (std::size_t i = 0; i < own.size(); ++i) take_frame(own[i], common, i);
   }
 
-  /// Decodes the frames one after the other. Refuses claims of more pixels than any codec packs into the
-  /// file's bytes.
+  /// Decodes the frames one after the other. Refuses a header that states more pixels than any codec can pack
+  /// into the file's bytes.
   void decompress_frames(std::size_t count) {
     const std::string& syntax = file_.transfer_syntax();
     if (bits_ == 1)

@@ -109,9 +109,8 @@ Scene read_image_stack(const fs::path& path, const ReadOptions& options) {
   if (files.empty()) refuse(path, "matches no image");
   const std::string stacks = stacks_named(files);
   if (std::error_code error; !stacks.empty() && fs::is_directory(path, error))
-    refuse(path,
-           "holds the pictures of several stacks, whose names have the same numbers: " + stacks +
-               ": put each stack into a folder of its own, or name one by a pattern such as 'ct_*.png'");
+    refuse(path, "holds the pictures of several stacks, whose names have the same numbers: " + stacks +
+                     ": put each stack into its own folder, or name one by a pattern such as 'ct_*.png'");
   std::vector<char> bytes;
   glm::ivec3 dims(0);
   SampleType type = SampleType::UInt8;

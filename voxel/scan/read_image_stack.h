@@ -11,9 +11,9 @@ namespace octotomy::voxel {
 std::vector<std::filesystem::path> image_files(const std::filesystem::path& path);
 
 /// Reads images as the slices of a stack, the first at the feet; each page of a file is a slice. The spacing
-/// is that of the options, else that stated by ImageJ or OME in the pictures' descriptions, with a line in
-/// the audit. If they state only a part of the spacing, or a page has only a resolution, the spacing counts
-/// as not stated. All images must have the same size and type. Images have no patient frame: the audit
+/// comes from the options, else from ImageJ's or OME's statement in the pictures' descriptions, with a line
+/// in the audit. If they state only a part of the spacing, or a page has only a resolution, the spacing
+/// counts as not stated. All images must have the same size and type. Images have no patient frame: the audit
 /// reports the assumed one, and any ambiguity in the names (slice_names). Statements of the pictures are
 /// compared with the options: sizes of pixels and slices (picture_spacing), times and channels
 /// (picture_axes), WhiteIsZero (polarity), JPEG's losses (compression). A folder whose names are those of

@@ -10,7 +10,7 @@ namespace octotomy::voxel {
 /// Reads a file of samples without a header in the options' layout and spacing. Its axes point along the
 /// options' frame or are assumed to point to the patient's left, back and head, centred on the origin; the
 /// audit reports this. Throws Error (Input) if the layout is unusable, no spacing is given, or the file's
-/// size is not the layout's.
+/// size does not match the layout.
 Scene read_raw(const std::filesystem::path& path, const ReadOptions& options);
 
 /// A spacing, and the audit's text on the origin of its unit.

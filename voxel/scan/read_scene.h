@@ -33,8 +33,8 @@ struct ReadOptions {
   /// with most slices. For a DICOM segmentation: the label or number of the segment whose fractions, 0 to 1,
   /// are the samples; empty: all segments as labels.
   std::string series;
-  /// Joins the images of all DICOM series of a folder, and those of several studies and frames of reference
-  /// in one series, as if they were one: for exports in which each image has identifiers of its own. They
+  /// Joins the images of all DICOM series of a folder, and the images of several studies and frames of
+  /// reference in one series, into one series: for exports in which each image has its own identifiers. They
   /// must have the same patient and modality. The audit reports the join as a Fail.
   bool join = false;
   /// The images of the chosen DICOM series to keep, counted from 1 at the lowest along the normal. Empty:
@@ -66,12 +66,12 @@ std::string to_string(const std::vector<SliceRange>& slices);
 
 /// Reads a scan: a folder or a file of DICOM; NIfTI (.nii, or .hdr beside .img), NRRD or MetaImage; a stack
 /// of images (a TIFF of several pages, a folder of images, or a pattern with * and ? in its last part); a raw
-/// file. Applies the file's rescale and holds the values as int16 if all are integers in its range, otherwise
-/// as float. Geometry is in LPS millimetres for any frame of the file. The scene's audit lists every check
-/// and every doubt: missing or repeated slices, uneven spacing, gantry tilt, absent rescale, stray files.
-/// Throws Error (Input) with path and reason if no valid scan can be read; Error, Resource; Stopped. Memory:
-/// the samples once, and one slice or the decoder's own copy; twice if slices are resampled; bounded by a
-/// multiple of the file's size.
+/// file. Applies the file's rescale and stores the values as int16 if all are integers in the range of int16,
+/// otherwise as float. Geometry is in LPS millimetres for any frame of the file. The scene's audit lists
+/// every check and every doubt: missing or repeated slices, uneven spacing, gantry tilt, absent rescale,
+/// stray files. Throws Error (Input) with path and reason if no valid scan can be read; Error, Resource;
+/// Stopped. Memory: the samples once, and one slice or the decoder's own copy; twice if slices are resampled;
+/// bounded by a multiple of the file's size.
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// A DICOM series found in a folder, or one of several stacks in it.

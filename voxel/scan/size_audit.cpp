@@ -13,8 +13,8 @@ namespace octotomy::voxel {
 namespace {
 
 // Lengths in mm. Scanners: the widest bore in use is 900 mm and reconstructs 820; a whole body is two metres
-// long. Pixels of CT: 1000 mm over 256 at the coarsest. Organs: an inner ear is reconstructed to 40 mm and
-// more, over 256 pixels and more; halved twice these are 64. The head of a newborn is 90 mm wide.
+// long. Pixels of CT: 1000 mm over 256 at the coarsest. Organs: an inner ear is reconstructed to at least 40
+// mm and 256 pixels a side; halved twice, 64 pixels remain. The head of a newborn is 90 mm wide.
 constexpr double widest_field_mm = 1000.0, longest_field_mm = 2500.0;
 constexpr double coarsest_ct_mm = 5.0, finest_pixel_mm = 0.05;
 constexpr double smallest_field_mm = 10.0, smallest_fine_field_mm = 36.0;
@@ -88,15 +88,15 @@ std::optional<Finding> size_finding(const Scene& scene) {
         print("the slices span %.3g mm, more than a person's length: check their distance of %.4g mm",
               field_mm.z, spacing_mm.z)};
   } else if (std::max(wide_mm, field_mm.z) < smallest_scan_mm) {
-    doubt = print("the scan is %.3g x %.3g x %.3g mm, smaller than what scanners show of a person",
-                  field_mm.x, field_mm.y, field_mm.z);
+    doubt = print("the scan is %.3g x %.3g x %.3g mm, smaller than any scan of a person", field_mm.x,
+                  field_mm.y, field_mm.z);
   } else if (scene.meaning != Meaning::Label && !is_known) {
     // Such a field is smaller than any whole field of a person. A cropped part may be as small.
     if (std::max(wide_mm, field_mm.z) >= smallest_fine_field_mm || std::min(dims.x, dims.y) < fine_side_px)
       return std::nullopt;
     doubt = print(
-        "the scan is %.3g x %.3g x %.3g mm, smaller than what scanners show of a person unless it "
-        "is a part that was cut out",
+        "the scan is %.3g x %.3g x %.3g mm, smaller than any scan of a person, unless it was cut out of a "
+        "larger one",
         field_mm.x, field_mm.y, field_mm.z);
   } else if (!is_known) {
     return std::nullopt;

@@ -510,7 +510,8 @@ class Layer {
     const glm::dvec2 spread_px = high_px - low_px;
     constexpr double widest_px = 1 << 15;
     if (!(std::max(spread_px.x, spread_px.y) <= widest_px))
-      refuse(path_, print("its slices lean over %.4g pixels; check their positions and the pixels' spacing",
+      refuse(path_, print("its slices are displaced sideways by %.4g pixels in total; check their positions "
+                          "and the pixels' spacing",
                           std::max(spread_px.x, spread_px.y)));
     if (plan_.leans) {
       plan_.low_px = glm::ivec2(glm::floor(low_px + aside_tolerance_px()));

@@ -36,7 +36,7 @@ struct SlicePlan {
 /// The lattice of a plan.
 Lattice lattice_of(const DicomStack& stack, const SlicePlan& plan);
 
-/// The audit fails from this length without measured slices on, in mm: half the height of the floor of an
+/// Length without measured slices, in mm, from which the audit fails: half the height of the floor of an
 /// orbit or of the crown of a lower canine, which could otherwise be missing completely.
 constexpr double longest_unmeasured_mm() {
   return 5.0;

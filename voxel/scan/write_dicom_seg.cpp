@@ -378,7 +378,7 @@ DicomAttributes segmentation(Content content, const DicomSegOptions& options) {
   return file;
 }
 
-/// Content without segments, whose digest holds what all segments share.
+/// Content without segments; its digest covers the data that all segments share.
 Content content_on(const Lattice& lattice, const DicomSegOptions& options) {
   perpendicular_axes(lattice);
   Content content{lattice};

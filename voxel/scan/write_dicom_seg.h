@@ -66,7 +66,8 @@ struct DicomFractions {
 
 /// Writes shares of voxels as a FRACTIONAL segmentation of the type OCCUPANCY, a byte a pixel, its frames as
 /// those of write_dicom_seg() on the planes of the lattice. Throws as write_dicom_seg(); also
-/// std::invalid_argument if a segment's number of fractions is not that of the samples, or all are zero.
+/// std::invalid_argument if a segment's number of fractions differs from the number of samples, or all
+/// fractions are zero.
 void write_dicom_fractions(const Lattice& lattice, std::span<const DicomFractions> segments,
                            const std::filesystem::path& path, const DicomSegOptions& options = {});
 

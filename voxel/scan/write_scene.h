@@ -33,7 +33,7 @@ void need_own_data_file(const std::filesystem::path& path);
 std::optional<std::filesystem::path> own_data_file(const std::filesystem::path& path);
 
 /// The file name under which a scene for `path` is written into a folder of staged files, before it is
-/// renamed to `path`. For .nhdr and .mhd, the first name for which the data file's name is free beside
+/// renamed to `path`. For .nhdr and .mhd, the first name whose data file does not exist yet in the folder of
 /// `path`.
 std::filesystem::path staged_scene_name(const std::filesystem::path& path);
 
@@ -51,8 +51,8 @@ struct DicomOptions {
   std::optional<DicomSource> source = std::nullopt;
 };
 
-/// Throws Error (Input) with a file's path if a folder holds slices with names of write_dicom_series().
-/// Allows a refusal before the samples are computed.
+/// Throws Error (Input) with a file's path if the folder already holds slices with the names that
+/// write_dicom_series() uses. Allows a refusal before the samples are computed.
 void need_no_slices(const std::filesystem::path& folder);
 
 /// Writes each slice as a file (slice_0001.dcm and so on) into a folder: as CT Image Storage for a CT or a

@@ -79,8 +79,8 @@ class Expression {
   /// the matrix is not a reflection.
   friend Expression reflected(const Expression& a, const glm::dmat4& mirrored_from_still);
   /// The expression under any affine map with an inverse, LPS to LPS: moved, reflected, scaled or sheared.
-  /// Every question at a point is answered at the point's origin under the map. Throws std::invalid_argument
-  /// if an entry is not finite, the last row is not 0 0 0 1, or the map has no inverse.
+  /// The value at a point is the operand's value at the point's origin under the map. Throws
+  /// std::invalid_argument if an entry is not finite, the last row is not 0 0 0 1, or the map has no inverse.
   friend Expression carried(const Expression& a, const glm::dmat4& carried_from_still);
 
   /// A part of another expression, shared with it. Precondition: not null.
@@ -116,8 +116,8 @@ struct Names {
 
 /// Parses `a & b`, `a | b`, `a - b`, `a ^ b`, `~a`, `move(a, m)` and parentheses. As in Python, `~` binds
 /// strongest, then `-`, `&`, `^` and `|`; operators of one kind group from the left. Throws
-/// std::invalid_argument with the position, what stands there and what was expected. If a look-up throws, the
-/// exception carries the name's position.
+/// std::invalid_argument with the position, the text found there and the text expected. If a look-up throws,
+/// the exception carries the name's position.
 Expression parse_expression(std::string_view text, const Names& names);
 
 /// Names for the leaves and motions of an expression in its text, in the form that parse_expression() reads.

@@ -66,7 +66,7 @@ void need_sample(double value, double step, const std::string& of) {
   if (std::isfinite(value) && steps >= -32768.0 && steps <= 32767.0) return;
   std::ostringstream told;
   told << "the value of " << of << ", " << value
-       << ", is none that the scan's samples can have: they lie from " << -32768.0 * step << " to "
+       << ", is not a possible value of the scan's samples, which lie from " << -32768.0 * step << " to "
        << 32767.0 * step;
   throw Error(ErrorCode::Input, told.str());
 }

@@ -47,8 +47,8 @@ void for_each_wanted_voxel(const WantedLeaves& leaves, const Inside& inside) {
 }
 
 /// Bounds how far f differs, over a cube, from its value at the centre, rounding included. A walk must not
-/// decide a block if rounding could change the answer at one of its voxels; the result would then depend on
-/// the tree's shape.
+/// decide a block if rounding could change the answer at one of its voxels; otherwise the result would depend
+/// on the tree's shape.
 double reach(const Linear& f, double half);
 
 /// component(): row `row` of an affine map. along(): the map's image projected onto a direction, minus

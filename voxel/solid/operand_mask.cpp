@@ -40,8 +40,8 @@ bool within_reach(const Edge& edge, const Patch& patch) {
          std::max(a.x, b.x) >= patch.centre.x - patch.half.x;
 }
 
-/// The edges that decide which points of a patch are inside: those that rays from the patch may cross, and
-/// level edges, which no ray crosses, that meet the patch. They suffice for every part of the patch too.
+/// The edges that decide which points of a patch are inside: edges that rays from the patch may cross, and
+/// level edges that meet the patch, which no ray crosses. They suffice for every part of the patch too.
 std::vector<Edge> edges_about(const EdgeTree& tree, const Patch& patch) {
   std::vector<Edge> edges = tree.edges_about(patch.centre - patch.half, patch.centre + patch.half);
   std::erase_if(edges, [&](const Edge& edge) {

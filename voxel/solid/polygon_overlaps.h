@@ -10,7 +10,7 @@
 namespace octotomy::voxel {
 
 /// Ascending numbers of the polygons that repeat an earlier one: the points of each lie within the rounding
-/// of the other's edges, whatever the first point and direction. `rounding_mm` is the largest error of a
+/// of the other's edges, for any first point and direction. `rounding_mm` is the largest error of a
 /// coordinate; a polygon smaller than 1000 times that uses a thousandth of its size. Precondition: all
 /// coordinates are finite. Cost: n log n in the points, plus one comparison per pair of polygons that share
 /// bounds, area and centre.

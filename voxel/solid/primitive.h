@@ -43,9 +43,8 @@ struct Torus {
   double tube_radius_mm = 1.0;
 };
 
-/// Each throws std::invalid_argument that names what is wrong: a number that is not finite, a length that is
-/// not positive, an axis that is no unit vector, axes that are not at right angles, a tube as wide as its
-/// ring.
+/// Each throws std::invalid_argument that names the fault: a number that is not finite, a length that is not
+/// positive, an axis that is no unit vector, axes that are not at right angles, a tube as wide as its ring.
 void check(const HalfSpace& half_space);
 void check(const Sphere& sphere);
 void check(const Box& box);

@@ -5,11 +5,11 @@
 
 namespace octotomy::voxel {
 
-/// How operands that do not lie on the target's lattice are resampled on it: those under a motion, and those
-/// of another universe.
+/// Resamples operands that do not lie on the target's lattice: operands under a motion, and operands of
+/// another universe.
 struct Resampling {
-  /// Voxels of the target that an octree fills: those whose centre it contains (D3), or those of which it
-  /// fills at least half (D4), counted on a grid of 5 x 5 x 5 points a voxel.
+  /// Voxels of the target that an octree fills: voxels whose centre the octree contains (D3), or voxels at
+  /// least half filled by it (D4), counted on a grid of 5 x 5 x 5 points a voxel.
   enum class Voxels { Centre, Half };
   Voxels voxels = Voxels::Centre;
   /// Interpolation between a grey octree's samples, before they are compared with its window.

@@ -15,7 +15,7 @@ enum class ErrorCode {
   Resource,   ///< memory, disk or time ran out, or a child process failed
 };
 
-/// The voxel kernel's error: a code and a message that names the place, the cause and what to do next.
+/// The voxel kernel's error: a code and a message that names the place, the cause and the next step.
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
@@ -30,8 +30,8 @@ struct Stopped : Error {
   explicit Stopped(const std::string& message) : Error(ErrorCode::Cancelled, message) {}
 };
 
-/// Thrown for a wrong value or wrong data that may come from outside the program. The message says what is
-/// wrong and, if it helps, what to do. A plain std::invalid_argument, in contrast, reports a mistake of the
+/// Thrown for a wrong value or wrong data that may come from outside the program. The message states the
+/// fault and, if it helps, the remedy. A plain std::invalid_argument, in contrast, reports a mistake of the
 /// caller, who broke a precondition that no outside value can break.
 struct InvalidInput : std::invalid_argument {
   using std::invalid_argument::invalid_argument;

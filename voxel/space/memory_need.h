@@ -21,8 +21,8 @@ bool is_memory_over() noexcept;
 std::uint64_t free_memory();
 
 /// Throws Error (Resource) with both figures if `path`, with `sample_count` samples that take `sample_bytes`
-/// each while they are read, does not fit into free_memory(). `what` names the data in the message, if other
-/// than the file's samples.
+/// each while they are read, does not fit into free_memory(). `what` names the data in the message if they
+/// are not the file's samples.
 void need_memory(const std::filesystem::path& path, std::uint64_t sample_count, std::uint64_t sample_bytes,
                  const std::string& what = "its samples");
 

@@ -20,7 +20,7 @@ enum class Meaning { Hounsfield, Raw, Label };
 /// Ordered by severity, so that the maximum of several verdicts is the gravest.
 enum class Verdict { Pass, Warn, Fail };
 
-/// One line of a scan's audit: the check, its verdict, what was found and how it was handled.
+/// One line of a scan's audit: the check, its verdict, the finding and its treatment.
 struct Finding {
   std::string check;
   Verdict verdict = Verdict::Pass;

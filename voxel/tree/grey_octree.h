@@ -93,7 +93,7 @@ class GreyOctree {
 
   /// A copy that keeps the scan from which it was built, for on_scan_lattice().
   GreyOctree with_scan(std::shared_ptr<const Scene> scene) const;
-  /// The same scan's samples on the scan's own lattice. A window under a motion is read from these:
+  /// The samples of the scan on the scan's own lattice. A window under a motion is read from these:
   /// interpolating voxels that were interpolated before would lose thin walls. Returns this octree itself if
   /// the lattices coincide, no scan is kept or the scan is larger than a universe. The first call builds the
   /// result; later ones return the same. Any number of threads may call it.

@@ -14,8 +14,8 @@ namespace octotomy::voxel {
 /// A part to leave out of a picture, to show the inside: everything outside a half-space, or inside a box.
 using Cutaway = std::variant<HalfSpace, Box>;
 
-/// The part of a line of sight that a cut removes: its first and last depth, which may be infinite, and the
-/// outward normal of the cut face behind this part.
+/// The part of a line of sight that a cut removes: this part's first and last depth, which may be infinite,
+/// and the outward normal of the cut face behind it.
 struct TakenSpan {
   double from_mm = 0.0;
   double until_mm = 0.0;

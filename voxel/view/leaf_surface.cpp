@@ -317,7 +317,7 @@ template <typename Samples>
   return search.crossed ? crossing_mm : Float{};
 }
 
-constexpr std::int32_t nothing = 0, smooth = 1, face = 2;  // what a ray meets
+constexpr std::int32_t nothing = 0, smooth = 1, face = 2;  // kind of the surface that a ray meets
 
 /// Executes each of steps 2 to 5 for all vectors of a batch before the next step, so that the processor can
 /// overlap the work on several vectors.
@@ -356,9 +356,9 @@ std::uint64_t row_of(const std::int16_t* leaf, int y, int z) {
   return four;
 }
 
-/// The number of voxels in front of a leaf, along an axis, that a surface in the leaf may depend on. A ray
-/// enters a voxel up to half a voxel in front of its centre and is searched over two voxels' length back, of
-/// which `share` is along the axis. The margin is far beyond the rounding of positions.
+/// Number of voxels towards the eye, along one axis, on which a surface in a leaf may depend. The ray enters
+/// a voxel at most half a voxel in front of its centre. From there the search goes back two voxels along the
+/// ray, which is `share` times two along the axis. The margin is far beyond the rounding of positions.
 int in_front(double share) {
   constexpr double margin = 1.0 / 64.0;
   return std::min(row - 5, static_cast<int>(std::ceil(0.5 + 2.0 * std::abs(share) + margin)));

@@ -190,8 +190,8 @@ class ParallelRays::Square {
     for (drop_missed(); batch_.count > 0; drop_missed()) move_on(0, accept_(batch_));
   }
 
-  /// Moves each ray to the first of its voxels that it does pass, and removes rays that pass none, so that
-  /// vectors of rays stay full.
+  /// Moves each ray to the first voxel that it passes, and removes rays that pass no voxel, so that vectors
+  /// of rays stay full.
   void drop_missed() {
     for (int done = 0; done < batch_.count;) {
       const RayBatch::Rays passing = find_passages(rays_.rays_, rays_.mirror_, voxels_, done, batch_);

@@ -313,8 +313,8 @@ class AttenuationOfRay {
     }
   }
 
-  /// A plane after `plane`, but not after the first plane that the ray crosses outside the aligned cube of
-  /// `edge` cells a side that holds `cell`.
+  /// The next plane to visit when the ray skips the aligned cube of `edge` cells a side around `cell`: at
+  /// least plane + 1, otherwise never beyond the first plane at which the ray has left the cube.
   int leaving(int plane, const glm::ivec3& cell, int edge, double u_at_0, double v_at_0) const {
     double exit = (cell[axis] & -edge) + edge;
     const auto leave_along = [&](int along, double slope, double at_0) {

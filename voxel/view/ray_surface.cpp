@@ -44,7 +44,8 @@ class RaySamples {
     return samples_of(voxel >> 4)[along(voxel.x) + (along(voxel.y) << 2) + (along(voxel.z) << 4)];
   }
 
-  /// Precondition: less than `reach` voxels from the origin.
+  /// The interpolated sample at distance_mm along the ray. Precondition: that point is less than `reach`
+  /// voxels from the origin.
   float operator()(float distance_mm) {
     const Float4 p = origin_ + distance_mm * per_mm_;
     const Int4 cell = clamped(first_ + __builtin_convertvector(p, Int4), Int4{}, last_);

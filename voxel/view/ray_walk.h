@@ -18,8 +18,8 @@
 // again from the smallest block that holds both the old and the new voxel.
 //
 // Rays are walked in the *mirrored frame*: index space shifted so that voxel i reaches from i to i + 1, and
-// every axis reversed along which the ray's coordinate decreases, so that all its coordinates increase. If a
-// ray does not move along an axis, its time to a plane across that axis is infinite.
+// every axis along which the ray's coordinate decreases is reversed, so that all its coordinates increase. If
+// a ray does not move along an axis, its time to a plane across that axis is infinite.
 //
 // Longer than other headers, because the receiver of the voxels is inlined into the innermost loop.
 

@@ -265,7 +265,7 @@ std::vector<std::uint8_t> outline(const std::vector<std::uint8_t>& cut, const gl
   const auto width = static_cast<std::size_t>(size_px.x);
   const auto height = static_cast<std::size_t>(size_px.y);
   if (cut.size() != width * height)
-    throw std::invalid_argument("the number of a cut's pixels must be that of its size");
+    throw std::invalid_argument("the number of a cut's pixels must equal its width times its height");
   std::vector<std::uint8_t> edge(cut.size());
   for (std::size_t y = 0; y < height; ++y)
     for (std::size_t x = 0; x < width; ++x) {

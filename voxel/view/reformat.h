@@ -54,7 +54,7 @@ struct CurveOptions {
 /// projected polyline or `up` has no length.
 Sheet curved_sheet(const CurveOptions& options);
 
-/// Samples at a sheet's pixels; `inside` is 0 for pixels beyond what was scanned.
+/// Samples at a sheet's pixels; `inside` is 0 for pixels outside the scan.
 struct SheetSamples {
   RayImage image;
   std::vector<std::uint8_t> inside;

@@ -27,11 +27,13 @@ void check(const std::vector<DrawnObject>& objects, const RenderOptions& options
       throw InvalidInput("object '" + object.name + "' is of another universe than '" + objects.front().name +
                          "': combine it into that universe first");
     if (object.scalar && object.scalar->universe != object.octree.universe())
-      throw std::invalid_argument("the scalar that colours object '" + object.name +
-                                  "' is of another universe than the object: compute it in the object's");
+      throw std::invalid_argument(
+          "the scalar that colours object '" + object.name +
+          "' has another universe than the object: compute the scalar in the object's universe");
     if (object.grey && !object.moved_from_still && object.grey->universe() != object.octree.universe())
-      throw std::invalid_argument("the grey octree of object '" + object.name +
-                                  "' is of another universe than the object: build it in the object's");
+      throw std::invalid_argument(
+          "the grey octree of object '" + object.name +
+          "' has another universe than the object: build the grey octree in the object's universe");
   }
   if (options.cut_tones && options.cut_tones->samples.universe() != objects.front().octree.universe())
     throw std::invalid_argument(

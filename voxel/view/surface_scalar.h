@@ -14,8 +14,8 @@ struct SurfaceScalar {
   std::vector<float> values;  ///< x fastest
   double most = 1.0;          ///< positive; larger values have the last colour
 
-  /// The value at a position in the universe's index space: trilinear between voxel centres, beyond the range
-  /// that of the nearest voxel.
+  /// The value at a position in the universe's index space: trilinear between voxel centres; beyond the
+  /// range, the value of the nearest voxel.
   double at(const glm::dvec3& p_voxel) const;
 };
 

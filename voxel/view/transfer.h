@@ -40,7 +40,7 @@ TransferFunction preset_transfer(const std::string& name);
 std::vector<std::string> preset_transfers();
 
 /// The sample above which matter becomes visible: the point where extinction begins to rise, or the first
-/// point if that is visible itself. Precondition: check() passes.
+/// point if the first point itself is visible. Precondition: check() passes.
 double visible_from(const TransferFunction& transfer);
 
 /// A transfer function tabulated over a range of samples.

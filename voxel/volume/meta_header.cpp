@@ -171,7 +171,7 @@ class MetaReader {
     const bool is_text = flag("binarydata") == false;
     const bool is_packed = flag("compresseddata") == true;
     if (is_text && is_packed)
-      refuse(path_, "states samples that are both text and compressed: one of them is wrong");
+      refuse(path_, "states samples that are both text and compressed: correct one of these statements");
     samples.encoding = is_text     ? SampleFiles::Encoding::Text
                        : is_packed ? SampleFiles::Encoding::Deflated
                                    : SampleFiles::Encoding::Raw;

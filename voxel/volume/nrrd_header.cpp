@@ -258,7 +258,8 @@ class NrrdReader {
     warn_of_ends();
     if (text_.field("measurementframe"))
       header_.audit.push_back({"measurement_frame", Verdict::Pass,
-                               "the file's measurement frame is of vectors and tensors; a scan has none"});
+                               "the file's measurement frame is ignored: it applies only to vectors and "
+                               "tensors, and a scan holds neither"});
   }
 
   /// NRRD defines no meaning for axis mins and axis maxs if there are directions. They are not used; the

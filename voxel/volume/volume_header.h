@@ -64,7 +64,7 @@ struct VolumeHeader {
   std::optional<std::string> field(const std::string& name) const;
 };
 
-// Names under which this program's files store values for which the formats have no field.
+// Names under which this program's files store values that have no field in the formats.
 inline constexpr const char* meaning_key = "octotomy_meaning";
 inline constexpr const char* modality_key = "octotomy_modality";
 inline constexpr const char* padding_key = "octotomy_padding";
@@ -79,7 +79,7 @@ inline constexpr std::string_view nifti_geometry_mark = "octotomy lps_from_voxel
 inline constexpr std::int32_t nifti_text_extension = 6;
 
 /// Reads a header. Throws Error (Input) with path and reason, if it is damaged, does not describe a scan
-/// (more than one value per sample, several volumes), or claims more samples than its files can hold. Memory:
+/// (more than one value per sample, several volumes), or states more samples than its files can hold. Memory:
 /// a few megabytes.
 VolumeHeader read_volume_header(const std::filesystem::path& path, VolumeFormat format);
 

@@ -40,7 +40,7 @@ export interface ScanState {
   bone_low?: number|null;  // where bone begins in this scan's own samples
   patient?: Patient|null;  // null: the scan states none
 }
-/// The identity of a scan's patient; null for what the scan does not state.
+/// The identity of a scan's patient; null for attributes that the scan does not state.
 export interface Patient {
   name: string|null;
   number: string|null;

@@ -28,7 +28,7 @@ export type Preview = PaneRequest["preview"]&{};
 export interface Tried {
   mm3: number;
   voxels: number;
-  findings?: string[];  // for example what the volume leaves out
+  findings?: string[];  // for example on parts that the volume leaves out
   is_coarse?: boolean;  // the picture was made during a drag
   refusal: string;
 }
@@ -101,7 +101,7 @@ export interface State {
   notices: (Notice&{key: number})[];
   tour: number|null;
   evaluations: number;  // how often the server has sent evaluated objects, after which pictures may change
-  pointer: string;      // description of what lies under the pointer
+  pointer: string;      // description of the place under the pointer
 }
 
 const pane = (mode: PaneSetting["mode"], view: View, plane: PlaneName): PaneSetting => ({
@@ -216,8 +216,8 @@ export function leave_plan(): void {
   // Errors that are still shown belong to the plan that is left, so they are removed.
   set({...without_plan(), notices: state.notices.filter((notice) => notice.level !== "error")});
 }
-/// Clears what belongs to a scan whose file was replaced in the same plan: tools and their drafts. How
-/// objects are shown stays.
+/// Clears the data of a scan whose file was replaced in the same plan: tools and their drafts. How objects
+/// are shown stays.
 export function leave_scan(): void {
   for (const call of plan_leavers) call();
   set({

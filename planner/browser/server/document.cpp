@@ -187,7 +187,7 @@ void Document::record(const Json& json, const std::string& what) {
   if (plan.name != plan_->name) need_no_control(plan.name, "the plan's name");
   for (const auto& [name, scan] : plan.scans)
     if (!plan_->scans.contains(name)) need_no_control(name, "a scan's name");
-  need_no_control(what, "the text of what was done");
+  need_no_control(what, "the description of the edit");
   history_->record(json_text(json, 2) + "\n", what);
   read_again();
 }

@@ -42,7 +42,7 @@ class Document {
   void edit(const Json& said);
   /// Adds a landmark at [x, y, z], or moves the existing one of this name.
   void place_landmark(const std::string& name, const Json& point_mm);
-  /// Replaces the plan by another one, as an edit described by `what`.
+  /// Replaces the plan by another one; the edit's description is `what`.
   void record(const Json& json, const std::string& what);
   /// Throws std::runtime_error if another program has changed the plan's file.
   void need_saved() { history_->need_no_other_writer(); }

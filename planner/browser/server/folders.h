@@ -29,8 +29,9 @@ class Folders {
   std::vector<std::filesystem::path> opened_, readable_;
 };
 
-/// Throws voxel::Error, Input, if a scan's header names a file of samples that is neither beside it nor where
-/// plans may read: a path in a header grants no permission. Does nothing for other kinds of scans.
+/// Throws voxel::Error, Input, if a scan's header names a file of samples that is neither beside the header
+/// nor in a folder that plans may read: a path in a header grants no permission. Does nothing for other kinds
+/// of scans.
 void need_readable_samples(const Folders& folders, const std::filesystem::path& scan);
 
 /// A relative name that stays below any folder to which it is appended: at most two parts, none of which

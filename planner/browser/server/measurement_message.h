@@ -13,7 +13,7 @@ namespace octotomy::planner::serve {
 /// a table has no number, such as the gap to an empty object.
 Json measurement_message(const Json& measured);
 
-/// A number of a result as a page shows it; `what` begins its sentence.
+/// A number of a result as a page shows it; The sentence begins with `what`.
 Json number_message(const Json& value, const std::string& unit, const Json& half_width,
                     const std::string& what);
 

@@ -16,8 +16,8 @@ Json certify(Session& session, const Json& said, const Watched& watched);
 /// {"object", "with", "move"} -> {"mm3"}, in voxels.
 Json overlap(Session& session, const Json& said, const Watched& watched);
 /// {"object", "near_mm"} -> {"parts", "whole_mm3", "mm3", "at_mm"}: the number of the object's connected
-/// parts and its volume; then the volume of the part at the point, and the centre of a voxel in it. Without a
-/// point: volume and centroid of the largest part; the centroid is null if the object is empty.
+/// parts and the object's volume; then the volume of the part at the point, and the centre of a voxel in it.
+/// Without a point: volume and centroid of the largest part; the centroid is null if the object is empty.
 Json part(Session& session, const Json& said, const Watched& watched);
 /// {"steps"} -> {"objects": [{"id", "mm3"}], "scans": [{"id", "details", "findings"}]}: the results of
 /// further steps after those of the plan, in voxels. Does not change the plan.
@@ -39,7 +39,7 @@ Json export_file(Session& session, const Json& said, const Watched& watched);
 Json report(Session& session, const Json& said, const Watched& watched);
 /// {"path", "low", "unmoved"} -> the outcome's JSON: compares a later scan with the plan.
 Json outcome(Session& session, const Json& said, const Watched& watched);
-/// {"step"} -> {"shell", "python"}: commands that evaluate the step with those on which it depends, and
+/// {"step"} -> {"shell", "python"}: commands that evaluate the step and the steps on which it depends, and
 /// commands that add it to a plan.
 Json command_of_step(Session& session, const Json& said, const Watched& watched);
 

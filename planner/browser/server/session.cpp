@@ -33,7 +33,7 @@ bool makes_object(const Step& step) {
   return step.action.operation().makes == Makes::Object;
 }
 
-/// Keys of steps, by which a result is recognised as that of the current plan.
+/// Keys of steps, by which the session recognises a result of the current plan.
 std::map<std::string, std::string> keys_of(const Plan& plan) {
   return step_keys(plan, plan.voxel_mm ? std::to_string(*plan.voxel_mm) : "", [&](const std::string& scan) {
     return state_of_path(scan_path(plan, plan.scans.at(scan)));
@@ -77,8 +77,8 @@ Json certificate_json(const verify::Certificate& certificate) {
   return json;
 }
 
-/// The thin necks of an object whose parts were chosen: those that stay because one kernel connects them, and
-/// those that the certificate leaves open. Null if there are none.
+/// The thin necks of an object whose parts were chosen: the necks that stay because one kernel connects them,
+/// and the necks that the certificate leaves open. Null if there are none.
 Json necks_json(const Object& object) {
   Json necks;
   const auto add = [&](const Json& at_mm, const Json& volume_mm3, bool is_kept) {
@@ -399,8 +399,8 @@ voxel::GreyOctree Session::alone(const Snapshot& snapshot, const std::string& sc
 
 namespace {
 
-/// The voxel size for previews during a drag: that of the plan, or a multiple of it if its universe has more
-/// voxels along a side than can be computed for each picture.
+/// The voxel size for previews during a drag: the plan's size, or a multiple of it if the plan's universe has
+/// too many voxels along a side to compute each picture in time.
 std::optional<double> coarse_voxel_mm(const Snapshot& snapshot, const Plan& plan) {
   constexpr int most_side = 256;
   if (!snapshot.evaluation) return plan.voxel_mm;

@@ -87,8 +87,7 @@ class Session {
     std::shared_ptr<const Evaluation> evaluation;
     static constexpr const char* moved = "dragged_piece";
     static constexpr const char* overlap = "dragged_overlap";
-    /// Names of the volumes that only the object contains, that only the other one contains, and that both
-    /// contain.
+    /// Names of three volumes: inside the object only, inside the other object only, and inside both.
     static constexpr const char* only_moved = "dragged_only_moved";
     static constexpr const char* only_other = "dragged_only_other";
     static constexpr const char* common = "dragged_common";
@@ -114,8 +113,8 @@ class Session {
   /// bone_low() of each scan that was read, computed again where the scan was read anew. Calls wait for each
   /// other; the session's own lock is not held meanwhile.
   std::map<std::string, double> bone_lows_of(const Evaluation& evaluation);
-  /// Keeps the certificates, sizes and measurements of what was evaluated in both kernels, by the keys of the
-  /// steps.
+  /// Stores the certificates, sizes and measurements of objects evaluated in both kernels, by the keys of
+  /// their steps.
   void keep_certified(const Plan& plan, const Evaluation& evaluation, const Json& measurements);
   /// Replaces measurements by those of the same steps that were evaluated in both kernels.
   void put_certified(const Plan& plan, Json& measurements) const;
@@ -125,7 +124,8 @@ class Session {
   std::unique_ptr<Document> document_;
   std::uint64_t opened_ = 0;  ///< number of documents opened so far; results of an earlier one are discarded
   Snapshot snapshot_;
-  /// The certified results of a step, and the key by which they are recognised as those of the current plan.
+  /// The certified results of a step, and the key by which the session recognises that they belong to the
+  /// current plan.
   struct Certified {
     std::string key;
     Json said;  ///< of an object "certificate", "necks", "volume", "area"; of another step its measurement

@@ -27,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 /// The smallest scale of a moving picture's sides: a coarser picture is useless.
 constexpr double least_scale = 0.375;
 
-/// The most distance fields that a pane caches: those of both objects, for a few ranges.
+/// Largest number of distance fields that a pane caches: both objects' fields for a few ranges.
 constexpr std::size_t most_scalars = 8;
 /// Stops of the legend's ramp.
 constexpr int legend_colours = 9;

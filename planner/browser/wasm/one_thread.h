@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-// Replaces what the voxel kernel uses of oneTBB and of the standard library's threads, on a platform that has
-// one thread and a library without threads. The build includes it before every source. Loops run in order;
-// nothing is ever stopped.
+// Replaces the parts of oneTBB and of the standard library's threads that the voxel kernel uses, on a
+// platform with one thread and a library without threads. The build includes it before every source. Loops
+// run in order; nothing is ever stopped.
 
 #include <algorithm>
 #include <cstddef>

@@ -104,7 +104,8 @@ std::vector<OutgoingFile> files_to_send(const std::vector<fs::path>& paths,
       }
     }
   }
-  if (files.empty()) throw std::runtime_error("no DICOM file is named: give files or folders of them");
+  if (files.empty())
+    throw std::runtime_error("no DICOM file is named: give DICOM files or folders that contain them");
   if (files.size() > most_files)
     throw std::runtime_error("there are more than 1 000 000 files: send them in parts");
   return files;
@@ -215,7 +216,8 @@ void listen(Program& program, const ReceiveText& text, ReceivedFiles& folder) {
   }
   if (!text.with_tls && text.on != "127.0.0.1" && text.on != "::1" && text.on != "localhost")
     warn("--listen " + text.on +
-         ": everybody on this network can send objects and can read what others send; --tls prevents reading "
+         ": everybody on this network can send objects and can read the objects that others send; --tls "
+         "prevents reading "
          "and, with --authorities, sending");
   options.patience = std::chrono::seconds(text.timeout_s);
   options.associations = text.associations;
@@ -273,9 +275,10 @@ void add_archive_options(CLI::App& verb, ArchiveText& text) {
   verb.add_option("--certificate", text.tls.certificate, "This side's TLS certificate, PEM")
       ->check(CLI::ExistingFile);
   verb.add_option("--key", text.tls.key, "The certificate's private key, PEM")->check(CLI::ExistingFile);
-  verb.add_option("--authorities", text.tls.authorities,
-                  "Certificates, PEM, one of which must have signed the other side's certificate. Default: "
-                  "the system's; a receiver without this option accepts every client")
+  verb.add_option(
+          "--authorities", text.tls.authorities,
+          "A PEM file of certificates, one of which must have signed the other side's certificate. Default: "
+          "the system's; a receiver without this option accepts every client")
       ->check(CLI::ExistingFile);
   verb.add_option("--timeout", text.timeout_s, "Seconds to wait for the other side at each step. Default: 30")
       ->check(CLI::Range(1L, 3600L));
@@ -293,7 +296,8 @@ void add_archive_verbs(Program& program) {
       "  octotomy send dicom_folder --to dicom://ORTHANC@localhost:4242\n"
       "  octotomy send --echo --to dicoms://ARCHIVE@pacs.example:2762 --authorities hospital.pem",
       [&program, sent] { return send(program, *sent); });
-  sends.add_option("files", sent->files, "DICOM files, or folders of them")->check(CLI::ExistingPath);
+  sends.add_option("files", sent->files, "DICOM files, or folders that contain DICOM files")
+      ->check(CLI::ExistingPath);
   sends
       .add_option("--to", sent->address,
                   "http:// or https:// of a DICOMweb service; dicom://TITLE@HOST:PORT, or dicoms:// for TLS")

@@ -159,8 +159,8 @@ std::optional<int> convert_as(const Program& program, const ConvertText& text) {
   return std::nullopt;
 }
 
-/// Removes what may name a person in a scan's file: names of labels, and words that the standard does not
-/// define.
+/// Removes texts in a scan's file that may name a person: names of labels, and words that the standard does
+/// not define.
 void leave_out_words(voxel::Scene& scene, LabelTable& table, std::vector<std::string>& changes) {
   constexpr std::array<const char*, 3> units{"HU", "US", "OD"};
   if (!table.names.empty()) changes.emplace_back("Names of labels: removed");
@@ -277,12 +277,12 @@ void add_convert(Program& program) {
           "surface or a PDF a .dcm; for a plan a folder; for a document in DICOM its own kind of file "
           "(.json of a plan, .pdf, .stl, .obj, .png)")
       ->required();
-  verb.add_option(
-          "--as", text->as,
-          "The kind of .dcm: segmentation (default), labelmap (a segmentation of numbers, for objects that "
-          "share no voxel and readers of 2025 or later), structures (contours on the images of --source), "
-          "fractions (the share of each voxel that is filled), or, for a surface, stl or obj (default: that "
-          "of the file)")
+  verb.add_option("--as", text->as,
+                  "The kind of .dcm: segmentation (default), labelmap (a segmentation that stores one label "
+                  "number per voxel, for objects that share no voxel and for readers of 2025 or later), "
+                  "structures (contours on the images of --source), "
+                  "fractions (the share of each voxel that is filled), or, for a surface, stl or obj "
+                  "(default: the file's own format)")
       ->check(CLI::IsMember({"segmentation", "labelmap", "structures", "fractions", "stl", "obj"}));
   verb.add_option("--planes", text->planes,
                   "Planes of the contours of --as structures: the images' (default) or the voxels'")

@@ -66,8 +66,8 @@ void put_on_samples(const voxel::Lattice& lattice, std::vector<voxel::DicomSegme
         voxel::chosen_samples(lattice, none, voxel::Octree::empty(each.object.universe()), each.object);
     if (on_samples.is_empty())
       throw std::runtime_error("'" + each.label +
-                               "' holds none of the source's samples: leave it out, or give the scan that it "
-                               "was made from as --source");
+                               "' contains none of the source's samples: leave this object out, or name the "
+                               "scan from which it was made by --source");
     const double before_mm3 = volume_mm3(each.object), after_mm3 = volume_mm3(on_samples);
     if (on_samples.voxel_count() != each.object.voxel_count() ||
         std::abs(after_mm3 - before_mm3) > 1e-6 * before_mm3)
@@ -157,11 +157,11 @@ void add_object(const voxel::DicomSegment& object, const voxel::Progress& progre
   add_partial(object.label,
               voxel::digitise_partial(voxel::universe_on(shares.lattice), voxel::Expression(object.object)),
               glm::ivec3(0), shares);
-  findings.push_back("'" + object.label +
-                     "': its voxels are turned against those of the source, so their shares "
-                     "are estimated: " +
-                     three_figures(shares.volumes_mm3.back()) + " mm3 of " +
-                     three_figures(volume_mm3(object.object)) + " mm3; a surface's shares are exact");
+  findings.push_back(
+      "'" + object.label +
+      "': its voxels are rotated relative to the source's voxels, so their shares are estimated: " +
+      three_figures(shares.volumes_mm3.back()) + " mm3 of " + three_figures(volume_mm3(object.object)) +
+      " mm3; a surface's shares are exact");
 }
 
 /// Whether samples are shares, and not labels: all from 0 to 1, and one between.
@@ -330,11 +330,11 @@ int convert_structures(const Program& program, const ConvertText& text) {
     if (each.planes_left_out > 0 || each.farthest_mm > 0.01)
       findings.push_back(
           "'" + each.name +
-          "': the images are not evenly apart, or lie between the planes of its voxels: contours "
+          "': the images are not equally spaced, or lie between the planes of the object's voxels: contours "
           "are up to " +
           three_figures(each.farthest_mm) + " mm off the voxels' centres, and " +
           std::to_string(each.planes_left_out) +
-          " planes of voxels have none; --planes voxels draws on these planes");
+          " planes of voxels have no contour; --planes voxels draws on these planes");
   }
   json["source_images"] = options.source ? Json(options.source->images.size()) : Json(nullptr);
   tell(text, findings, json);

@@ -36,8 +36,8 @@ std::optional<voxel::DicomSource> source_of(const Program& program, const Conver
                                             const voxel::Identity& identity,
                                             std::vector<std::string>& findings);
 
-/// Points in LPS millimetres around which everything of an object lies: the corners of the smallest block of
-/// voxels along its own axes that holds it, of all objects or of a lattice.
+/// Points in LPS millimetres whose convex hull contains an object, all objects or a lattice: the corners of
+/// the smallest block of voxels, along the object's own axes, that contains it.
 std::vector<glm::dvec3> corners_of(const std::vector<voxel::DicomSegment>& objects);
 std::vector<glm::dvec3> corners_of(const voxel::Lattice& lattice);
 

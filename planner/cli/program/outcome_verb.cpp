@@ -90,7 +90,7 @@ void add_outcome(Program& program) {
       ->check(scan_path());
   add_scan_paths(verb, *text);
   verb.add_option("--unmoved", text->unmoved,
-                  "The object that did not move, by which both scans are aligned; default: the largest that "
+                  "The object that did not move; both scans are aligned by it; default: the largest that "
                   "shares no bone with a piece");
   verb.add_option("--low", text->low,
                   "Lower bound of bone in the later scan, in sample units; default: that of the plan");

@@ -104,7 +104,8 @@ void show_history(const Program& program, PlanHistory& history, const HistoryTex
 
 int history_of(const Program& program, const HistoryText& text) {
   if (int{text.undo} + int{text.redo} + int{!text.go_to.empty()} > 1)
-    throw std::runtime_error("--undo, --redo and --go-to each choose a state: give one of them");
+    throw std::runtime_error(
+        "--undo, --redo and --go-to each choose a state: give only one of these options");
   const Plan plan = read_plan(text.plan);
   // Listing alone needs no writable folder.
   const bool only_lists = !text.undo && !text.redo && text.go_to.empty() && text.branch.empty() &&

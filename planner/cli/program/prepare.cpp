@@ -107,7 +107,8 @@ int prepare(const Program& program, const PrepareText& text) {
   if (std::count_if(steps.begin(), steps.end(),
                     [](const Action& step) { return step.operation().name == "remove_headrest"; }) > 1)
     throw CLI::ValidationError(
-        "--step", "'remove_headrest' may be given only once: what it removes is kept in one file");
+        "--step",
+        "'remove_headrest' may be given only once, because the removed parts are stored in one file");
   if (!text.picture.empty() && std::none_of(steps.begin(), steps.end(), [](const Action& step) {
         return step.operation().name == "remove_headrest";
       }))

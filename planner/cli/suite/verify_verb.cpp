@@ -39,7 +39,8 @@ SuiteAnswer verify_plan(Program& program, const VerifyText& text) {
       verify::keep_worse(answer.worst, {*object.certificate, object.voxel.octree, object.mesh.within});
     else
       answer.not_covered.push_back(object.id + ", " + object.definition + ": " +
-                                   (object.is_tool            ? "a mask is certified with what it cuts"
+                                   (object.is_tool
+                                        ? "a mask is certified together with the objects that it cuts"
                                     : object.findings.empty() ? "there is no mesh"
                                                               : object.findings.front()));
   }

@@ -44,7 +44,8 @@ std::string in_options(std::string text, const std::string& operation, const std
   return text;
 }
 
-/// An error message about an option's words, which it quotes.
+/// Removes the field's name from the start of an error message. Puts the option's words in quotes before the
+/// message unless it contains the last of them.
 std::string with_words(std::string text, const Field& field, const std::vector<std::string>& words) {
   if (text.starts_with(field.name + ": ")) text.erase(0, field.name.size() + 2);
   if (text.find(words.back()) != std::string::npos) return text;

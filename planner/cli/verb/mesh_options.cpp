@@ -26,10 +26,8 @@ void add_mesh_options(CLI::App& verb) {
         ->group("mesh");
   };
   add("--frame",
-      "Directions of x, y and z of mesh files, overriding the files' own statements: LPS, RAS, or three "
-      "other letters of L "
-      "or "
-      "R, A or P, S or I; for one file as FILE=RAS");
+      "Directions of x, y and z in mesh files, overriding the files' own statements: LPS, RAS, or three "
+      "other letters, one each of L or R, A or P, S or I; for a single file FILE=RAS");
   add("--unit",
       "Unit of mesh files, overriding their own statements: um, mm, cm, m, inch or foot; for one file as "
       "FILE=inch");

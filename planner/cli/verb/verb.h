@@ -65,7 +65,7 @@ struct Program {
   std::shared_ptr<std::vector<ScanRecord>> scans_ = std::make_shared<std::vector<ScanRecord>>();
 };
 
-/// The message that no verb is called `word`, with the nearest verb's name and where to find the list of
+/// The message that no verb has the name `word`, with the nearest verb's name and the command that lists the
 /// verbs.
 std::string unknown_verb(const CLI::App& app, const std::string& word);
 

@@ -18,10 +18,10 @@ inline glm::dvec3 carried(const glm::dmat4& motion, const glm::dvec3& p_mm) {
 }
 
 /// The last motion of each moved object, in the order of the objects: the motion, its rotations, and the
-/// displacement of the object's centroid and of the landmarks on it, in words and along the head's
-/// directions. A map that scales or shears has the rotations of the nearest rotation, and words for the rest.
-/// Where earlier steps moved the object as well, also the displacements since the scan. Landmarks move with
-/// objects by the rules of moved_landmarks(). Cost: some small Booleans per landmark and object.
+/// displacements of the object's centroid and landmarks, in words and along the head's directions. A map that
+/// scales or shears has the rotations of the nearest rotation, and words for the rest. Where earlier steps
+/// moved the object as well, also the displacements since the scan. Landmarks move with objects by the rules
+/// of moved_landmarks(). Cost: some small Booleans per landmark and object.
 std::vector<ObjectMovement> movements_of(const Objects& objects, const std::vector<NamedPoint>& landmarks);
 /// The movements as JSON, with the details that the moving steps have reported.
 nlohmann::ordered_json movements_json(const Objects& objects, const std::vector<NamedPoint>& landmarks);
@@ -36,11 +36,11 @@ struct MovedLandmark {
   glm::dvec3 deviation_mm{0.0};
 };
 
-/// The motions of landmarks with a plan's objects. A landmark moves with the piece whose bone is nearest to
-/// it. It does not move where other bone is nearer, or where no moved object is within 3 mm, which is about
-/// the error of landmarks placed by surgeons. A landmark on a cut moves with the piece. For pieces that are
-/// moved again, the last motion counts. Landmarks of the skin move as the last landmark_ratios step that names them
-/// states. Cost: some small Booleans per landmark and moved object.
+/// The motions of landmarks with a plan's objects. A landmark moves with a piece within 3 mm of it unless
+/// bone that stays is nearer; 3 mm is about the error of landmarks placed by surgeons. A landmark on a cut
+/// moves with the piece. Of several such pieces, or motions of one piece, the last counts. The last
+/// landmark_ratios step that names a landmark of the skin states its motion. Cost: some small Booleans per
+/// landmark and moved object.
 std::vector<MovedLandmark> moved_landmarks(const Objects& objects, const std::vector<NamedPoint>& landmarks);
 
 }  // namespace octotomy::planner

@@ -91,8 +91,8 @@ class Attacher {
     return glm::dvec3(*holder.motion * glm::dvec4(p_mm, 1.0)) - p_mm;
   }
 
-  /// Frees the nodes on stationary bone that lie so near to moved bone that the tissue between would be
-  /// torn or turned over: along a cut the surgeon lifts the tissue off the bone. Returns findings.
+  /// Frees the nodes on stationary bone that lie so near to moved bone that the tissue between would be torn
+  /// or its elements inverted: along a cut the surgeon lifts the tissue off the bone. Returns findings.
   std::vector<std::string> lift_off() {
     struct MovedNode {
       glm::dvec3 p_mm;
@@ -204,8 +204,8 @@ class Attacher {
       }
       if (set.nodes.empty())
         throw std::runtime_error("'" + holder.id +
-                                 "' does not touch the object: attach what it lies on, or subtract the bone "
-                                 "from the tissue, as in skin - skull");
+                                 "' does not touch the object: attach the object on which it lies, or "
+                                 "subtract the bone from the tissue, for example skin - skull");
       options_.node_sets.push_back(std::move(set));
       options_.prescribed.push_back(std::move(prescribed));
     }

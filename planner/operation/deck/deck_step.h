@@ -12,8 +12,8 @@
 
 namespace octotomy::planner {
 
-/// A deck of finite elements: tetrahedra that fill one object, or several as regions; what holds and moves
-/// them; their materials. Moduli in MPa.
+/// A deck of finite elements: tetrahedra that fill one object, or several as regions; the objects that hold
+/// and move them; their materials. Moduli in MPa.
 struct Deck {
   /// Linear elastic.
   struct Material {

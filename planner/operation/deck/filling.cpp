@@ -41,8 +41,9 @@ brep::Solid bodies_of(const brep::Solid& solid, Filling& filling) {
   }
   filling.bodies = bodies;
   if (bodies > 1)
-    filling.findings.push_back("holds " + std::to_string(bodies) +
-                               " bodies that do not touch: hold each of them, or the stiffness is singular");
+    filling.findings.push_back(
+        "holds " + std::to_string(bodies) +
+        " bodies that do not touch: hold each body, otherwise the stiffness is singular");
   if (bodies < parts.size())
     filling.findings.push_back(
         std::to_string(parts.size() - bodies) + " crumbs, " + grouped(left_out_mm3, 1) +

@@ -27,10 +27,10 @@ struct FillingOptions {
   voxel::Progress progress{};  ///< a mesher reports the used share of its time
 };
 
-/// Fills the parts of an object's mesh that have at least 1/100 of the largest part's volume: fragments that
-/// a cut leaves cannot be loaded and held as bodies. Before that, cavities smaller than a voxel are filled
-/// and the surface is simplified within a third of a voxel. Omitted parts are a finding with their volume;
-/// several bodies are a finding as well.
+/// Fills the parts of an object's mesh that have at least 1/100 of the largest part's volume: smaller
+/// fragments left by a cut cannot be loaded and held as bodies. Before that, cavities smaller than a voxel
+/// are filled and the surface is simplified within a third of a voxel. Omitted parts are a finding with their
+/// volume; several bodies are a finding as well.
 ///
 /// Where no mesher succeeds, or dihedral angles remain that are unfit for a solver
 /// (convert::fit_dihedral_deg()), and the fallback is allowed, the fallback is used, with a finding on the

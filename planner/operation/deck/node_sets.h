@@ -9,8 +9,8 @@
 
 namespace octotomy::planner {
 
-/// Throws std::runtime_error where a word NAME=WHERE has no name, a name that solvers do not take or that a
-/// deck's own sets have, or two names differ by case at most. For refusals before the work.
+/// Throws std::runtime_error if a word NAME=WHERE has no name, a name that solvers refuse or that the deck's
+/// own sets use, or if two names are equal apart from case. For refusals before the work.
 void check_set_names(const std::vector<std::string>& words);
 
 /// Sets of nodes of the elements' surface, in LPS millimetres, each as NAME=WHERE:
@@ -27,8 +27,8 @@ std::vector<convert::NodeSet> picked_node_sets(const std::vector<std::string>& w
                                                const std::vector<brep::Landmark>& landmarks,
                                                const convert::Tetrahedra& tetrahedra);
 
-/// The static step: fixed sets, and moved sets as NAME=DX,DY,DZ in mm. Throws std::runtime_error where a name
-/// is not that of a set, a fixed and a moved set share a node, or a set moves and none is fixed.
+/// The static step: fixed sets, and moved sets as NAME=DX,DY,DZ in mm. Throws std::runtime_error if no set
+/// has a given name, if a fixed and a moved set share a node, or if a set moves and none is fixed.
 std::vector<convert::Prescribed> prescribed_of(const std::vector<std::string>& fixed,
                                                const std::vector<std::string>& moved,
                                                const std::vector<convert::NodeSet>& sets);

@@ -147,8 +147,8 @@ void add_materials(const Regions& regions, const Deck& step, RegionDeck& deck) {
         ": the stiffness of cortical bone is used; \"materials\" of the step states another");
 }
 
-/// Pairs of regions that slide, by number, the lower number first: those that the step lists, in its order,
-/// and all pairs where the step has contact everywhere.
+/// Pairs of regions that slide, by number, the lower number first: the pairs that the step lists, in its
+/// order, or all pairs if the step has contact everywhere.
 std::vector<convert::RegionPair> sliding_pairs(const Regions& regions, const Deck& step) {
   const auto number_of = [&](const std::string& name) {
     const auto found = std::find(regions.names.begin(), regions.names.end(), name);

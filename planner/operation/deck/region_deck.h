@@ -19,10 +19,10 @@ struct RegionDeck {
   std::vector<std::string> findings;
 };
 
-/// Fills an object and the step's regions with elements: those of their voxels, or smooth ones of the step's
-/// size (convert::smooth_tetrahedra_of()). Where the smooth ones fail and the step allows the fallback, the
-/// voxels' elements are used and `fallback` is set. A region that the step lists as moved lies where it was
-/// before its motions.
+/// Fills an object and the step's regions with elements: their voxels' elements, or smooth elements of the
+/// step's size (convert::smooth_tetrahedra_of()). Where the smooth ones fail and the step allows the
+/// fallback, the voxels' elements are used and `fallback` is set. A region that the step lists as moved lies
+/// where it was before its motions.
 ///
 /// Each region has the material that the step states for it. Without one, a held object is soft tissue, and
 /// so are its neighbours that hold nothing. Every other region is cortical bone; this is a finding, unless
@@ -32,7 +32,7 @@ struct RegionDeck {
 /// <one>_TO_<other> is where two objects touch, as faces of the first. Where the two slide, each has its own
 /// nodes there; the second's faces are the surface <other>_TO_<one>, and the two surfaces are a contact pair
 /// with the name of the first, whose slave is the softer side. Faces that share a node, at the end of a slit,
-/// are in neither surface. attach() adds what holds and moves the object.
+/// are in neither surface. attach() adds the node sets that hold and move the object.
 ///
 /// Throws std::runtime_error where the filling fails, a sliding pair does not touch, or a holder holds
 /// nothing; Stopped where `progress` requests it.

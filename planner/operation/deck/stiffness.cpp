@@ -57,7 +57,7 @@ std::vector<std::string> add_stiffness(const Stiffness& stiffness, const convert
                              " of " + std::to_string(tetrahedra.tets.size()) +
                              " elements lie outside it, the first at (" + plain(middle_mm.x) + ", " +
                              plain(middle_mm.y) + ", " + plain(middle_mm.z) +
-                             ") mm: give the scan that the solid was made of");
+                             ") mm: give the scan from which the solid was made");
   }
   deck.notes.push_back("stiffness: " + std::to_string(made.materials.size()) +
                        " materials at equal ratios; an element's own stiffness differs from its material's "

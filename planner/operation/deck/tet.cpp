@@ -371,12 +371,13 @@ Operation tet_operation() {
                 "A deck: .inp (Abaqus, CalculiX), .feb (FEBio 4), .vtu, .msh (Gmsh 4.1) or .node (TetGen).")
               .required()
               .called("out"))
-      .takes(field("mesher", &Tet::mesher,
-                   "tetgen keeps the surface. mesh3 (CGAL) makes a new surface within a tenth of a "
-                   "triangle's size of it. stuffing cuts a lattice's cells at the surface: angles above 10 "
-                   "degrees, but parts thinner than a cell are lost. best: tetgen; mesh3 where angles stay "
-                   "below --dihedral; stuffing where they stay below 5 degrees.")
-                 .one_of({"tetgen", "mesh3", "stuffing", "best"}))
+      .takes(
+          field("mesher", &Tet::mesher,
+                "tetgen keeps the surface. mesh3 (CGAL) makes a new surface, off the given one by at most a "
+                "tenth of a triangle's size. stuffing cuts a lattice's cells at the surface: angles above 10 "
+                "degrees, but parts thinner than a cell are lost. best: tetgen; mesh3 where angles stay "
+                "below --dihedral; stuffing where they stay below 5 degrees.")
+              .one_of({"tetgen", "mesh3", "stuffing", "best"}))
       .takes(
           field("dihedral_deg", &Tet::dihedral_deg, "Smallest dihedral angle to reach.").from(0.0).to(30.0))
       .takes(field("radius_edge", &Tet::radius_edge,

@@ -23,12 +23,12 @@ constexpr double off_plane_mm() {
 void add_contour_findings(voxel::SliceMask& mask, const std::string& where,
                           std::vector<std::string>& findings);
 
-/// Lines on polygons of a region that repeat or cross another, for which the even-odd rule yields another
-/// region than painting them would.
+/// One finding on the polygons of a region that repeat another, and one on those that cross themselves or
+/// another. There the even-odd rule yields another region than filling each polygon.
 std::vector<std::string> findings_of(const voxel::Region& region);
 
-/// A line on contours that reach beyond a scan's samples: in how many planes, how far, where and with how
-/// much of the volume; none where all lie within. `where` begins the line.
+/// A finding on contours that reach beyond a scan's samples: the number of planes, the distance, the place
+/// and the share of the volume. None if all contours lie within the scan. `where` begins the finding.
 std::optional<std::string> beyond_scan(const voxel::SliceMask& mask, const voxel::Lattice& scan,
                                        const std::string& where);
 

@@ -101,8 +101,9 @@ DrawnRegion of_svg(const std::optional<voxel::View>& view, const fs::path& path)
       path,
       [&](double mm_per_unit, const std::optional<SvgPicture>& picture) {
         if (!view && !picture)
-          refuse(path.string(), "holds no picture: name the view in which it is drawn, as anterior:" +
-                                    path.filename().string() + ", or draw over a .png of octotomy render");
+          refuse(path.string(),
+                 "holds no picture: name the view in which the region is drawn, for example anterior:" +
+                     path.filename().string() + ", or draw over a .png of octotomy render");
         if (view) return glm::dmat3({mm_per_unit, 0, 0}, {0, -mm_per_unit, 0}, {0, 0, 1});
         const PictureFrame frame = frame_of_drawing(*picture, path);
         seen = frame.view();

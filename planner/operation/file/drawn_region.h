@@ -25,7 +25,7 @@ inline constexpr double curve_tolerance_mm = 0.02;
 /// - an SVG drawing (svg_outlines.h). If it contains an image that `render` or `slice` wrote, linked or
 ///   embedded, its outlines lie in that picture and have its view; else x is u and -y is v, in millimetres;
 /// - 3D Slicer's markups (.mrk.json): closed curves, LPS or RAS, projected along the view.
-/// Throws std::runtime_error saying what was given, the place in the file and what is expected there.
+/// Throws std::runtime_error with the text that was given, its place in the file and the text expected there.
 DrawnRegion read_drawn_region(const std::string& text);
 
 /// "PICTURE.png:X,Y X,Y X,Y" in pixels from the top left, whole numbers at pixels' centres; a semicolon begins

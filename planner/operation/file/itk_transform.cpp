@@ -207,7 +207,7 @@ TransformFile read_itk_transform(const std::filesystem::path& path) {
   if (all.size() > 1 && !is_composite)
     refuse(path.string(),
            "holds " + std::to_string(all.size()) +
-               " transforms, and no composite says in which order: save each as a file of its own");
+               " transforms, and no composite states their order: save each transform in its own file");
   glm::dmat4 still_from_moved(1.0);
   for (const ListedTransform& each : all) still_from_moved = still_from_moved * matrix_of(each);
   if (std::abs(glm::determinant(glm::dmat3(still_from_moved))) < 1e-6)

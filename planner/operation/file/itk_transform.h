@@ -30,8 +30,8 @@ enum class TransformFormat { Text, Hdf5 };
 /// The text of a .tfm file. Reading it returns the same motion to rounding, 1e-12 mm on a head.
 /// Precondition: the motion has an inverse.
 std::string itk_transform_text(const glm::dmat4& moved_from_still);
-/// The bytes of an .h5 file of the same transform, with its exact numbers. Its parameters have the names without the
-/// s of "Trans" that ITK itself writes and that all of its versions read.
+/// The bytes of an .h5 file of the same transform, with its exact numbers. Its parameters have the names that
+/// ITK itself writes and that all versions of ITK read: without the s of "Trans".
 std::string itk_transform_hdf5(const glm::dmat4& moved_from_still);
 
 }  // namespace octotomy::planner

@@ -104,7 +104,7 @@ std::string plain_word(const std::string& text) {
   return word;
 }
 
-/// Headings and keys of labels, as plain_word() spells them, the likeliest first.
+/// Column headings and JSON keys of a label's number, in plain_word() spelling, likeliest first.
 const std::vector<std::string>& words_of_labels() {
   static const std::vector<std::string> words{
       "label",  "labelvalue", "labelid", "labelnumber", "labelno",   "labelindex", "value",   "index", "id",
@@ -112,8 +112,8 @@ const std::vector<std::string>& words_of_labels() {
   return words;
 }
 
-/// Words that name the column of names. A column "label" can contain the names if another column contains the
-/// numbers.
+/// Column headings and JSON keys of a label's name, in plain_word() spelling, likeliest first. A column
+/// "label" can contain the names if another column contains the numbers.
 const std::vector<std::string>& words_of_names() {
   static const std::vector<std::string> words{
       "name",        "labelname",  "segmentname", "segmentlabel", "structurename",

@@ -15,8 +15,8 @@ namespace octotomy::planner {
 struct LabelTable {
   std::map<int, std::string> names;
   std::filesystem::path file;  ///< the file that has the names; empty where there are none
-  /// Files beside a label map that look like its table but are none or contradict it, and rows of the table
-  /// that name no label, each with the reason; also the encoding of a table that is not UTF-8.
+  /// Files beside a label map that look like its table but are no table or contradict the map, and rows of
+  /// the table that name no label, each with the reason; also the encoding of a table that is not UTF-8.
   std::vector<std::string> passed_over = {};
 
   /// The label with a name. Names are compared in composed() form, because one name has several encodings.

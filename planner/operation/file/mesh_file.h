@@ -39,9 +39,9 @@ brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings,
 std::array<brep::Linked, 2> read_surfaces(const std::array<std::filesystem::path, 2>& paths, Timings& timings,
                                           std::vector<std::string>& findings);
 
-/// The finding that the file to which a solid was written no longer holds a solid: .stl rounds points to
-/// single precision, which can make thin triangles cross. None for other formats. Precondition: a solid was
-/// written. Throws as brep::read_mesh(). Cost: reading the file, and brep::health().
+/// The finding that a file written from a solid no longer holds a solid: .stl rounds points to single
+/// precision, which can make thin triangles cross. None for other formats. Precondition: a solid was written.
+/// Throws as brep::read_mesh(). Cost: reading the file, and brep::health().
 std::optional<std::string> rounding_finding(const std::filesystem::path& written, Timings& timings);
 
 /// Writes a mesh by brep::write_mesh() and replaces the file `out`, as voxel::StagedFiles does; "write" in

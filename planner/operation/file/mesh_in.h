@@ -8,7 +8,7 @@
 #include "brep/io/read_mesh.h"
 #include "planner/operation/table/json.h"
 
-// How a run of the program reads the meshes that its command line names, and what it found in them.
+// Reads the meshes that the command line of a run names, and collects findings on them.
 namespace octotomy::planner {
 
 /// A mesh file that was read, with its audit.
@@ -31,7 +31,7 @@ brep::Triangles read_mesh_in(const std::filesystem::path& path, const brep::Mesh
 /// The meshes read since the last choice, sorted by path, each path once.
 std::vector<MeshRecord> meshes_read();
 
-/// Choices that name a file, as "box.stl=RAS", of which none was read.
+/// Choices such as "box.stl=RAS" whose file was never read.
 std::vector<std::string> unused_choices();
 
 /// Records an assumption about a file of landmarks for landmark_files_read(); any thread may call.

@@ -7,10 +7,10 @@
 
 namespace octotomy::planner {
 
-/// Whether a path is a surface's by its extension.
+/// Whether a path has the extension of a surface's file.
 bool is_mesh(const std::filesystem::path& path);
 
-/// Whether a path is an octree's by its extension.
+/// Whether a path has the extension of an octree's file.
 bool is_octree(const std::filesystem::path& path);
 
 /// What a verb writes to a path.

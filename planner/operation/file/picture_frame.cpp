@@ -75,9 +75,8 @@ PictureFrame read_frame(std::string_view png, const std::string& where) {
   }
   if (!found.text)
     refuse(where,
-           "does not state what its pixels show: only a .png of octotomy render or slice does, in true scale "
-           "and "
-           "as it was written");
+           "does not state the positions of its pixels: only an unchanged .png in true scale from octotomy "
+           "render or slice does");
   const SortedJson json = SortedJson::parse(*found.text, nullptr, false);
   PictureFrame frame;
   try {

@@ -35,8 +35,8 @@ std::optional<voxel::ImageText> image_text(const std::optional<PictureFrame>& fr
 PictureFrame read_frame(std::string_view png, const std::string& where);
 PictureFrame read_frame(const std::filesystem::path& path);
 
-/// The name with which parse_view() makes this view, or "AZ,EL" if it has no name. Empty if parse_view()
-/// cannot make it, such as a view that is rotated in its own plane.
+/// The name from which parse_view() makes this view, or "AZ,EL" if the view has no name. Empty if
+/// parse_view() cannot make it, such as a view that is rotated in its own plane.
 std::string name_of(const voxel::View& view);
 
 }  // namespace octotomy::planner

@@ -41,7 +41,7 @@ PlaneSamples samples_of(const voxel::Scene& scene, const ViewPlane& plane) {
   const glm::dvec2 count = glm::ceil((high - samples.low_mm) / samples.spacing_mm) + 2.0;
   if (count.x * count.y > 67108864.0)
     throw voxel::Error(voxel::ErrorCode::Resource,
-                       "a plane of the scan has over 67 million points: make the scan coarser first");
+                       "a plane of the scan has more than 67 million points: make the scan coarser first");
   samples.width = static_cast<std::uint32_t>(count.x);
   samples.height = static_cast<std::uint32_t>(count.y);
   return samples;

@@ -24,9 +24,10 @@ struct ViewPlane {
 
 using PlaneContours = std::vector<std::vector<glm::dvec2>>;
 
-/// The contours of the window low..high of a scan, which is interpolated trilinearly at points as far apart as its
-/// finest spacing. Objects end at the scan's border. Either bound may be infinite. Empty where the plane misses the
-/// window. Throws voxel::Error (Resource) if the plane has over 2^26 such points. Cost: linear in them; parallel.
+/// The contours of the window low..high of a scan, which is interpolated trilinearly at points as far apart
+/// as its finest spacing. Objects end at the scan's border. Either bound may be infinite. Empty where the
+/// plane misses the window. Throws voxel::Error (Resource) if the plane has more than 2^26 such points. Cost:
+/// linear in them; parallel.
 PlaneContours contours_in_plane(const voxel::Scene& scene, double low, double high, const ViewPlane& plane);
 
 /// The closed contours at which a plane cuts a surface, parted where they touch (brep::part_touching()). Contours that
@@ -34,8 +35,8 @@ PlaneContours contours_in_plane(const voxel::Scene& scene, double low, double hi
 PlaneContours contours_in_plane(const brep::Mesh& surface, const ViewPlane& plane,
                                 std::size_t* open = nullptr);
 
-/// Of contours that do not cross, the one around the region that contains a point, and those of its holes. Empty if
-/// the point lies outside all regions or in a hole.
+/// Of contours that do not cross, the contour around the region that contains a point, and the contours of
+/// the region's holes. Empty if the point lies outside all regions or in a hole.
 PlaneContours region_around(const PlaneContours& contours, const glm::dvec2& p_mm);
 
 }  // namespace octotomy::planner

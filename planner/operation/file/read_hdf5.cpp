@@ -279,7 +279,8 @@ void Hdf5File::take_symbols(Address tree, Address heap, int levels, Members& fou
       const auto name = entries.number(8);
       const Address header = entries.number(8);
       entries.take(24);
-      if (name >= names.size()) refuse_file("a name of a group lies beyond its names");
+      if (name >= names.size())
+        refuse_file("a member's name lies beyond the group's list of names: the file is damaged");
       if (found.size() == most_members) refuse_file("a group has too many members");
       found.emplace(until_zero(names.substr(name)), header);
     }

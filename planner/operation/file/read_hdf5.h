@@ -23,7 +23,7 @@ class Hdf5File {
  public:
   static constexpr std::size_t most_numbers = 4096, most_members = 1024;
 
-  /// Whether a file's first bytes are those of HDF5.
+  /// Whether a file begins with the signature of HDF5.
   static bool begins(std::string_view head);
 
   /// `bytes` is the whole file and must outlive the object.

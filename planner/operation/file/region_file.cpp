@@ -468,7 +468,8 @@ DrawnSlices slices_of(const voxel::StructureSet& set, const SlicesOptions& optio
     refuse(where, "has no closed contour" + (others.empty() ? others : ", but " + others));
   DrawnSlices drawn{{}, set.identity, {}};
   if (!found.frame_uids.empty()) drawn.identity->frame_uids = found.frame_uids;
-  if (found.degenerate > 0) drawn.findings.push_back(where + ": left out what encloses nothing: " + others);
+  if (found.degenerate > 0)
+    drawn.findings.push_back(where + ": left out contours that enclose no area: " + others);
   if (found.miscounted > 0)
     drawn.findings.push_back(where + ": " + std::to_string(found.miscounted) +
                              (found.miscounted == 1 ? " contour holds" : " contours hold") +

@@ -25,11 +25,11 @@ struct SeedContours {
   std::vector<SeedContour> seeds;  ///< in the order of the seeds
 };
 
-/// For each seed, the contour nearest to it among those of its slice at the threshold of its own sample;
-/// a contour that several seeds lead to appears once. The mask has the seeds' slices and, where the scan
-/// continues, an empty slice at either end. Throws std::runtime_error naming the seed if it lies outside of
-/// the scan or on padding, or if its slice has no contour at its threshold; if two contours of a slice cross,
-/// which is possible where seeds there have different samples; and as slice_contours().
+/// For each seed, the nearest contour of its slice at the seed's own sample as threshold; a contour that
+/// several seeds lead to appears once. The mask has the seeds' slices and, where the scan continues, an empty
+/// slice at either end. Throws std::runtime_error naming the seed if it lies outside of the scan or on
+/// padding, or if its slice has no contour at its threshold; if two contours of a slice cross, which is
+/// possible where seeds there have different samples; and as slice_contours().
 SeedContours contours_at_seeds(const voxel::Scene& scene, const std::vector<glm::dvec3>& seeds_mm);
 
 /// The samples that belong to the region around a seed: those of a window, or those no farther from the seed's own
@@ -39,10 +39,10 @@ struct RegionSamples {
   std::optional<double> tolerance;
 };
 
-/// For each seed, the contour around the connected region of its slice in which it lies, and those of the region's
-/// holes; a region with several seeds appears once. `threshold` is the lower bound, `away_mm` the distance of the
-/// seed from the region's contours. The mask and the exceptions are those of contours_at_seeds(); a seed outside the
-/// window is refused with its sample.
+/// For each seed, the contour around the connected region of the slice that contains the seed, and the
+/// contours of the region's holes; a region with several seeds appears once. `threshold` is the lower bound,
+/// `away_mm` the distance of the seed from the region's contours. The mask and the exceptions are those of
+/// contours_at_seeds(); a seed outside the window is refused with its sample.
 SeedContours contours_around_seeds(const voxel::Scene& scene, const std::vector<glm::dvec3>& seeds_mm,
                                    const RegionSamples& samples);
 

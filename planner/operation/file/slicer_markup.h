@@ -25,15 +25,15 @@ struct SlicerMarkup {
   std::string where;                  ///< "cut.mrk.json: markups[0]"
   std::vector<glm::dvec3> points_mm;  ///< its placed control points, LPS
   std::optional<MarkupPlane> plane;   ///< of a plane alone
-  std::vector<std::string> findings;  ///< what its file leaves out, each a "WARN, "
+  std::vector<std::string> findings;  ///< statements that the file lacks, each begins with "WARN, "
 };
 
-/// The markups of a file that have this type. Others are left out, with a finding in `findings`.
-/// Frame and unit are the file's. Where it states none they are LPS and mm, with a WARN. A plane's axes are those
-/// of its "orientation" about its "center"; else of "baseToNode" about its control point; else of its three
-/// points, the origin at the first and `right` towards the second, with a WARN. Throws std::runtime_error with the
-/// place in the file: no JSON, no markup of the type, a point that is none, a plane without axes.
-/// Source: 3D Slicer, schema of markups 1.0.3, vtkMRMLMarkupsPlaneJsonStorageNode.
+/// The markups of a file that have this type. Others are left out, with a finding in `findings`. Frame and
+/// unit are the file's. If the file states none, LPS and mm are assumed, with a WARN. A plane's axes are
+/// those of its "orientation" about its "center"; else of "baseToNode" about its control point; else of its
+/// three points, the origin at the first and `right` towards the second, with a WARN. Throws
+/// std::runtime_error with the place in the file: no JSON, no markup of the type, a point that is none, a
+/// plane without axes. Source: 3D Slicer, schema of markups 1.0.3, vtkMRMLMarkupsPlaneJsonStorageNode.
 std::vector<SlicerMarkup> read_slicer_markups(const std::filesystem::path& path, const std::string& type,
                                               std::vector<std::string>& findings);
 

@@ -11,7 +11,7 @@
 #include "planner/operation/table/bench.h"
 #include "voxel/tree/octree_file.h"
 
-// A verb that makes a file and the step of plans that makes the same file from earlier objects share one
+// A verb that makes a file and a plan's step that makes the same file from earlier objects share one
 // function. FileBench::step distinguishes them: names are paths of files, or objects of the plan.
 namespace octotomy::planner {
 
@@ -19,8 +19,8 @@ namespace octotomy::planner {
 bool names_octree(const std::string& name, const FileBench& bench);
 /// The octree with a name; "read" in the timings. Throws as read_timed().
 voxel::OctreeFile octree_named(const std::string& name, const FileBench& bench);
-/// The triangles that a name stands for: those of a mesh file, or of an object's mesh within the universe.
-/// Throws as read_mesh_in(), and std::runtime_error if the object has no mesh.
+/// The triangles that a name stands for: a mesh file's triangles, or the triangles of an object's mesh within
+/// the universe. Throws as read_mesh_in(), and std::runtime_error if the object has no mesh.
 brep::Triangles triangles_named(const std::string& name, const FileBench& bench);
 
 /// Writes a step's file by a verb's function `run`. `object` is the first object that it uses, empty if it uses a

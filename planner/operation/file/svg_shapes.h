@@ -8,7 +8,7 @@
 #include "planner/operation/file/xml_tags.h"
 
 // Shapes of SVG 1.1, in user units: x to the right, y down. Functions throw std::runtime_error with file,
-// line and attribute for what cannot be read.
+// line and attribute if something cannot be read.
 namespace octotomy::planner {
 
 /// CSS: an inch has 96 pixels.

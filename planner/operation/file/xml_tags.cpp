@@ -82,7 +82,8 @@ std::string reason(XML_Error error, std::string_view rest) {
   };
   switch (error) {
     case XML_ERROR_TAG_MISMATCH:
-      return "</" + name_at(rest.starts_with("</") ? 2 : 0) + "> closes what is not open";
+      return "</" + name_at(rest.starts_with("</") ? 2 : 0) +
+             "> does not match the element that is open there";
     case XML_ERROR_UNCLOSED_TOKEN:
       return std::string("what begins here is not closed by ") + (rest.starts_with("<!--")        ? "-->"
                                                                   : rest.starts_with("<![CDATA[") ? "]]>"

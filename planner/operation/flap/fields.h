@@ -39,8 +39,8 @@ std::vector<Field> flap_fields() {
               .from(2)
               .to(9),
           field("stumps", of(&FlapFields::stumps),
-                "Two points on the bone that stays, one beyond each end of the flap: the end cuts then halve "
-                "the angles between flap and bone. Default: the end cuts are square to the flap.")
+                "Two points on the bone that stays, one beyond each end of the flap: the end cuts then "
+                "bisect the angles between flap and bone. Default: the end cuts are square to the flap.")
               .from(2)
               .to(2),
           field("donor", of(&FlapFields::donor),

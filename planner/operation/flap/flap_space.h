@@ -21,8 +21,8 @@ struct FlapCut {
   double reach_mm = 12.0;        ///< no bone farther from point_mm is cut
   bool is_of_resection = false;  ///< the cut at one end of the resection, not of a segment
 };
-/// The cuts at both ends of a segment's space, or of the resection's. The kerf of a segment lies outside of it,
-/// that of the resection within. None: the step made no such space.
+/// The cuts at both ends of a segment's space, or of the resection's. A segment's kerf lies outside the
+/// segment, the resection's kerf inside the resection. None: the step made no such space.
 std::vector<FlapCut> flap_cuts(const Action& maker);
 
 /// A place on the axis of a flap, and the motion from where a segment is placed to where its uncut bone lies.
@@ -33,9 +33,9 @@ struct FlapPlace {
   /// LPS to LPS, rigid; none: the space is where the segment is placed, or of bone that stays.
   std::optional<glm::dmat4> uncut_from_placed;
 };
-/// The place at a share of the way between both cuts of a segment's space, 0 to 1. For the resection's space: in
-/// the bone that stays, from -1 at the first stump's point to 0 at the first cut, or from 1 at the last cut to
-/// 2 at the last stump's point. Throws std::runtime_error, which states what is out of range, for another share, a
+/// The place at a share of the way between both cuts of a segment's space, 0 to 1. For the resection's space:
+/// in the bone that stays, from -1 at the first stump's point to 0 at the first cut, or from 1 at the last
+/// cut to 2 at the last stump's point. Throws std::runtime_error, which names the value, for another share, a
 /// resection without stumps, or a step that made no such space; `name` is the step's, for the message.
 FlapPlace flap_place(const Action* maker, const std::string& name, double share);
 

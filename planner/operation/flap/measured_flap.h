@@ -48,7 +48,7 @@ struct MeasuredOsteotomy {
   std::vector<std::string> between;  ///< names of two segments; "bone" beyond the first and the last one
   double contact_voxels_mm2 = 0.0;
   std::optional<double> contact_mesh_mm2;
-  double contact_mm2 = 0.0;  ///< the mesh kernel's area, or else the voxel kernel's
+  double contact_mm2 = 0.0;  ///< the mesh kernel's area or, if it is missing, the voxel kernel's
   std::optional<double> tolerance_mm2;
   std::optional<std::string> verdict;
   std::optional<double> slab_lacks_at_most_mm2;

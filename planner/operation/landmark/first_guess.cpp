@@ -270,8 +270,8 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
   FoundPlaces first = pitch ? apply(usual, frame) : FoundPlaces();
   if (first.places.empty())
     throw std::runtime_error(
-        "no nasal opening beside an orbit is seen from the front, and all rules start from it: is it a "
-        "skull, is its face in the scan, and is the window that of bone?");
+        "no nasal opening beside an orbit is visible from the front, but all rules start there: check that "
+        "the object is a skull with its face in the scan, and that the window selects bone");
 
   // The trials: other pitches, widths, heights, thresholds and mid-planes.
   std::vector<Trial> trials;

@@ -21,8 +21,9 @@ struct HeadFrame {
     return left * (place.x + mid_mm) + back * place.y + up * place.z;
   }
 };
-/// The frame of a mid-plane whose up is the scan's, turned by an angle about left: positive raises the face.
-/// Precondition: a unit normal that points to the left and is not along z.
+/// The head's frame: left is the mid-plane's normal; up is LPS z, made perpendicular to left and rotated
+/// about it by pitch_deg. A positive angle raises the face. Precondition: a unit normal that points to the
+/// left and is not along z.
 HeadFrame head_frame(const glm::dvec3& point_mm, const glm::dvec3& normal, double pitch_deg);
 
 /// A rectangular grid of numbers at equal distances, NaN where no bone was hit. `x` runs along the rows.

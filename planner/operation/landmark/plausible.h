@@ -7,8 +7,8 @@ namespace octotomy::planner {
 
 /// Removes landmarks in implausible positions, with the reason: heights out of order, lengths that no face
 /// has in proportion to the height of its nose, and sides that do not match. Where sides match badly, their
-/// difference is added to the doubt. Positions are in the head's frame, whose pitch is that of the Frankfurt
-/// plane to about 6 degrees.
+/// difference is added to the doubt. Positions are in the head's frame, whose pitch differs from the
+/// Frankfurt plane's by at most about 6 degrees.
 void keep_plausible(FoundPlaces& found);
 
 }  // namespace octotomy::planner

@@ -75,7 +75,7 @@ class Reader {
   }
   int rows_of(double length_mm) const { return static_cast<int>(std::lround(length_mm / profile_.step_mm)); }
   int within(int k) const { return std::clamp(k, 0, profile_.rows() - 1); }
-  /// Places a point at the edge below it, unless the edge is the scan's end.
+  /// Places the point at row k, the last above an edge. Reports it as missing if the scan ends there.
   void place_end(const char* name, int k) {
     if (profile_.up_mm(k) < profile_.cut_mm + scan_end) return miss(name, "the scan ends there");
     place(name, k);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1. Compute path lengths through the voxels from the beginning, by Dijkstra over 26 neighbours.
+// 1. Compute path lengths through the voxels from the beginning, by Dijkstra's algorithm on 26 neighbours.
 // 2. The centres of shells of equal path length form the centre line; it is smoothed by a Gaussian as wide as
 // the passage.
 // 3. At even steps, cut the plane perpendicular to the line in both kernels and keep the part around the

@@ -18,7 +18,7 @@ struct ContactMap {
 
 void check(const ContactMap& asked, const FieldLocation& place) {
   if (asked.object.name == asked.against.name)
-    place.at("against").refuse("is the object itself: name what it is to touch");
+    place.at("against").refuse("is the object itself: name the object that it shall touch");
 }
 
 MeasuredContacts measured(const ContactMap& asked, const AnswerBench& bench) {

@@ -229,8 +229,8 @@ double cut_mm2(const voxel::Scene& scan, double low, double high) {
 
 std::optional<std::string> cut_finding(double cut_mm2, double area_mm2) {
   if (!(cut_mm2 > 0.001 * area_mm2)) return std::nullopt;
-  return "the scan's border cuts the object off over " + three_figures(cut_mm2) +
-         " mm²: no number includes what lies beyond";
+  return "the scan's border cuts the object off in an area of " + three_figures(cut_mm2) +
+         " mm²: no number includes the part beyond";
 }
 
 std::optional<Thickness> thickness_of(const voxel::Scene& scan, double low, double high) {

@@ -80,8 +80,8 @@ HalfWidth distance_half_width(const std::array<glm::dvec3, 2>& points_mm, const 
 HalfWidth angle_half_width(const std::array<glm::dvec3, 3>& points_mm, const Digitised& digitised);
 
 /// Half-width of the least distance of two surfaces, in millimetres, for a distance in this direction. Its
-/// terms: half a voxel's width in the direction for each surface; one sample spacing if samples are coarser
-/// than voxels, because a smaller gap is invisible; each window's shift.
+/// terms: for each surface, half a voxel's width along the direction; one sample spacing if samples are
+/// coarser than voxels, because a smaller gap is invisible; each window's shift.
 HalfWidth gap_half_width(const glm::dvec3& direction, const Digitised& object, const Digitised& other);
 
 /// The shift of a window's boundary for ten sample units of its lower bound: half the change of volume

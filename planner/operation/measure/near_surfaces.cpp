@@ -2,8 +2,8 @@
 // 1. Compute signed distances to the other surface at points of the first: corners of triangles, which are
 //    split if they are large and may be near, or voxels of the boundary.
 // 2. Group points within the distance that are near each other into places (single linkage by a grid).
-// 3. Add each triangle's area within the distance, by linear interpolation, to the place of its nearest
-//    corner.
+// 3. Add each triangle's area within the distance, by linear interpolation, to the place of the triangle's
+//   nearest corner.
 #include "planner/operation/measure/near_surfaces.h"
 
 #include <algorithm>

@@ -45,8 +45,8 @@ Contacts contacts_between(const voxel::Octree& one, const voxel::Octree& other,
 /// Signed distances of points to a solid, negative inside.
 std::vector<double> signed_distances_mm(const brep::Solid& solid, const std::vector<glm::dvec3>& points_mm);
 
-/// The least signed distance of one surface to another one, at points no farther apart than the spacing
-/// where they are near.
+/// The smallest signed distance of one surface to another one. Where the surfaces are near each other, it is
+/// computed at points no farther apart than the spacing.
 double least_distance_mm(const brep::Solid& one, const brep::Solid& other, double spacing_mm);
 
 /// A point of one surface that may come nearest to another one.

@@ -150,9 +150,9 @@ Json doubts_of(const std::vector<voxel::Finding>& audit) {
   std::vector<voxel::Finding> doubts;
   for (const voxel::Finding& finding : audit)
     if (finding.verdict != voxel::Verdict::Pass && doubts.size() < most)
-      doubts.push_back(
-          {finding.check, finding.verdict,
-           quotes_identity(finding.check) ? "what its files state of the patient differs" : finding.detail});
+      doubts.push_back({finding.check, finding.verdict,
+                        quotes_identity(finding.check) ? "its files' statements about the patient differ"
+                                                       : finding.detail});
   return to_json(doubts);
 }
 

@@ -229,7 +229,7 @@ std::vector<std::string> findings_of(const verify::SizeIntervals& found, bool is
         grouped(*mesh_mm3, 1) + " mm\u00b3): " +
         (!is_of_phases ? "labels are counted in the scan's own samples"
          : has_core ? "the threshold's surface loses parts that are thin or sharp compared with the scan's "
-                      "blur, and the sum of the samples does not"
+                      "blur, but the sum of the samples does not"
                     : "no part is thicker than the scan's blur; the sum of the samples is taken, with the "
                       "window's bound as the half level"));
   constexpr double far_off = 0.1;
@@ -239,7 +239,7 @@ std::vector<std::string> findings_of(const verify::SizeIntervals& found, bool is
       (area > (1.0 + far_off) * std::max(*voxels_mm2, *mesh_mm2) ||
        area < (1.0 - far_off) * std::min(*voxels_mm2, *mesh_mm2)))
     findings.push_back("WARN area: the recommended " + grouped(area, 1) +
-                       " mm\u00b2 lies over a tenth outside of both kernels' answers (voxels " +
+                       " mm\u00b2 differs from both kernels' answers by more than a tenth (voxels " +
                        grouped(*voxels_mm2, 1) + ", mesh " + grouped(*mesh_mm2, 1) +
                        " mm\u00b2): it allows for edges that the scan's blur rounds off");
   for (const auto& [name, interval] :

@@ -56,7 +56,7 @@ void add_counting(double doubt_mm3, verify::SizeIntervals& found);
 void add_voxels(const glm::dvec3& voxel_mm, double area_mm2, verify::SizeIntervals& found);
 
 /// Adds the error due to the samples' thickness: the change of the window's size in samples twice as thick,
-/// which is about what the present thickness has lost, and half a sample where the object meets the scan's
+/// which is about the loss by the present thickness, and half a sample where the object meets the scan's
 /// border. `share` is the object's share of the window's surface. Precondition: 0 <= share <= 1.
 void add_thickness(const Thickness& thickness, double share, verify::SizeIntervals& found);
 

@@ -33,7 +33,7 @@ Json volume_json(const Found& found, std::vector<std::string> sources) {
           {"max_mm", found.largest_mm}};
 }
 
-/// Summarises the surface's points that lie on walls, with the thinnest of them and their share of the
+/// Summarises the surface's points that lie on walls, with the thinnest wall and the walls' share of the
 /// surface; nulls if there are none.
 Json wall_json(WeightedValues walls, double whole, const std::optional<glm::dvec3>& thinnest_mm) {
   double share = 0.0;

@@ -27,7 +27,7 @@ struct Advance {
 
 void check(const Advance& asked, const FieldLocation& place) {
   if (asked.object.name == asked.against.name)
-    place.at("against").refuse("is the object itself: name what it is to meet");
+    place.at("against").refuse("is the object itself: name the object that it shall meet");
   if (asked.towards.has_value() == asked.direction.has_value())
     place.refuse("takes either 'towards', a word, or 'direction', a vector");
   if (asked.direction && !(glm::length(*asked.direction) > 0.0))

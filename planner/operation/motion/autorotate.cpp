@@ -49,7 +49,7 @@ double reach_mm(const voxel::Box& box, const std::array<glm::dvec3, 2>& axis_mm)
 
 void check(const Autorotate& asked, const FieldLocation& place) {
   if (asked.object.name == asked.against.name)
-    place.at("against").refuse("is the object itself: name what it is to meet");
+    place.at("against").refuse("is the object itself: name the object that it shall meet");
   const std::vector<Mark>& condyles = asked.condyles;
   if (condyles[0].object.empty() && condyles[1].object.empty() &&
       glm::distance(condyles[0].p_mm, condyles[1].p_mm) < 10.0)

@@ -15,7 +15,7 @@ struct HeadPosition {
 };
 
 /// The shortest side of a triangle of landmarks that determines a plane well enough. Landmarks are placed to
-/// about 1 mm, and 1 mm over 10 mm tilts the plane by 6 degrees.
+/// about 1 mm, and an error of 1 mm in 10 mm tilts the plane by 6 degrees.
 constexpr double shortest_mm = 10.0;
 
 glm::dvec3 direction(const glm::dvec3& vector, const FieldLocation& place, const char* of) {

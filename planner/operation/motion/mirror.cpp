@@ -67,7 +67,7 @@ Json fit_json(const brep::MirrorPlane& plane, const std::optional<brep::MirrorFi
 
 void check(const Mirror& mirror, const FieldLocation& place) {
   if (mirror.exactly && mirror.plane.empty())
-    place.at("exactly").refuse("mirrors about a plane as it stands: add 'plane'");
+    place.at("exactly").refuse("mirrors about a given plane without a fit: add 'plane'");
   if (!mirror.plane.empty() && mirror.plane[1] == glm::dvec3(0.0))
     place.at("plane").refuse("its normal has no length");
   if (!mirror.through.empty() && (mirror.point_mm || mirror.normal))
@@ -214,7 +214,7 @@ Operation mirror_operation() {
                 "A point X,Y,Z and a normal X,Y,Z near the plane; else the surface's own axes are tried.")
               .from(2)
               .to(2))
-      .verb_takes(field("exactly", &Mirror::exactly, "Mirrors about the plane as it stands, without a fit."))
+      .verb_takes(field("exactly", &Mirror::exactly, "Mirrors about the given plane, without a fit."))
       .verb_takes(
           field("out", &Mirror::out, "The mirror image: a .stl, .ply, .obj, .off, .vtp or .glb file."))
       .example(

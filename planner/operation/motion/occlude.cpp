@@ -3,7 +3,8 @@
 // one place the object only slides along the direction, with two it also tilts, with three or more it is
 // seated. The motion is determined first, on meshes, so that both kernels use the same motion.
 //
-// 1. At each place the least signed distance of the object's vertices about it to the other surface.
+// 1. For each place, compute the smallest signed distance from the object's vertices around it to the other
+//   surface.
 // 2. The rigid motion whose displacements along the direction are those distances, in least squares.
 // 3. Again, as the nearest vertices change, until no place is farther off than the tolerance.
 #include <algorithm>
@@ -46,7 +47,7 @@ struct Seat {
 
 void check(const Occlude& asked, const FieldLocation& place) {
   if (asked.object.name == asked.against.name)
-    place.at("against").refuse("is the object itself: name what it is to meet");
+    place.at("against").refuse("is the object itself: name the object that it shall meet");
 }
 
 /// The direction of a word as a unit vector, LPS.

@@ -148,7 +148,7 @@ std::optional<std::string> mirrored(std::vector<brep::Landmark> moving,
   const double rms_mm = brep::register_landmarks(moving, fixed, brep::MotionModel::similarity).rms_mm;
   if (rms_mm > 0.3 * fit.rms_mm) return std::nullopt;
   return "the landmarks lie " + grouped(fit.rms_mm, 1) + " mm apart, and " + grouped(rms_mm, 1) +
-         " mm if one set is mirrored: left and right are exchanged in one of them, by its names or its frame";
+         " mm if one set is mirrored: left and right are exchanged in one set, by its names or its frame";
 }
 
 Laid by_landmarks(const std::filesystem::path& moving, const std::filesystem::path& fixed,
@@ -514,11 +514,10 @@ Operation register_operation() {
       .verb_takes(field("out", &Register::out,
                         "A moved to B: a .stl, .ply, .obj, .off, .vtp or .glb file; for scans a .nrrd, "
                         ".nhdr, .nii, .nii.gz, .mha or .mhd file with unchanged samples in a new frame."))
-      .verb_takes(
-          field("watch", &Register::watch,
-                "A new folder for a picture of the difference of two scans at each step of the search: what "
-                "moves in magenta, what stays in green.")
-              .read_if<Register>(may_be_of_samples, of_samples))
+      .verb_takes(field("watch", &Register::watch,
+                        "A new folder for a picture of the difference of two scans at each step of the "
+                        "search: the moving scan in magenta, the fixed scan in green.")
+                      .read_if<Register>(may_be_of_samples, of_samples))
       .reads_scans()
       .example(R"({"id": "laid", "do": "register", "object": "maxilla", "onto": "skull", "overlap": 0.9})")
       .on_files(

@@ -28,9 +28,9 @@ struct FittedScans {
 };
 
 /// Registers a scan to another one by voxel::register_scans() and returns its results as details. Pictures in
-/// the folder `watch` show the two scans in the middle planes of the one that stays: what moves in magenta,
-/// what stays in green, so that equal tones are grey. Throws as register_scans(), and voxel::Error if the
-/// folder exists or cannot be created.
+/// the folder `watch` show the two scans in the fixed scan's middle planes: the moving scan in magenta, the
+/// fixed scan in green, so equal tones are grey. Throws as register_scans(), and voxel::Error if the folder
+/// exists or cannot be created.
 FittedScans fit_scans(const voxel::Scene& moving, const voxel::Scene& fixed, const ScanFitAsked& asked,
                       const voxel::Progress& progress, Timings& timings);
 

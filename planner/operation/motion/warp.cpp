@@ -29,7 +29,7 @@ struct Warp {
   std::optional<double> fade_mm;
 };
 
-/// The displacements of a solved deck, and what the answer reports of them.
+/// The displacements of a solved deck, and the facts about them that the answer reports.
 struct Displaced {
   convert::DisplacementField field;
   Json details;
@@ -51,8 +51,8 @@ double fade_of(const Warp& warp, double largest_mm) {
   return *warp.fade_mm;
 }
 
-/// Throws std::runtime_error with the place if elements are turned over: no tissue moves like that, and the
-/// scan of such a field shows one place twice.
+/// Throws std::runtime_error with the place if elements are inverted: no tissue moves like that, and the scan
+/// of such a field shows one place twice.
 void refuse_turned_over(const convert::DisplacementField& field, const std::filesystem::path& path) {
   const std::vector<convert::TurnedOver> found = field.turned_over();
   if (found.empty()) return;
@@ -63,14 +63,14 @@ void refuse_turned_over(const convert::DisplacementField& field, const std::file
     high_mm = glm::max(high_mm, element.centre_mm);
     if (element.volume_ratio < worst->volume_ratio) worst = &element;
   }
-  throw std::runtime_error(path.string() + ": the displacements turn over " + std::to_string(found.size()) +
-                           (found.size() == 1 ? " element" : " elements") + ", the worst at " +
-                           voxel::rounded(worst->centre_mm) + " mm, all between " + voxel::rounded(low_mm) +
-                           " and " + voxel::rounded(high_mm) +
-                           " mm (LPS): there a motion is longer than the tissue between what moves and what "
-                           "stays. Take that place out of 'fixed', or write *STEP, NLGEOM in the deck, so "
-                           "that the solver follows the motion in increments (linear steps only scale it), "
-                           "and solve the deck again");
+  throw std::runtime_error(
+      path.string() + ": the displacements invert " + std::to_string(found.size()) +
+      (found.size() == 1 ? " element" : " elements") + ", the worst at " + voxel::rounded(worst->centre_mm) +
+      " mm, all between " + voxel::rounded(low_mm) + " and " + voxel::rounded(high_mm) +
+      " mm (LPS): there a motion is longer than the tissue between the moved and the fixed nodes is thick. "
+      "Take that place out of 'fixed', or write *STEP, NLGEOM in the deck, so "
+      "that the solver follows the motion in increments (linear steps only scale it), "
+      "and solve the deck again");
 }
 
 Displaced displaced(const Warp& warp, const std::filesystem::path& path, const voxel::Progress& progress,

@@ -92,7 +92,7 @@ void check_stroke(const Stroke& stroke, const FieldLocation& place) {
     if (!(glm::length(stroke.points_mm[i]) <= most_mm))
       place.at("points_mm")
           .refuse("point " + std::to_string(i) +
-                  " lies over 1000 m from the origin: give LPS coordinates in mm");
+                  " lies more than 1000 m from the origin: give LPS coordinates in mm");
   for (std::size_t i = 1; i < stroke.points_mm.size(); ++i) {
     const double way_mm = glm::distance(stroke.points_mm[i - 1], stroke.points_mm[i]);
     if (way_mm > 0.0 && way_mm < least_way_mm)
@@ -115,7 +115,7 @@ std::string definition(const Brush& brush, const Objects&) {
   return brush.object.name + (brush.paints() ? " and " : " less ") + strokes;
 }
 
-constexpr const char* not_measured = "; no scan measured what is painted";
+constexpr const char* not_measured = "; no scan measured the painted material";
 
 void voxels(const Brush& brush, const VoxelBench& bench, VoxelSide& made) {
   const voxel::Expression touched = voxel::brush(strokes_of(brush, &voxel::BrushStroke::slab));
@@ -235,7 +235,7 @@ std::vector<Field> stroke_fields() {
           .from(0.1)
           .to(100.0));
   fields.push_back(field("shape", &Stroke::shape, "The shape of the brush.").one_of({"ball", "slab"}));
-  fields.push_back(field("normal", &Stroke::normal, "The direction across a slab, LPS.").direction());
+  fields.push_back(field("normal", &Stroke::normal, "The slab's normal, LPS.").direction());
   fields.push_back(field("thickness_mm", &Stroke::thickness_mm,
                          "The thickness of a slab, half on either side of the points.")
                        .from(0.1)

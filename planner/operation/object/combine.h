@@ -25,7 +25,8 @@ void combine_voxels(const VoxelBench& bench,
                     const std::function<voxel::Expression(const voxel::Names& names)>& expression,
                     VoxelSide& made);
 
-/// Adds what a Boolean inherits from its operands, and findings on masks that cut nothing of them.
+/// Adds the operands' cut walls, bound terms and windows to a Boolean's result, and a finding for each mask
+/// that cuts nothing of an operand.
 void bound_of_operands(const std::vector<std::string>& names, const BoundBench& bench, Object& made);
 
 }  // namespace octotomy::planner

@@ -174,7 +174,8 @@ FileAnswer on_files(const Contours& asked, const FileBench& bench) {
                              (asked.window ? "--window" : "--slice-window") + " out");
   if (!is_json(file) && !has_windows(asked) && asked.seeds_mm.empty() && asked.around_mm.empty())
     throw std::runtime_error(
-        "--window: choose what the contours outline: --window 300: or --window skin, or --seed X,Y,Z on an "
+        "--window: choose the samples that the contours outline, for example --window 300: or --window skin, "
+        "or --seed X,Y,Z on an "
         "edge");
   std::vector<std::string> findings;
   Json of_seeds = Json::array();

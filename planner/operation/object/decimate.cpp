@@ -116,7 +116,7 @@ Operation decimate_operation() {
       .takes(field("object", &Decimate::object, "The object.").required().positional("mesh"))
       .takes(field("max_error_mm", &Decimate::max_error_mm,
                    "Largest distance of either surface from the other. Default: 0.1, or a 200th of the "
-                   "object's extent where that is less.")
+                   "object's extent if that is less.")
                  .greater_than(0.0))
       .takes(field("faces", &Decimate::faces, "Number of triangles to end at.").from(4).to(100000000))
       .takes(field("max_normal_deviation_deg", &Decimate::max_normal_deviation_deg,

@@ -262,7 +262,7 @@ FileAnswer on_files(const Eval& asked, const FileBench& bench) {
   const voxel::Universe universe = operands.at(used.front()).universe;
   for (const std::string& name : used)
     if (!(operands.at(name).universe == universe))
-      findings.push_back(name + ": has another universe than " + used.front() +
+      findings.push_back(name + ": its universe differs from that of " + used.front() +
                          ", whose voxels the result has: it is resampled there");
   voxel::OctreeFile result{voxel::Octree::empty(universe), asked.expression, ""};
   Json more = Json::object();
@@ -323,11 +323,11 @@ Operation eval_operation() {
                    "The voxels of a moved octree: those whose centre it contains, or those that it fills at "
                    "least half.")
                  .one_of({"centre", "half"})
-                 .read_if<Eval>(has_motions, "applies only to what moves: add 'motions'"))
+                 .read_if<Eval>(has_motions, "applies only to moved objects: add 'motions'"))
       .verb_takes(field("interpolate", &Eval::interpolate,
                         "How samples of a moved grey octree are read: nearest, linear or cubic.")
                       .one_of({"nearest", "linear", "cubic"})
-                      .read_if<Eval>(has_motions, "applies only to what moves: add 'motions'"))
+                      .read_if<Eval>(has_motions, "applies only to moved objects: add 'motions'"))
       .example(R"({"id": "rest", "do": "eval", "expression": "skull - cut", "path": "rest.octree"})")
       .on_files(
           "octotomy eval \"skull - cut\" -o rest.octree --let skull=skull.octree --let cut=cut.octree\n"

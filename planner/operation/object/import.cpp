@@ -78,12 +78,12 @@ Operation import_operation() {
                    std::string("The file: ") + brep::mesh_formats_read + ", relative to the plan's folder.")
                  .required())
       .takes(field("frame", &Import::frame,
-                   "Directions of x, y and z in the file, in place of what the file states: LPS, RAS, or "
+                   "Directions of x, y and z in the file, in place of the file's statement: LPS, RAS, or "
                    "three other letters of "
-                   "L or R, A or P, S or I. Default: what the file states, else LPS."))
+                   "L or R, A or P, S or I. Default: the file's statement, else LPS."))
       .takes(field("unit", &Import::unit,
-                   "The unit of the file's lengths, in place of what the file states. Default: what the file "
-                   "states, else mm.")
+                   "The unit of the file's lengths, in place of the file's statement. Default: the file's "
+                   "statement, else mm.")
                  .one_of({"um", "mm", "cm", "m", "inch", "foot"}))
       .check(check)
       .example(R"({"id": "plate", "do": "import", "path": "plate.stl"})")

@@ -324,8 +324,8 @@ Operation mask_operation() {
               .a_file()
               .in_plans_only())
       .takes(field("views_of", &Mask::views_of,
-                   "The frame of the views: that of the head as it is held, or that of the scan, which a "
-                   "head position does not turn.")
+                   "The frame of the views: the head's frame at its head position, or the scan's frame, "
+                   "which a head position does not rotate.")
                  .one_of({"head", "scan"})
                  .in_plans_only())
       .takes(field("slices", &Mask::slices,

@@ -101,8 +101,9 @@ void take_phases(const AnswerBench& bench, const Object& object, Recommended& fo
     const double share = std::min(1.0, object.mesh.within->size().area_mm2 / whole_mm2);
     const auto widen = [&](verify::Interval& interval, double lost) {
       interval.half_width += share * lost;
-      interval.sources.push_back(
-          {"thin or sharp", "share of what the whole window's samples add", share * lost, true});
+      interval.sources.push_back({"thin or sharp",
+                                  "share of the whole window's difference between samples and surface",
+                                  share * lost, true});
     };
     widen(found.intervals.volume_mm3,
           std::abs(phases->volume_mm3.value - phases->evidence.counted_mm3) + phases->volume_mm3.half_width);
@@ -242,9 +243,9 @@ void scale(verify::Interval& interval, double value_factor, double width_factor)
   for (verify::DoubtSource& source : interval.sources) source.half_width *= width_factor;
 }
 
-/// The sizes of a scaled or sheared image. Every volume changes by the determinant, and so does its doubt. The
-/// area follows the triangles of both; without them it is the middle of what the map may make of it. A doubt about
-/// the area grows at most as areas do.
+/// The sizes of a scaled or sheared image. Every volume changes by the determinant, and so does its doubt.
+/// The area follows the triangles of both; without them it is the middle of the range that the map allows. A
+/// doubt about the area grows by at most the largest factor of areas.
 Recommended deformed_intervals(Recommended found, const Deformation& deformation, const Object& still,
                                const Object& object) {
   const double volume_factor = std::abs(deformation.volume_factor);

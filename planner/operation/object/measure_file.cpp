@@ -97,7 +97,7 @@ FileAnswer said(Json json) {
 /// Requests that cannot be written are refused before any file is read.
 void need_scalars_of(const Measure& asked) {
   if (!asked.thickness && !asked.curvature)
-    throw std::runtime_error(asked.out.string() + ": choose what to write, --thickness or --curvature");
+    throw std::runtime_error(asked.out.string() + ": choose the map to write by --thickness or --curvature");
   need_extension(asked.out, {".vtp", ".ply"}, "scalars are");
   need_folder_of(asked.out);
 }
@@ -229,8 +229,8 @@ FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked,
                        " mm\u00b3; octotomy repair --solid writes it");
   if (is_sum)
     findings.push_back("WARN volume_mm3: " + std::to_string(health.self_intersections) +
-                       " pairs of triangles cross each other, so that parts which overlap count "
-                       "twice: octotomy repair --solid makes one surface of them");
+                       " pairs of triangles cross each other, so overlapping parts count twice: octotomy "
+                       "repair --solid joins them in one surface");
   Json json{{"kind", "mesh"}};
   json.update(print_record(size));
   json.update(asked_of_surface(asked, solid, bench));
@@ -297,8 +297,7 @@ voxel::Window window_of(const voxel::GreyOctree& grey, const std::filesystem::pa
                         const Measure& asked) {
   if (!asked.window)
     throw std::runtime_error(
-        file.string() +
-        ": holds samples, choose some of them by --window LOW:HIGH, for example --window 300:");
+        file.string() + ": holds samples: choose a range by --window LOW:HIGH, for example --window 300:");
   return window_on(grey, *asked.window);
 }
 
@@ -394,7 +393,7 @@ ScanAndOctree read_to_octree(const std::filesystem::path& file, const Measure& a
   return {std::move(scene), std::move(*grey)};
 }
 
-/// A scan's window, with what was computed from it.
+/// A scan's window, with the values computed from it.
 struct WindowShown {
   const voxel::Scene& scene;
   double low = 0.0, high = 0.0;

@@ -157,7 +157,8 @@ std::vector<voxel::Octree> objects_of(const FileBench& bench, const Build& asked
       throw std::runtime_error("--with: " + other.name + ": is not an .octree file");
     objects.push_back(binary_of(asked, other.name, octree_named(other.name, bench)));
     if (objects.back().universe() != objects.front().universe())
-      throw std::runtime_error("--with: " + other.name + ": has another universe than " + asked.file.name +
+      throw std::runtime_error("--with: " + other.name + ": its universe differs from that of " +
+                               asked.file.name +
                                ": build both of one scan, or one of them by octotomy mask --like");
   }
   return objects;
@@ -207,8 +208,8 @@ void need_form_name(const Build& asked) {
       !convert::is_deck(asked.out) &&
       std::find(others.begin(), others.end(), voxel::extension_of(asked.out)) == others.end())
     return;
-  throw std::runtime_error(asked.out.string() + ": is the name of another kind of file: the form " +
-                           asked.as + " is written as .txt or under a name of your own, as ." + asked.as);
+  throw std::runtime_error(asked.out.string() + ": has the extension of another kind of file: for the form " +
+                           asked.as + " use .txt, or an extension of no known kind, such as ." + asked.as);
 }
 
 void check(const Build& asked, const FieldLocation& place) {
@@ -236,10 +237,10 @@ FileAnswer on_files(const Build& asked, const FileBench& bench) {
 }  // namespace
 
 Operation octree_operation() {
-  return Describe<Build>(
-             "octree",
-             "Builds an octree of a scan's window or of all its samples, or puts one into another form.",
-             Makes::File)
+  return Describe<Build>("octree",
+                         "Builds an octree of a scan's window or of all its samples, or converts an octree "
+                         "to another form.",
+                         Makes::File)
       .takes(
           field("object", &Build::file,
                 "The object; on the command line a scan, an .octree file, or with --from a representation.")

@@ -86,8 +86,9 @@ void voxels(const Offset& offset, const VoxelBench& bench, VoxelSide& made) {
   made.lineage = "distances to where the surface passes between voxels";
 }
 
-/// A level set, the cells with which it was made, and the half-width of its volume: the change of volume with cells
-/// twice as large, which is three times the error at second order, plus the tolerance of flat parts times the area.
+/// A level set, the cells with which it was made, and the half-width of its volume: the change of volume with
+/// cells of twice the size, which is three times the error at second order, plus the tolerance of flat parts
+/// times the area.
 struct LevelSet {
   brep::Solid moved;
   brep::OffsetOptions options;

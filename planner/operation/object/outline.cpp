@@ -85,7 +85,10 @@ brep::Triangles surface_of(const std::string& file, const FileBench& bench,
                            const std::optional<SampleWindow>& window) {
   const voxel::OctreeFile octree = octree_named(file, bench);
   if (const auto* grey = std::get_if<voxel::GreyOctree>(&octree.tree)) {
-    if (!window) throw std::runtime_error("--window: choose what the contours outline: --window 300:");
+    if (!window)
+      throw std::runtime_error(
+          "--window: choose the samples that the contours outline, for example --window 300: (300 and "
+          "above)");
     return convert::isosurface(*grey, window->low, window->high_or_infinity());
   }
   if (window) throw std::runtime_error(file + ": holds no samples to take a --window of: leave it out");
@@ -106,7 +109,8 @@ Cutter cutter_of(const Outline& outline, const FileBench& bench, const voxel::Vi
   }
   if (is_octree(file)) return cutter_of(brep::mesh_of(surface_of(file, bench, outline.window)), view);
   if (!outline.window)
-    throw std::runtime_error("--window: choose what the contours outline: --window 300: or --window skin");
+    throw std::runtime_error(
+        "--window: choose the samples that the contours outline, for example --window 300: or --window skin");
   const SampleWindow window = *outline.window;
   auto scene = std::make_shared<const voxel::Scene>(bench.read_scan(file));
   need_hounsfield(window, *scene);
@@ -137,7 +141,7 @@ std::vector<double> positions_of(const Outline& outline, const Cutter& cutter) {
                high_mm = outline.to_mm.value_or(cutter.high_mm);
   const double first = std::ceil(low_mm / outline.every_mm), last = std::floor(high_mm / outline.every_mm);
   if (last - first >= static_cast<double>(most_planes))
-    throw std::runtime_error("every_mm: makes over " + std::to_string(most_planes) +
+    throw std::runtime_error("every_mm: makes more than " + std::to_string(most_planes) +
                              " planes: choose a larger distance, or 'from_mm' and 'to_mm'");
   std::vector<double> positions;
   for (double k = first; k <= last; ++k) positions.push_back(k * outline.every_mm);

@@ -268,7 +268,7 @@ std::optional<Differing> ranked(const WholeObject& whole, const brep::Solid& sol
                                 const voxel::Octree& apart_in_mesh) {
   const voxel::Octree voxels = whole.voxels();
   const auto counts = [](const voxel::Octree& set) { return voxel::components(set).voxel_counts; };
-  // Without a witness certificates of the parts follow (settle_choice()).
+  // Without a witness either side is allowed here, because settle_choice() certifies the parts afterwards.
   const auto words = [&](const glm::dvec3& p_mm) {
     return whole.witness ? whole.witness.allowed_sides(p_mm)
                          : verify::Reading{verify::either_side, verify::either_side};

@@ -22,9 +22,9 @@ struct WholeObject {
   std::size_t count = 1;  ///< number of the largest parts that were requested; not read with a least volume
 };
 
-/// Replaces the mesh's parts by those of the voxels where the kernels selected different parts and each
-/// selected correctly by its own parts. Of two parts of nearly the same volume, the kernels may disagree on
-/// which is larger; of a part near `least_mm3`, on whether it reaches it; and of the largest parts, a neck
+/// Replaces the mesh's parts by the voxels' parts if the kernels selected different parts and each kernel
+/// selected correctly among its own parts. Of two parts of nearly the same volume, the kernels may disagree
+/// on which is larger; of a part near `least_mm3`, on whether it reaches it; and of the largest parts, a neck
 /// that one kernel alone has may change the order. Without `least_mm3` the largest parts were selected.
 ///
 /// The largest parts: the voxels' selection must consist of whole parts, none smaller than the last of the

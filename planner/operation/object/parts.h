@@ -22,7 +22,7 @@ namespace octotomy::planner {
 /// Decisions on thin necks between parts. Each neck is a point, LPS: the centre of a cube along the axes.
 struct BridgeDecisions {
   std::vector<glm::dvec3> keep_mm;  ///< the parts that reach into the cube stay, also small ones
-  std::vector<glm::dvec3> cut_mm;   ///< the object loses what lies within the cube
+  std::vector<glm::dvec3> cut_mm;   ///< the object loses its part within the cube
   double edge_mm = 5.0;             ///< of the cubes
   /// Points of further parts that stay: parts that only one of the kernels connects, by a neck too thin to
   /// measure.
@@ -53,9 +53,9 @@ voxel::Octree with_kept_parts(const voxel::Octree& chosen, const voxel::Octree& 
 bool stays(const brep::Triangles& triangles, const std::vector<std::uint32_t>& faces,
            const BridgeDecisions& bridges);
 
-/// The `count` largest parts of voxels. Of parts as large as the last of them, those with the lowest first
-/// voxel are selected, x fastest; where more than 64 such parts are needed, all of them stay. Precondition:
-/// the object is not empty, `count` is positive.
+/// The `count` largest parts of voxels. Of parts of the same size as the last selected one, those with the
+/// lowest first voxel are selected, x fastest; where more than 64 such parts are needed, all of them stay.
+/// Precondition: the object is not empty, `count` is positive.
 voxel::Octree largest_parts(const voxel::Octree& whole, std::size_t count,
                             voxel::Neighbours neighbours = voxel::Neighbours::Faces);
 

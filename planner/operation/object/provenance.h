@@ -20,7 +20,7 @@ bool is_voxelised(const Object& object);
 void voxelise(const brep::Solid& mesh, const voxel::Universe& universe, VoxelSide& made);
 
 /// Whether only an object's whole voxels are available, without samples or shapes that place its surface
-/// between their centres.
+/// between the voxels' centres.
 bool is_whole_voxels(const VoxelSide& side);
 
 /// The planes of a scan's ends. There the ends of mesh and voxels may be half a sample apart, rather than
@@ -49,7 +49,7 @@ void carry(const std::string& object, const glm::dmat4& moved_from_still, const 
 /// Volume that the image of an object's voxels has outside of the universe after a motion or mirror.
 double outside_mm3(const voxel::Octree& still, const glm::dmat4& image_from_still);
 
-/// The samples that define the surface of an object made of several: those of its operands, where these
+/// The samples that define the surface of an object made of several: the samples of its operands if these
 /// agree. Masks have none. The surface of a union of several windows, or of pieces moved apart, follows no
 /// single scan.
 std::optional<Shown> shown_in_common(const Objects& objects, const std::vector<std::string>& names);

@@ -36,7 +36,7 @@ void check(const Repair& repair, const FieldLocation& place) {
         "does only the requested repairs: add 'solid' for all, or 'weld_mm', 'duplicates', 'flat', 'orient', "
         "'holes' or 'intersections'; octotomy info lists a mesh's defects");
   if (repair.wall_mm && repair.hull)
-    place.at("hull").refuse("fills what a wall leaves hollow: give 'hull' or 'wall_mm'");
+    place.at("hull").refuse("fills the inside that a wall leaves hollow: give either 'hull' or 'wall_mm'");
   if ((repair.hull || repair.cell_mm || repair.wall_mm) && !repair.solid)
     place.at(repair.hull      ? "hull"
              : repair.cell_mm ? "cell_mm"
@@ -223,12 +223,12 @@ Operation repair_operation() {
                  .positional("mesh")
                  .a_file())
       .takes(field("frame", &Repair::frame,
-                   "Directions of x, y and z in the file, in place of what the file states: LPS, RAS, or "
+                   "Directions of x, y and z in the file, in place of the file's statement: LPS, RAS, or "
                    "three other letters. "
-                   "Default: what the file states, else LPS."))
+                   "Default: the file's statement, else LPS."))
       .takes(field("unit", &Repair::unit,
-                   "The unit of the file's lengths, in place of what the file states. Default: what the file "
-                   "states, else mm.")
+                   "The unit of the file's lengths, in place of the file's statement. Default: the file's "
+                   "statement, else mm.")
                  .one_of({"um", "mm", "cm", "m", "inch", "foot"}))
       .takes(field("weld_mm", &Repair::weld_mm,
                    "Points no further apart than this become one; 0 joins equal points.")

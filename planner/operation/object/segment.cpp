@@ -133,7 +133,7 @@ class Segmenter {
     if (made_.steps.size() > 1)
       return " after its " + std::to_string(made_.steps.size()) + " steps: leave some out";
     if (source_.scene.meaning != voxel::Meaning::Label && !segment_.label)
-      return ": choose another window, or see what --otsu 3 suggests";
+      return ": choose another window, or see the bounds that --otsu 3 suggests";
     for (const voxel::Finding& finding : source_.scene.audit)
       if (finding.check == "fractions") return ": " + finding.detail;
     return ": choose another label";
@@ -587,15 +587,14 @@ Operation segment_operation() {
       .verb_takes(field("out", &Segment::out,
                         "An .octree file for one object; a label map (.nrrd, .nii.gz, .mha) or a DICOM "
                         "segmentation (.dcm) on the scan's lattice."))
-      .verb_takes(
-          field("objects", &Segment::objects, "An .octree file to be put into the label map, again for more.")
-              .repeated()
-              .called("object")
-              .a_file())
-      .verb_takes(
-          field("contours", &Segment::contours,
-                "Writes the contours of the first window's lower bound on every slice, a JSON file of "
-                "regions."))
+      .verb_takes(field("objects", &Segment::objects,
+                        "An .octree file to be put into the label map; may be repeated.")
+                      .repeated()
+                      .called("object")
+                      .a_file())
+      .verb_takes(field(
+          "contours", &Segment::contours,
+          "A .json file of regions to write: the contours of the first window's lower bound on every slice."))
       .verb_takes(field("voxel_mm", &Segment::voxel_mm,
                         "Edge of the voxels that choose parts, and of an octree's. Default: as fine as the "
                         "scan, at most 512 a side.")

@@ -80,13 +80,13 @@ struct Segmented {
 /// or a seed lies outside; Stopped between choices.
 Segmented segmented(const Segment& segment, const SegmentSource& source);
 
-/// The same object at the scan's own samples, in a universe whose first voxels are these samples. The
-/// voxels of `made`, from segmented() in any universe, decide which parts belong to the object; the samples
-/// decide where it ends. Precondition: `source` is on voxel::universe_on() of the scan. Throws Stopped. See
+/// The same object on the scan's own samples, in a universe whose first voxels are these samples. The voxels
+/// of `made`, from segmented() in any universe, decide which parts belong to the object; the samples decide
+/// where it ends. Precondition: `source` is on voxel::universe_on() of the scan. Throws Stopped. See
 /// voxel::chosen_samples().
 voxel::Octree on_own_samples(const Segment& segment, const SegmentSource& source, const Segmented& made);
 
-/// The label with the requested name, by the given table or by that of the label map `scene`. Adds to
+/// The label with the requested name, by the given table or by the table of the label map `scene`. Adds to
 /// `findings` the files that were passed over. Throws std::runtime_error that lists the known names.
 int label_of_name(const Segment& segment, const std::filesystem::path& label_map, const voxel::Scene& scene,
                   const std::filesystem::path& folder, std::vector<std::string>& findings);

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// An object and a record of what was done to it; for a label map also the object on the scan's own samples.
+/// An object and a record of the operations on it; for a label map also the object on the scan's own samples.
 struct Named {
   std::string name;
   Segmented made;

@@ -31,7 +31,7 @@ double cell_for(const Shell& shell) {
   return 0.25 * shell.thickness_mm;
 }
 
-/// The cell that the mesh was made with: larger than cell_for() where the object is too large for that.
+/// The cell with which the mesh was made: larger than cell_for() if the object is too large for that cell.
 double cell_of(const Shell& shell, const MeshSide& made) {
   const auto cell = made.details.find("cell_mm");
   return cell != made.details.end() && cell->is_number() ? cell->get<double>() : cell_for(shell);
@@ -48,11 +48,10 @@ brep::Solid core_of(const brep::Solid& solid, const Shell& shell, const brep::Pr
           brep::offset(solid, {.by_mm = -shell.thickness_mm, .cell_mm = cell_mm, .progress = progress});
       if (round > 0) {
         made.details = {{"cell_mm", cell_mm}};
-        made.findings.push_back(
-            "the object is too large for cells of " + plain(cell_for(shell)) +
-            " mm: its inner surface was made with cells of " + plain(cell_mm) +
-            " mm, so that parts of the inside thinner than that may have stayed: cut off the "
-            "part that matters, for which smaller cells suffice");
+        made.findings.push_back("the object is too large for cells of " + plain(cell_for(shell)) +
+                                " mm: its inner surface was made with cells of " + plain(cell_mm) +
+                                " mm, so parts of the inside thinner than that may remain: cut off the part "
+                                "that matters, for which smaller cells are possible");
       }
       return core;
     } catch (const brep::TooLarge&) {
@@ -70,7 +69,7 @@ void voxels(const Shell& shell, const VoxelBench& bench, VoxelSide& made) {
   }();
   made.octree = bench.combined(voxel::Expression(object.octree) - core);
   made.symbol = bench.within_universe(*object.symbol - core);
-  made.lineage = "the octree less what lies deeper than the thickness below its surface between voxels";
+  made.lineage = "the octree without the points deeper than the thickness below its surface between voxels";
 }
 
 void triangles(const Shell& shell, const MeshBench& bench, MeshSide& made) {

@@ -96,7 +96,7 @@ void check(const Tile& tile, const FieldLocation& place) {
   if (tile.has_file() && !tile.contours.empty())
     place.at("slices").refuse("names a file of contours: leave 'contours' out, or the file");
   if (!tile.has_file() && tile.contours.empty())
-    place.refuse("'contours' is missing: add contours, or 'slices', a file of them");
+    place.refuse("'contours' is missing: add 'contours', or 'slices', a file that holds contours");
   if (tile.has_file()) return;
   if (tile.contours.size() == 1 && !tile.end_mm)
     place.at("contours").refuse("are of one slice: add 'end_mm', how far it reaches on either side");

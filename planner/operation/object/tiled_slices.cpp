@@ -62,8 +62,8 @@ void need_few_sections(const voxel::SliceMask& mask) {
     if (!mask.slices[s].polygons_mm.empty() && !mask.slices[s + 1].polygons_mm.empty())
       joined_mm += mask.slices[s + 1].position_mm - mask.slices[s].position_mm;
   if (joined_mm > most_mm)
-    throw brep::Error(brep::ErrorCode::Geometry, "the slices join over " + plain(joined_mm) +
-                                                     " mm, and at most " + plain(most_mm) +
+    throw brep::Error(brep::ErrorCode::Geometry, "the joined slices span " + plain(joined_mm) +
+                                                     " mm, but at most " + plain(most_mm) +
                                                      " mm can be tiled, by sections every " +
                                                      plain(tile_step_mm()) + " mm: state positions in mm");
 }

@@ -24,15 +24,16 @@ struct TiledSlices {
   std::size_t sections = 0;  ///< tiled sections, the drawn slices among them
 };
 
-/// The surface tiled from the slices and from sections between them (brep::sections_between()), LPS. `cost` as in
-/// brep::TileSectionsOptions. Throws brep::Error (Geometry) that names the slice's position where contours of a
-/// slice cross or touch, or if interpolated slices join over 10 m; brep::Stopped. Precondition: the mask passes check().
+/// The surface tiled from the slices and from sections between them (brep::sections_between()), LPS. `cost`
+/// as in brep::TileSectionsOptions. Throws brep::Error (Geometry) that names the slice's position where
+/// contours of a slice cross or touch, or if the interpolated slices span more than 10 m; brep::Stopped.
+/// Precondition: the mask passes check().
 TiledSlices tiled_slices(const voxel::SliceMask& mask,
                          std::optional<brep::TileCost> cost = brep::TileCost::shortest_span,
                          std::stop_token stop = {});
 
-/// The witness against which both kernels' answers are compared. It computes by itself what the regions
-/// enclose.
+/// The witness against which both kernels' answers are compared. It computes the regions' inside by its own
+/// code.
 verify::Witness witness_of(const voxel::SliceMask& mask);
 
 /// The mean distance by which straight tiles leave the interpolated surface: (1 + 1/4) step^2 / (8 r), where

@@ -29,7 +29,7 @@ class Front {
   /// The first point of the bone on the line of sight through a position of the view; none if the line meets
   /// no bone.
   std::optional<Seen> first(const glm::dvec2& p_mm) const;
-  /// The least p . look of the bone's points within the box; none if there are none.
+  /// The smallest position along `look` of the bone's points within the box; none if there are none.
   const std::optional<double>& foremost_mm() const { return foremost_mm_; }
 
  private:

@@ -159,10 +159,11 @@ void need_points_seen(const SiteAsked& asked, const brep::Solid& bone,
     const std::optional<Seen> seen = site.front.first(site.base.frame.project(feet[i].p_mm));
     const double behind_mm = seen ? glm::dot(feet[i].p_mm, site.base.frame.look) - seen->depth_mm : 0.0;
     if (behind_mm > hidden_mm)
-      throw std::runtime_error(point + " lies " + three_figures(behind_mm) +
-                               " mm behind other bone, seen along the direction in which the " + asked.part +
-                               " is put on: the surgeon reaches only what is seen from the side; move it or "
-                               "choose another 'side'");
+      throw std::runtime_error(
+          point + " lies " + three_figures(behind_mm) +
+          " mm behind other bone, seen along the direction in which the " + asked.part +
+          " is put on: the surgeon reaches only bone that is visible from the side; move the point or "
+          "choose another 'side'");
   }
 }
 

@@ -41,7 +41,8 @@ struct GuideSite {
   Slab base;                  ///< the region, from `before_mm` before to `reach_mm` behind the foremost bone
   Slab near;                  ///< the space whose bone shapes the part
   glm::dvec3 along{0, 1, 0};  ///< unit, LPS: the direction in which the guide is put on
-  double end_mm = 0.0;        ///< p . along of a plane behind `base` and `near`
+  double end_mm = 0.0;        ///< position along `along` of the plane, 1 mm behind `base` and `near`, at
+                              ///< which shadows end
   brep::BooleanResult bone;   ///< the bone's mesh within `near`
   Front front;                ///< of the bone about the region
 

@@ -412,8 +412,8 @@ std::string too_short(const std::string& cut, double met_mm, const SlotsAsked& a
          " mm at its ends: make the region larger, or 'slot_end_mm' smaller";
 }
 
-/// The slots of a flap's cuts. The saw goes in within the plane of a cut, as near as possible to the way in
-/// which the guide is put on, and takes its kerf on one side of the plane. Cuts of the resection that miss
+/// The slots of a flap's cuts. The saw enters within the plane of a cut, as nearly as possible along the
+/// guide's insertion direction, and its kerf lies on one side of the plane. Cuts of the resection that miss
 /// the region belong to another guide.
 std::vector<SawSlot> slots_of_flap(const std::string& cut, const std::vector<FlapCut>& cuts,
                                    const SlotsAsked& asked, double& longest_mm) {

@@ -11,8 +11,8 @@
 
 namespace octotomy::planner {
 
-/// The direction in which a part is inserted: typed, or given by the view from whose side it comes. Exactly
-/// one of the two is set.
+/// The direction in which a part is inserted: a given vector, or a view: the part then comes from the
+/// viewer's side. Exactly one of the two is set.
 struct Insertion {
   std::optional<glm::dvec3> direction;   ///< of any length, LPS
   std::optional<std::string> seen_from;  ///< a view of the head as it is held

@@ -519,12 +519,12 @@ Operation plate_operation() {
                    "The plate's thickness; 2.5 is usual for plates that bear the jaw's load.")
                  .from(0.8)
                  .to(6.0))
-      .takes(
-          field("bend_radius_mm", &Plate::bend_radius_mm,
-                "The least radius of hollows that the plate follows: it bridges narrower ones and gaps. At "
-                "least twice the thickness; 10 is four times the usual one.")
-              .from(2.0)
-              .to(60.0))
+      .takes(field("bend_radius_mm", &Plate::bend_radius_mm,
+                   "The smallest radius of hollows that the plate follows: it bridges narrower hollows and "
+                   "gaps. At "
+                   "least twice the thickness; 10 is four times the usual one.")
+                 .from(2.0)
+                 .to(60.0))
       .takes(field("clearance_mm", &Plate::clearance_mm,
                    "The gap between plate and bone where the plate follows the bone; 0.2 is above a "
                    "printer's error of 0.16.")

@@ -126,7 +126,8 @@ PrintCheck outward_check(const brep::Triangles& triangles, const brep::Health& h
   return made;
 }
 
-/// A box around a part that stands on the bed, turned about the vertical so that it fits best.
+/// The box around a part that stands on the bed, rotated about the vertical so that its share of the bed's
+/// width or depth is smallest.
 struct Footprint {
   glm::dvec3 size_mm{0.0};  ///< along the bed's width and depth, and upward
   double turned_deg = 0.0;

@@ -36,9 +36,9 @@ voxel::Expression of_largest(const voxel::Expression& expression, const voxel::O
          voxel::Expression(bench.combined(voxel::Expression(whole) - voxel::Expression(largest)));
 }
 
-/// The union of the balls of the radius that fit within a solid: of all, or of those about the largest piece
-/// of their middles. Balls about another piece meet these in a neck that is thinner than a ball, because no
-/// ball fits between the two.
+/// The union of the balls of the radius that fit within a solid: of all balls, or of the balls around the
+/// largest connected piece of their middles. Balls about another piece meet these in a neck that is thinner
+/// than a ball, because no ball fits between the two.
 voxel::Expression balls_within(const voxel::Expression& solid, double radius_mm, bool without_necks,
                                const VoxelBench& bench) {
   const voxel::Octree octree = bench.combined(solid);

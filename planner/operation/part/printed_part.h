@@ -27,7 +27,7 @@ void keep_largest(const voxel::Expression& solid, const VoxelBench& bench, Voxel
 /// The largest piece. A finding in `made` lists the pieces that are left out.
 brep::Solid largest_piece(const brep::Solid& solid, const std::string& part, MeshSide& made);
 /// The largest piece, with points rounded to single precision as in files for printers, and still without
-/// intersecting triangles. Findings in `made` list what is left out and what could not be done.
+/// intersecting triangles. Findings in `made` list the parts left out and the steps that failed.
 brep::Solid printed(const brep::Solid& solid, const std::string& part, MeshSide& made);
 
 struct ThickPart {

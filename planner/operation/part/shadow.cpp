@@ -3,8 +3,9 @@
 // which this is subtracted can be slid on along the direction. Each kernel works on its own version of the
 // object; the direction and the end plane are determined first, so that both kernels use the same.
 //
-// With a tolerated undercut the shadow is that of the object's points deeper than the tolerance, united with
-// the object. On its way a part then meets only points of the object that are at most that deep.
+// With a tolerated undercut, only the object's points deeper than the tolerance cast the shadow, and the
+// object is united with it. On its way a part then meets only points of the object that are at most that
+// deep.
 #include "brep/shape/shadow.h"
 
 #include <algorithm>
@@ -32,8 +33,9 @@ struct Shadow {
   Insertion insertion;
   double beyond_mm = 0.0;
   std::optional<double> tolerance_mm;
-  glm::dvec3 along{0.0, 1.0, 0.0};  ///< settled: unit, LPS
-  double end_mm = 0.0;              ///< settled: p . along of the end plane
+  glm::dvec3 along{0.0, 1.0, 0.0};  ///< set by settle(): unit, LPS
+  double end_mm = 0.0;              ///< set by settle(): position along `along` of the plane at which the
+                                    ///< shadow ends
 };
 
 void check(const Shadow& shadow, const FieldLocation& place) {
@@ -202,8 +204,8 @@ Operation shadow_operation() {
               .from(0.0)
               .to(500.0))
       .takes(field("tolerance_mm", &Shadow::tolerance_mm,
-                   "A tolerated undercut: what lies less deep below the object's surface blocks nothing, so "
-                   "that a part snaps on, for example 0.12. Default: none is tolerated.")
+                   "A tolerated undercut: parts less deep than this below the object's surface block "
+                   "nothing, so that a part snaps on, for example 0.12. Default: none is tolerated.")
                  .greater_than(0.0)
                  .to(2.0))
       .example(R"({"id": "blocked", "do": "shadow", "object": "maxilla", "direction": [0, 0, 1]})")

@@ -2,14 +2,12 @@
 // A splint between two jaws: a slab along the arch, without the space that the teeth take up.
 //
 // 1 The arch's plane and a band about the curve through its points; the slab reaches `depth_mm` over the tips
-//   of both rows of teeth. Only the jaws near the band are used.
-// 2 The insertion directions, typed or found: of a grid of directions, the one with the least undercut.
-// 3 From the slab are taken the teeth grown by the offset, and the shadow of the teeth grown by the offset
-//   less the tolerated undercut. That shadow lies within the grown teeth where there is no undercut, so that
-//   there the fitting surface is that of the grown teeth.
-// 4 Walls thinner than the least wall are cut off: only the part that is covered by balls of that diameter
-//   within the splint stays.
-// 5 The largest piece, with points that files for printers can hold.
+// of both rows of teeth. Only the jaws near the band are used. 2 The insertion directions, typed or found: of
+// a grid of directions, the one with the least undercut. 3 From the slab are taken the teeth grown by the
+// offset, and the shadow of the teeth grown by the offset less the tolerated undercut. That shadow lies
+// within the grown teeth where there is no undercut, so there the grown teeth's surface is the fitting
+// surface. 4 Walls thinner than the least wall are cut off: only the part that is covered by balls of that
+// diameter within the splint stays. 5 The largest piece, with points that files for printers can hold.
 //
 // The mesh kernel does 3 and 4 without Booleans, on distances to the surfaces (brep/shape/level_body.h). The
 // voxel kernel combines windows of distances. 1 and 2 are settled once, by mesh and voxels, and are shared
@@ -323,9 +321,7 @@ void bound(const Splint& splint, const BoundBench& bench, Object& made) {
 }  // namespace
 
 Operation splint_operation() {
-  return Describe<Splint>("splint",
-                          "Makes a splint between the teeth of two jaws that can be slid onto both.",
-                          Makes::Object)
+  return Describe<Splint>("splint", "Makes a splint that slides onto the teeth of both jaws.", Makes::Object)
       .takes(field("upper", &Splint::upper, "The upper jaw at its planned place.")
                  .required()
                  .positional("upper"))
@@ -365,7 +361,10 @@ Operation splint_operation() {
                    "The direction in which the splint moves onto the upper teeth, LPS. Default: the one of "
                    "least undercut within 20 degrees of the arch's normal.")
                  .direction())
-      .takes(field("lower_direction", &Splint::lower_direction, "The same onto the lower teeth.").direction())
+      .takes(field("lower_direction", &Splint::lower_direction,
+                   "The direction in which the splint moves onto the lower teeth, LPS. Default: as for the "
+                   "upper teeth.")
+                 .direction())
       .example(R"({"id": "wafer", "do": "splint", "upper": "advanced", "lower": "rest",
         "arch": [[-24, -52, -56], [0, -86, -56], [24, -52, -56]]})")
       .on_files("octotomy splint upper.stl lower.stl --arch -24,-52,-56 0,-86,-56 24,-52,-56 -o splint.stl")

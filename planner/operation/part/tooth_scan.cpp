@@ -205,8 +205,8 @@ Operation tooth_scan_operation() {
              "Lays a scan of teeth onto an object and replaces the object's crowns by the scan's.",
              Makes::Object)
       .takes(field("object", &ToothScan::object,
-                   "The object with the teeth: one jaw alone, because the scan would also replace what lies "
-                   "within 'reach_mm' of it on the other jaw's teeth.")
+                   "The object with the teeth: one jaw alone, because the scan would also replace the other "
+                   "jaw's teeth within 'reach_mm' of it.")
                  .required()
                  .positional("object"))
       .takes(field("path", &ToothScan::path,
@@ -234,11 +234,12 @@ Operation tooth_scan_operation() {
                  .to(30.0)
                  .read_if<ToothScan>([](const ToothScan& asked) { return !asked.crowns.empty(); },
                                      "applies only about 'crowns': add them"))
-      .takes(field("depth_mm", &ToothScan::depth_mm,
-                   "Crowns are fitted and replaced from their tips to this depth; what the scan shows beyond "
-                   "is gum.")
-                 .from(2.0)
-                 .to(12.0))
+      .takes(
+          field(
+              "depth_mm", &ToothScan::depth_mm,
+              "Crowns are fitted and replaced from their tips to this depth; beyond that the scan shows gum.")
+              .from(2.0)
+              .to(12.0))
       .takes(
           field("blend_mm", &ToothScan::blend_mm,
                 "The width of the border in which the surface changes from the scan's to the object's, also "
@@ -257,11 +258,11 @@ Operation tooth_scan_operation() {
                  .to(1.0))
       .takes(
           field("frame", &ToothScan::frame,
-                "Directions of x, y and z in the scan's file, in place of what the file states: LPS, RAS, or "
-                "three other letters of L or R, A or P, S or I. Default: what the file states, else LPS."))
+                "Directions of x, y and z in the scan's file, in place of the file's statement: LPS, RAS, or "
+                "three other letters of L or R, A or P, S or I. Default: the file's statement, else LPS."))
       .takes(field("unit", &ToothScan::unit,
-                   "The unit of the file's lengths, in place of what the file states. Default: what the file "
-                   "states, else mm.")
+                   "The unit of the file's lengths, in place of the file's statement. Default: the file's "
+                   "statement, else mm.")
                  .one_of({"um", "mm", "cm", "m", "inch", "foot"}))
       .example(R"({"id": "sharp", "do": "tooth_scan", "object": "maxilla", "path": "upper_scan.stl",
         "points": [[-24, -52, -58], [0, -83, -58], [24, -52, -58]],

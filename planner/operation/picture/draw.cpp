@@ -527,16 +527,17 @@ Operation draw_operation() {
                    "anterior, posterior, left, right, superior, inferior, or AZ,EL in degrees."))
       .takes(field("size", &Draw::size, "WxH in pixels."))
       .takes(field("width_mm", &Draw::width_mm,
-                   "Width that the picture shows. Default: the extent of what is drawn.")
+                   "Width that the picture shows. Default: the extent of the drawn objects.")
                  .greater_than(0.0))
-      .takes(field("centre_mm", &Draw::centre_mm,
-                   "X,Y,Z in LPS of a point in the picture's middle. Default: the middle of what is drawn.")
-                 .called("centre"))
       .takes(
-          field("eye_mm", &Draw::eye_mm,
-                "Perspective: the eye's distance from the middle of what is drawn. Default: orthographic, in "
-                "true scale.")
-              .greater_than(0.0))
+          field("centre_mm", &Draw::centre_mm,
+                "X,Y,Z in LPS of a point in the picture's middle. Default: the middle of the drawn objects.")
+              .called("centre"))
+      .takes(field("eye_mm", &Draw::eye_mm,
+                   "Perspective: the eye's distance from the middle of the drawn objects. Default: "
+                   "orthographic, in "
+                   "true scale.")
+                 .greater_than(0.0))
       .takes(
           field("shading", &Draw::shading,
                 "flat (one tone a triangle), gouraud (corners' tones interpolated), phong (corners' normals "
@@ -560,7 +561,7 @@ Operation draw_operation() {
                  .read_if<Draw>([](const Draw& asked) { return shades(asked) || asked.hide; },
                                 "applies only to shaded surfaces, and to wire frames with 'hide'"))
       .takes(
-          field("hide", &Draw::hide, "Triangles of a wire frame hide what lies behind them.")
+          field("hide", &Draw::hide, "Triangles of a wire frame hide the edges behind them.")
               .read_if<Draw>([](const Draw& asked) { return asked.shading == "wire" && draws_facets(asked); },
                              "applies only to wire frames: add 'shading' wire"))
       .takes(field("colours", &Draw::colours, "#RRGGBB of the surfaces in their order, then of the contours.")

@@ -26,7 +26,7 @@ voxel::DrawnObject drawn(const Object& object, const glm::vec3& colour);
 /// names, in the order of these. Throws std::runtime_error for names that are not bound or bound twice.
 std::vector<ObjectName> files_of(const Render& render);
 
-/// Replaces the last objects, the operands, by the expression of them, which is not built. If exactly one
+/// Replaces the last objects, which are operands, by their expression without building it. If exactly one
 /// operand has samples, these define the surface, else the voxels' faces. Returns the objects as they are if
 /// there is no expression. Throws std::runtime_error for an expression that cannot be read.
 std::vector<voxel::DrawnObject> with_expression(const Render& render,

@@ -5,7 +5,7 @@
 
 namespace octotomy::planner {
 
-/// Shadings that show what lies along rays instead of the first surface: mip, radiograph, composite.
+/// Shadings that show all samples along rays instead of the first surface: mip, radiograph, composite.
 std::vector<std::string> ray_picture_names();
 bool is_ray_picture(const Render& render);
 

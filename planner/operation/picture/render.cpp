@@ -518,12 +518,12 @@ Operation render_operation() {
                 "JSON file of points with sample, colour and per_mm."))
       .takes(
           field("cut_planes", &Render::cut_planes,
-                "NX,NY,NZ,OFFSET_MM in LPS: removes what lies on the normal's side of the plane; the offset "
+                "NX,NY,NZ,OFFSET_MM in LPS: removes everything on the normal's side of the plane; the offset "
                 "is the plane's place along the normal; may be repeated.")
               .repeated()
               .called("cut-plane"))
       .takes(field("cut_boxes", &Render::cut_boxes,
-                   "X0,Y0,Z0,X1,Y1,Z1 in LPS mm: removes what lies in the box; may be repeated.")
+                   "X0,Y0,Z0,X1,Y1,Z1 in LPS mm: removes everything in the box; may be repeated.")
                  .repeated()
                  .called("cut-box"))
       .takes(field("cut_face", &Render::cut_face,

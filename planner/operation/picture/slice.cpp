@@ -97,7 +97,7 @@ voxel::View view_along(const glm::dvec3& direction, const std::optional<glm::dve
   view.look = glm::normalize(direction);
   const auto across = [&](const glm::dvec3& up) { return up - view.look * glm::dot(up, view.look); };
   glm::dvec3 up = across(wanted_up.value_or(glm::dvec3(0, 0, 1)));
-  // The head's up direction is up in the picture, unless the plane is horizontal to within a degree: then the
+  // The head's up direction is up in the picture, unless the plane is within a degree of horizontal: then the
   // face is up, as in axial slices.
   if (!wanted_up && glm::length(up) < std::sin(glm::radians(1.0))) up = across(glm::dvec3(0, -1, 0));
   if (!(glm::length(up) > 0.0))
@@ -132,7 +132,8 @@ std::vector<glm::dvec3> curve_points(const std::vector<std::string>& words) {
   return points;
 }
 
-/// A rectangle of a plane about a point's projection onto it; by default the middle of what is cut.
+/// A rectangle in a plane, around the projection of `slice.centre_mm` onto the plane; by default around that
+/// of the lattice's middle.
 voxel::Sheet rectangle_of(const Slice& slice, const voxel::Lattice& lattice, const voxel::View& view,
                           double position_mm, double pixel_mm) {
   Render said;
@@ -546,8 +547,8 @@ Operation slice_operation() {
                  .repeated()
                  .called("octree"))
       .takes(field("hatched", &Slice::hatched,
-                   "Objects that are drawn with their inside hatched, in red where no colour is given: "
-                   "interference of pieces, for example.")
+                   "Objects to draw with a hatched inside, in red if no colour is given: for example the "
+                   "interference of pieces.")
                  .repeated())
       .takes(field("colours", &Slice::colours,
                    "Colours, #RRGGBB, of the outlines in their order, then of the hatched objects.")

@@ -36,7 +36,9 @@ MadeScan made(const ClampStreaks& step, const ScanBench& bench) {
 }  // namespace
 
 Operation clamp_streaks_operation() {
-  return Describe<ClampStreaks>("clamp_streaks", "Holds the samples near metal within bounds.", Makes::Scan)
+  return Describe<ClampStreaks>("clamp_streaks",
+                                "Clamps samples near metal to the range low..high, to limit metal artefacts.",
+                                Makes::Scan)
       .takes(field("scan", &ClampStreaks::scan, "The scan.").required())
       .takes(field("metal", &ClampStreaks::metal, "Samples from this value on are metal."))
       .takes(field("low", &ClampStreaks::low, "Samples near metal below this value are raised to it."))

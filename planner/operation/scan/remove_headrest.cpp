@@ -33,12 +33,12 @@ std::vector<std::string> findings_of(const voxel::HeadrestRemoval& removal) {
   if (removal.bone_mm3 >= least_kept_mm3)
     findings.push_back("of the " + cm3(removal.solid_mm3 + removal.foam_mm3) + " removed, " +
                        cm3(removal.bone_mm3) + " are as dense as bone (" + plain(voxel::dense_hu) +
-                       " and more): look at the picture of what was removed");
+                       " and more): look at the picture of the removed parts");
   if (removal.front_mm3 >= least_kept_mm3)
     findings.push_back(
         cm3(removal.front_mm3) + " beside the patient lie in front of its coronal middle (y = " +
         plain(std::round(removal.middle_y_mm)) + " mm) and were kept, " + cm3(removal.extruded_front_mm3) +
-        " of them of a board or cradle: the patient may lie on the face or the side, or the "
+        " of them part of a board or cradle: the patient may lie on the face or the side, or the "
         "scan's frame may be turned");
   if (removal.behind_mm3 >= least_kept_mm3)
     findings.push_back(cm3(removal.behind_mm3) +

@@ -12,8 +12,8 @@
 namespace octotomy::planner {
 
 /// Reads an object's keys into the fields of `owner`. `also` lists further keys that are allowed but not read
-/// here. Throws std::runtime_error with the place, what is wrong and what to try: an unknown key with the
-/// nearest known one, a missing one, a wrong type, a number out of its range, a name that is not bound.
+/// here. Throws std::runtime_error with the place, the fault and the remedy: an unknown key with the nearest
+/// known one, a missing one, a wrong type, a number out of its range, a name that is not bound.
 void read_fields(const std::vector<Field>& fields, const nlohmann::json& object, void* owner,
                  const FieldLocation& place, const std::vector<std::string>& also = {});
 
@@ -35,8 +35,9 @@ nlohmann::ordered_json fields_schema(const std::vector<Field>& fields, void* fre
 /// std::runtime_error if a word is not of the field's type.
 nlohmann::json json_of_words(const Field& field, void* fresh, const std::vector<std::string>& words);
 
-/// The values of several fields in their order: a point takes three values, a list takes all that are left,
-/// any other field one. Scans are skipped. Throws std::runtime_error if there are too many values or too few.
+/// The values of several fields in their order: a point has three values, a list has all remaining values,
+/// any other field has one. Scans are skipped. Throws std::runtime_error if there are too many values or too
+/// few.
 nlohmann::json json_of_values(const std::vector<Field>& fields, void* fresh,
                               const std::vector<std::string>& values);
 

@@ -27,7 +27,7 @@ int json_levels(std::string_view text);
 /// Throws if a text is deeper than most_json_levels.
 void need_shallow_json(std::string_view text);
 
-/// A parser's message without the bytes that it read last: they may be those of a file that holds a secret.
+/// A parser's message without the bytes that it read last: they may belong to a file that holds a secret.
 /// Line and column stay.
 std::string without_last_read(std::string message);
 

@@ -32,7 +32,7 @@ struct VoxelSide {
   std::optional<voxel::Expression> symbol;
   voxel::Measures measures;
   std::string lineage;
-  std::vector<std::string> makers;  ///< the code that made it and what it was made of (verify::Answer)
+  std::vector<std::string> makers;  ///< the code that made it and its inputs (verify::Answer)
   std::vector<std::string> findings;
 };
 
@@ -63,7 +63,8 @@ struct Shown {
   voxel::GreyOctree grey;
   double threshold = 0.0;
   std::string scan;                                  ///< name of the scan of `grey`
-  glm::dmat4 moved_from_still{1.0};                  ///< motion by all steps since, LPS to LPS
+  glm::dmat4 moved_from_still{1.0};                  ///< motion by all steps after the surface was made, LPS
+                                                     ///< to LPS
   std::shared_ptr<const voxel::Scene> samples = {};  ///< samples of the scan; none: only `grey` shows the
                                                      ///< surface
   double high = std::numeric_limits<double>::infinity();  ///< the window's upper bound
@@ -114,7 +115,7 @@ struct Object {
   std::string definition;        ///< in words: "skull & cut"
   bool is_tool = false;          ///< only helps to make others, as a mask
   bool is_interpolated = false;  ///< a part of it comes from samples between images
-  bool is_surely_empty = false;  ///< its definition is empty whatever its operands are, as a - a
+  bool is_surely_empty = false;  ///< its definition is empty for all operands, for example a - a
   VoxelSide voxel;
   MeshSide mesh;
   BoundTerms bound;
@@ -146,7 +147,7 @@ struct Object {
     bool is_whole = false;
   };
   std::optional<Image> image;
-  std::vector<CutWall> walls;  ///< walls cut by the masks with which it was made, if these have a mesh
+  std::vector<CutWall> walls;  ///< one wall for each mask that cut this object and has a mesh
 };
 
 /// The objects that steps have made so far, in order. References stay valid when objects are added.

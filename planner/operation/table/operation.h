@@ -14,8 +14,8 @@
 #include "planner/operation/table/object.h"
 #include "planner/operation/table/scope.h"
 
-// The table of operations. An operation is a typed value; its entry says what the value's fields mean and
-// what each kernel does with it. Plan steps, verbs, help and the schema derive from the entry. The header is
+// The table of operations. An operation is a typed value; its entry states the meaning of the value's fields
+// and the work of each kernel. Plan steps, verbs, help and the schema derive from the entry. The header is
 // long because it contains both the entry and Describe, which builds it.
 namespace octotomy::planner {
 
@@ -38,8 +38,8 @@ struct Operation {
   std::function<void(const void* value, const FieldLocation& place)> check;
   /// The operation in words, to show to users: "skull & cut".
   std::function<std::string(const void* value, const Objects& objects)> definition;
-  /// Completes the value by what the operation computes, such as a plane of best fit. The other functions get
-  /// the completed value. Empty if there is nothing to compute.
+  /// Adds computed results to the value, such as a plane of best fit. The other functions get the completed
+  /// value. Empty if there is nothing to compute.
   std::function<std::shared_ptr<void>(const void* value, const SettleBench& bench)> settle;
   /// Makes a scan from another one.
   std::function<MadeScan(const void* value, const ScanBench& bench)> scan;

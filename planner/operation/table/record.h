@@ -133,7 +133,7 @@ Json print_record(const Type& record) {
 }
 
 /// Reads what print_record() prints, from this or another version of the program: a member whose key is
-/// missing, or has a value of another type, keeps the value that it has.
+/// missing, or whose value has another type, is left unchanged.
 template <Record Type>
 void read_record(const Json& json, Type& record) {
   if (!json.is_object()) return;

@@ -46,7 +46,7 @@ class Scope {
   /// Sets the head's orientation: columns are the head's directions left, back and up, LPS. Throws
   /// std::runtime_error if an earlier step has set it.
   void hold_head(const std::string& where, const glm::dmat3& lps_from_head);
-  /// None if no step sets the head's orientation; its directions are then those of the scan.
+  /// None if no step sets the head's orientation; its directions are then the scan's axes.
   const std::optional<glm::dmat3>& lps_from_head() const { return lps_from_head_; }
   const std::filesystem::path& folder() const { return folder_; }
 

@@ -42,7 +42,7 @@ struct CephalometricMeasure {
 struct CephalometricLandmark {
   std::string name;
   std::string says;
-  /// If the landmark is not placed itself, it is the mean of these, such as both sides.
+  /// If the landmark itself is not placed, it is the mean of these landmarks, for example of both sides.
   std::vector<std::string> mean_of;
   /// It lies on the skin, which does not move as the bone below it does.
   bool is_of_skin = false;

@@ -72,9 +72,8 @@ class Ruler {
   glm::dvec3 line(std::size_t from, std::size_t to) const {
     const glm::dvec3 line = points_[to] - points_[from];
     if (!(glm::length(line) > shortest_line_mm))
-      throw voxel::InvalidInput(
-          measure_.name + ": " + measure_.points[from] + " and " + measure_.points[to] +
-          " lie at the same place, so that they define no line: place one of them anew");
+      throw voxel::InvalidInput(measure_.name + ": " + measure_.points[from] + " and " + measure_.points[to] +
+                                " lie at the same place and define no line: place one of them again");
     return line;
   }
   static double angle(const glm::dvec3& a, const glm::dvec3& b) {

@@ -123,10 +123,10 @@ void add_landmarks(const std::vector<brep::Landmark>& landmarks, const Plan& pla
       added.push_back(
           {{"name", landmark.name}, {"point_mm", {landmark.p_mm.x, landmark.p_mm.y, landmark.p_mm.z}}});
     else if (glm::distance(known->p_mm, landmark.p_mm) > same_mm)
-      throw std::runtime_error(
-          "the landmark '" + landmark.name + "' lies " +
-          std::to_string(glm::distance(known->p_mm, landmark.p_mm)) +
-          " mm from the plan's landmark of this name: leave it out, or change the plan's");
+      throw std::runtime_error("the landmark '" + landmark.name + "' lies " +
+                               std::to_string(glm::distance(known->p_mm, landmark.p_mm)) +
+                               " mm from the plan's landmark of this name: leave this landmark out, or "
+                               "change the plan's landmark");
   }
   if (added.empty()) return;
   for (Json& step : whole["steps"])

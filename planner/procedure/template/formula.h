@@ -8,8 +8,8 @@
 namespace octotomy::planner {
 
 /// The value of a formula: numbers, names, + - * / and parentheses, min(a, b, ...), max(a, b, ...), hypot(a,
-/// b), abs(a), asin_deg(a). Throws std::runtime_error with the formula, the position and what was expected;
-/// for an unknown name with the nearest one; for a division by zero.
+/// b), abs(a), asin_deg(a). Throws std::runtime_error with the formula, the position and the text expected
+/// there; for an unknown name with the nearest one; for a division by zero.
 double value_of(std::string_view formula, const std::map<std::string, double>& names);
 
 /// A formula as a sum: the factor of each term, and a constant. A term is a name, or a product, quotient or

@@ -88,10 +88,10 @@ struct ProcedureInput {
 };
 
 /// The plan of a procedure on one head, as self-contained JSON. If the landmarks include both porions and an
-/// orbitale, the Frankfort plane is horizontal; nasion and basion, if present, define the mid-plane.
-/// Throws std::runtime_error if a landmark or scan is missing (with its definition), a value is unknown or
-/// out of its range, or a formula or the resulting plan is refused, for example because landmarks of left and
-/// right are interchanged.
+/// orbitale, the Frankfort plane is horizontal; nasion and basion, if present, define the mid-plane. Throws
+/// std::runtime_error if a landmark or scan is missing (with its definition), a value is unknown or out of
+/// its range, or a formula or the resulting plan is refused, for example because left and right landmarks are
+/// exchanged.
 nlohmann::ordered_json plan_of(const Procedure& procedure, const ProcedureInput& input);
 
 /// The names by which formulas read landmarks, "ans.x", with coordinates along the head's directions.

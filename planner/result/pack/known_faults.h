@@ -7,11 +7,11 @@
 
 namespace octotomy::planner {
 
-/// A published fault of a library whose decoders or network code read data of unknown origin, and what it
-/// means for this program.
+/// A published fault of a library whose decoders or network code read data of unknown origin, and its effect
+/// on this program.
 struct KnownFault {
   std::string library, name;  ///< for example GDCM, CVE-2024-22373
-  std::string effect;         ///< what an attacker's data can cause
+  std::string effect;         ///< the damage that an attacker's data can cause
   std::string repaired_in;    ///< the first version without the fault; empty: none is known
   /// Where the faulty code stands: in no part of the program; in a linked library, but never called; called
   /// in the process that decodes and is confined; called in the program itself, which is not.

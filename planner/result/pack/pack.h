@@ -24,7 +24,7 @@ struct PackOptions {
 /// - result/: the files of write_result_files();
 /// - witness/NUMBER/NAME.npy: witness_arrays() of each object;
 /// - dicom/: the files of write_result_objects(), if `options` asks for them;
-/// - NOTICE.txt: licences, and what the archive does not contain;
+/// - NOTICE.txt: licences, and a list of the parts that the archive does not contain;
 /// - manifest.json, last: every other entry with its length and SHA-256; the objects with their entries; the
 ///   scans with their lattice and SHA-256; the versions of the program and its libraries.
 /// The manifest states "identity": "removed" for a result after leave_out_names(), and "unnamed" for any

@@ -9,7 +9,7 @@ import {Certificate, Finding, Result} from "./result";
 export const notes_of = (of: Certificate): string[] => [
   ...of.reasons, ...(of.resolved ? [] : [`not resolved: ${of.not_resolved_because ?? ""}`]), ...(of.findings ?? [])
 ];
-/// A difference beside what is allowed, as numbers and as a bar.
+/// A difference beside the allowed difference, as numbers and as a bar.
 export function difference_of({difference_mm3, tolerance_mm3, verdict}: Certificate): Child {
   if (difference_mm3 === null || tolerance_mm3 === null) return "–";
   return [`${grouped(difference_mm3, 1)} / ${grouped(tolerance_mm3, 1)}`, gauge(difference_mm3, tolerance_mm3, verdict)];
@@ -51,7 +51,7 @@ export function certificates({objects, certificates}: Result): Child {
   return section(
       "Certificates",
       el("p", {class: "soft"}, "Each object with a mesh was made twice: by Booleans of octrees, and by corefinement of " +
-         "meshes from the scan's own samples. The difference must stay within what voxel size and boundary allow, " +
+         "meshes from the scan's own samples. The difference must stay within the bound that voxel size and boundary allow, " +
          "computed beforehand."),
       table(["Object", "Verdict", "#voxel, mm³", "#mesh, mm³", "#difference / allowed, mm³",
              "#symmetric difference / allowed, mm³", "#centroids / allowed, mm", "#Hausdorff 95, mm"], rows),

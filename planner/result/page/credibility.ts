@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// The credibility page: each number with what supports it, and the standard's factors.
+// SPDX-License-Identifier: AGPL-3.0-or-later The credibility page: each number with its evidence, and the
+// standard's factors.
 import {Child, el} from "../../browser/page/base/html";
 import {three_figures, unit_text} from "../../browser/page/base/numbers";
 import {Json} from "../../browser/page/protocol";
@@ -42,7 +42,7 @@ export function credibility({credibility: of}: Credibility): Child {
                         el("p", {class: "soft"}, `${of.claim} Terms: ${of.terms}.`))),
     to_state("Context of use"), to_state("Question of interest"),
     to_state("Model risk, of model influence and decision consequence"),
-    section("Numbers and what supports them", table(
+    section("Numbers and their evidence", table(
         ["Number", "#value", "supported by", "contradicted by", "gaps"],
         of.numbers.map((one) => [
           [el("b", {}, one.step), `, ${one.quantity}`],

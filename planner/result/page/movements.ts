@@ -65,8 +65,8 @@ export function cephalometry(of: CephalometryTable|null, cephalogram: string): C
           cephalogram, "The radiograph from the right with landmarks and lines of the lateral measures",
           "Radiograph in true scale; pale: the patient, orange: planned.")),
       table(["Measure", "", "#before", "#planned", "#change", "#norm", "source"], rows),
-      soft(`After each ±, what landmarks placed to ${grouped(of.landmark_deviation_mm, 1)} mm (standard deviation along ` +
-           "each axis) leave open in 99 of 100 cases; after each norm, its standard deviation among the people of its source." +
+      soft(`After each ±, the half-width due to landmarks placed to ${grouped(of.landmark_deviation_mm, 1)} mm (standard deviation along ` +
+           "each axis), in 99 of 100 cases; after each norm, its standard deviation among the people of its source." +
            (of.not_predicted ? ` Nothing predicts where the skin goes for ${of.not_predicted.map((one) => one.name).join(", ")}: ` +
                 "a landmark_ratios step does." : "")),
       list([...described].map(([source, people]) => `${source}: ${people}.`)));

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// The page of a verification: shares of tolerance by quantity, pictures of the worst certificate, certificates, the
-// suite's own tables, what was not covered.
+// SPDX-License-Identifier: AGPL-3.0-or-later The page of a verification: shares of tolerance by quantity,
+// pictures of the worst certificate, certificates, the suite's own tables, the parts not covered.
 import {Child, el} from "../../browser/page/base/html";
 import {grouped, three_figures} from "../../browser/page/base/numbers";
 import {Json} from "../../browser/page/protocol";
@@ -86,7 +85,7 @@ function quantities(certificates: Certificate[]): Child {
 const worst_pictures = ({worst}: Verification): Child => worst && section(
     "Worst certificate",
     el("p", {}, pill(worst.verdict, worst.resolved), " ", el("code", {}, worst.operation), `, ${share_text(worst.share)} ` +
-       "of what is allowed. The voxel kernel's surface, coloured by its signed distance to the mesh kernel's."),
+       "of the allowed difference. The voxel kernel's surface, coloured by its signed distance to the mesh kernel's."),
     list(worst.reasons), colour_scale(worst.most_mm, worst.colours),
     el("div", {class: "pictures four"}, worst.pictures.map((one) => png_figure(one.png, one.view, one.view))));
 
@@ -138,8 +137,8 @@ function not_covered({counts, answer, not_covered: lines}: Verification): Child 
     ...(answer.not_recomputed ?? []).map((gap) => `${gap.where}: ${gap.why}`),
     ...[...shared].sort(([a], [b]) => a < b ? -1 : 1).map(
         ([entry, count]) => `both answers of ${plural(count, "certificate")} share ${entry}`),
-    "what every certificate takes from one place: how scans are read, which whole samples a window holds, plans' names " +
-        "and motions' matrices, convert::voxelise, which decides what lies inside a mesh, and whether a window is the " +
+    "parts that every certificate takes from one place: how scans are read, which whole samples a window holds, plans' names " +
+        "and motions' matrices, convert::voxelise, which decides which points lie inside a mesh, and whether a window is the " +
         "tissue that it is meant for"
   ]));
 }

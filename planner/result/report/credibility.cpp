@@ -410,7 +410,7 @@ std::vector<CredibilityFactor> factors_of(const ResultRecord& result) {
              "no solver was checked by itself: the objects have the residuals of their Booleans"),
       factor(calculation, "use error", reader_evidence(result), "no reader has signed the current plan"),
       factor(model, "model form", none,
-             "bone is what lies in a window of samples: this run did not test that"),
+             "bone is assumed to be a window of samples: this run did not test that"),
       factor(model, "model inputs", input_evidence(result),
              has_trials(result) ? "also: the sizes of the errors of landmarks, saw, segmentation and seating "
                                   "were typed, not measured"

@@ -114,7 +114,7 @@ std::vector<std::string> patient_lines(const Evaluation& evaluation) {
 void leave_out_patients(Result& result) {
   // Findings that compare identities quote files that the result does not store, so their whole text is
   // replaced.
-  constexpr const char* left_out = "what the files state differs; left out as requested";
+  constexpr const char* left_out = "the files' statements differ; left out as requested";
   std::vector<std::string> values;
   for (ScanRecord& scan : result.evaluation.scans) {
     for (const std::string& value :

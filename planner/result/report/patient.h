@@ -26,8 +26,8 @@ std::vector<std::string> patient_lines(const Evaluation& evaluation);
 /// completely, because it quotes files that the result does not store. File names are unchanged.
 void leave_out_patients(Result& result);
 
-/// A plan's text without its name, the paths of its scans and its signatures; what was removed is added to `changes`.
-/// The names of its steps stay.
+/// A plan's text without its name, the paths of its scans and its signatures; removed attributes are added to
+/// `changes`. The names of its steps stay.
 std::string plan_without_names(const std::string& text, std::vector<std::string>& changes);
 
 /// Like leave_out_patients(), and removes everything else of an evaluated result that may name a person: the

@@ -10,7 +10,7 @@ namespace octotomy::planner {
 /// The line after the end of a PDF whose pages were made without names (leave_out_names()).
 inline constexpr std::string_view anonymous_pdf_mark = "%octotomy: names nobody\n";
 
-/// Throws std::runtime_error, with what to install, if no Chromium is on the PATH.
+/// Throws std::runtime_error, naming the program to install, if no Chromium is on the PATH.
 void need_pdf_printer();
 
 /// Prints a page of this program, which needs no network, as an A4 PDF with Chromium, in a process of its own that a

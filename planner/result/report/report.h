@@ -21,7 +21,7 @@ struct Parts {
   std::vector<double> volumes_mm3;
 };
 
-/// A reader's signature, and what has changed since.
+/// A reader's signature, and the changes since it was made.
 struct SignatureCheck {
   Signature signature;
   std::vector<std::string> changed;

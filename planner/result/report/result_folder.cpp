@@ -253,8 +253,9 @@ void take_back(const fs::path& place, const ResultList& list, bool was_there) {
   if (!was_there) ::rmdir(place.c_str());
 }
 
-/// Step 4: empties a hidden folder and removes it. A file that is neither listed nor in `place` is moved
-/// there. `sure`: the listed files are known to be unchanged.
+/// Step 4: empties a hidden folder and removes it. Moves to `place` each file that is not listed, or has
+/// changed since it was listed, and that `place` does not have already. `sure`: the listed files are known to
+/// be unchanged.
 void discard(const fs::path& hidden, const fs::path& place, bool sure) {
   std::error_code ignored;
   if (!is_there(hidden / list_name)) {

@@ -61,7 +61,7 @@ class ResultFolder {
   void publish();
   /// Whether its place now contains anything but an empty folder.
   bool replaces() const;
-  /// Publishes a first part of the result, which states what is missing. Does nothing and returns null if
+  /// Publishes a first part of the result, which lists the missing parts. Does nothing and returns null if
   /// replaces(), because an earlier complete result is worth more. The returned object removes the files
   /// again, unless a later result has replaced them.
   std::unique_ptr<voxel::Undo> publish_early();

@@ -145,7 +145,7 @@ TEST_F(Witnessed, AnObjectThatNoVoxelHoldsIsNoPass) {
   const Certificate lost = certified(voxel::Octree::empty(universe_), between);
   EXPECT_NE(lost.verdict, Verdict::Pass);
   EXPECT_TRUE(std::any_of(lost.reasons.begin(), lost.reasons.end(), [](const std::string& reason) {
-    return reason.find("No voxel holds the object, of which the mesh has 0.216 mm3") == 0;
+    return reason.find("The object has no voxel, but its mesh encloses 0.216 mm3") == 0;
   })) << lost.reasons.back();
 }
 

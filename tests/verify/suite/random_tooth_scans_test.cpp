@@ -184,9 +184,9 @@ TEST(ToothScan, ScansThatDoNotFitAreRefusedInASentenceThatSaysWhy) {
   EXPECT_EQ(refusal(upper.scan, mouth, right), "");
   // The other jaw, with its points in the order of the upper one, and turned about.
   brep::ToothPoints other{upper.points_mm, lower.scan_points_mm};
-  expect_words(refusal(lower.scan, mouth, other), "a scan of the other jaw");
+  expect_words(refusal(lower.scan, mouth, other), "the scan shows the other jaw");
   std::reverse(other.scan_mm.begin(), other.scan_mm.end());
-  expect_words(refusal(lower.scan, upper_jaw, other), "a scan of the other jaw");
+  expect_words(refusal(lower.scan, upper_jaw, other), "the scan shows the other jaw");
   const glm::dvec3 mirror(-1, 1, 1);
   expect_words(refusal(scaled(upper.scan, mirror), mouth, {right.fixed_mm, scaled(right.scan_mm, mirror)}),
                "fits only mirrored");

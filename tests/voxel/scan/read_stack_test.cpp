@@ -93,7 +93,7 @@ TEST(ReadImageStack, TwoStacksInOneFolderAreNotOneOfTwiceTheHeight) {
   }
   const std::string reason = reason_of(folder.path(), spaced());
   EXPECT_NE(reason.find("ct_#.png (3 files) and mask_#.png (3 files)"), std::string::npos) << reason;
-  EXPECT_NE(reason.find("a folder of its own"), std::string::npos) << reason;
+  EXPECT_NE(reason.find("put each stack into its own folder"), std::string::npos) << reason;
   const Scene both = read_scene(folder / "*.png", spaced());
   EXPECT_EQ(both.lattice.dims.z, 6);
   EXPECT_EQ(verdict(both, "stacks"), Verdict::Fail);

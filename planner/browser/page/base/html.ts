@@ -28,7 +28,7 @@ export function el<Tag extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/// Appends children, texts and lists of them; leaves out what is null or false.
+/// Appends children, texts and lists of them; leaves out null and false.
 export function put(element: Element, children: Child[]): void {
   for (const child of children) {
     if (child === null || child === undefined || child === false) continue;

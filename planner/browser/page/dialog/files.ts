@@ -203,7 +203,7 @@ const sent_at_once = 4;
 export async function send(given: Given[]): Promise<void> {
   const files = given.filter(({path}) => !/(^|\/)(\.|DICOMDIR$|Thumbs\.db$)/i.test(path));
   const bytes = files.reduce((sum, {file}) => sum + file.size, 0);
-  if (!files.length) return notify("There is no file in what was dropped.", "warning");
+  if (!files.length) return notify("The dropped data hold no file.", "warning");
   if (files.length > most_files)
     return notify(
         `These are ${files.length} files; at most ${

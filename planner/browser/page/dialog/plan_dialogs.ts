@@ -105,7 +105,7 @@ export async function write_report(): Promise<void> {
   done(job);
   if (!answer) return;
   if (answer.left_out.length)
-    notify(`The report lacks what failed: ${answer.left_out.join(", ")}. Its findings say why.`, "warning");
+    notify(`The report lacks the parts that failed: ${answer.left_out.join(", ")}. Its findings state the reasons.`, "warning");
   void evaluate(true);  // the report has certified everything, so the badges are updated
   // The report's script runs in an origin of its own and cannot access this page.
   const frame = el("iframe", {src: file_url(answer.file), title: "Report", sandbox: "allow-scripts"});

@@ -61,5 +61,5 @@ export function mesh_audit(step: Step): Child {
     });
   }
   const audit = audits.get(key);
-  return audit ? [el("h4", {}, "What the file says"), audit_rows(audit)] : null;
+  return audit ? [el("h4", {}, "The file's statements"), audit_rows(audit)] : null;
 }

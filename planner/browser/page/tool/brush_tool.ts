@@ -136,7 +136,7 @@ function go_on(pane: Pane, at: Vec2): void {
   const point = hundredths(pane.point_at(at));
   const by = sub(point, last);
   if (length(by) < Math.max(0.05, radius_mm / 10)) return;
-  // At a step in depth the stroke is interrupted, so that it does not cut through what lies between.
+  // At a step in depth the stroke is interrupted, so that it does not cut through the parts between.
   if (!pane.is_slice && Math.abs(dot(by, draft.normal)) > 2 * radius_mm)
     draft.parts.push([point]);
   else

@@ -65,7 +65,7 @@ function is_in_scan(p: Vec3): boolean {
 }
 
 /// The position of a seed: the point of a slice. In a view it lies a voxel below the surface, because samples
-/// at the surface are mixed with what lies in front.
+/// at the surface are mixed with the tissue in front.
 function seed_at(pane: Pane, at: Vec2): Vec3|null {
   const place = place_at(pane, at);
   if (!place || pane.is_slice) return place;

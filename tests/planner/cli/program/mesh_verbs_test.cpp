@@ -108,7 +108,7 @@ TEST_F(MeshVerbs, ContoursInAnotherUnitAreRefusedAtOnce) {
   std::ofstream(folder_ / "far.json") << R"({"view": "inferior", "slices": [{"position_mm": 0, )" << square
                                       << R"(, {"position_mm": 100000, )" << square << "]}";
   const CommandAnswer far = run("mesh " + at("far.json") + " -o " + at("far.off"));
-  expect_refused(far, "far.json: the slices join over 100000 mm");
+  expect_refused(far, "far.json: the joined slices span 100000 mm");
   EXPECT_NE(far.errors.find("state positions in mm"), std::string::npos) << far.errors;
 }
 

@@ -133,7 +133,7 @@ TEST_F(VerbOutputs, OneFileForTwoOutputsIsRefused) {
 TEST_F(VerbOutputs, AnExtensionOfSomethingElseIsRefused) {
   ASSERT_EQ(run("octree ball.nrrd --window 0: -o ball.octree").status, 0);
   write("v.nrrd", "mine");
-  const std::string not_json = "written as .json", not_form = "written as .";
+  const std::string not_json = "written as .json", not_form = "use .txt";
   expect_untouched(follow + "-o x.json --codes v.nrrd", not_json);
   expect_untouched("segment ball.nrrd --window 0: --contours v.nrrd", not_json);
   for (const char* form : {"linear", "bits"})

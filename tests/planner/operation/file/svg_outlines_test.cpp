@@ -257,7 +257,7 @@ TEST_F(SvgOutlinesFile, RefusalsSayLineAndPlace) {
   EXPECT_NE(refusal("<switch>" + shape + shape + "</switch>").find("keep the one that is meant"),
             std::string::npos);
   EXPECT_EQ(refusal("<switch><foreignObject/><g>" + shape + shape + "</g></switch>"), "");
-  EXPECT_NE(refusal("<g>").find("</svg> closes what is not open"), std::string::npos);
+  EXPECT_NE(refusal("<g>").find("</svg> does not match the element that is open there"), std::string::npos);
   EXPECT_NE(refusal("<rect width=5/>").find("is not NAME=\"VALUE\""), std::string::npos);
   EXPECT_NE(refusal("<!-- ").find("is not closed by -->"), std::string::npos);
   EXPECT_NE(refusal("").find("has no outline"), std::string::npos);

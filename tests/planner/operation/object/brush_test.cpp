@@ -56,8 +56,8 @@ TEST(BrushStep, WhatIsPaintedIsStatedAsNotMeasured) {
   ASSERT_EQ(painted.findings.size(), 1u);
   EXPECT_NE(painted.findings.front().find("drawn by hand and not measured by a scan"), std::string::npos)
       << painted.findings.front();
-  EXPECT_NE(painted.voxel.lineage.find("no scan measured what is painted"), std::string::npos);
-  EXPECT_NE(painted.mesh.lineage.find("no scan measured what is painted"), std::string::npos);
+  EXPECT_NE(painted.voxel.lineage.find("no scan measured the painted material"), std::string::npos);
+  EXPECT_NE(painted.mesh.lineage.find("no scan measured the painted material"), std::string::npos);
 }
 
 /// The slab's faces are parallel to the voxels' and do not lie between them.

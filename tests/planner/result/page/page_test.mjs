@@ -208,14 +208,14 @@ test('the credibility page claims nothing and lists what supports each number', 
 
 const certificate = result.certificates.find((one) => one.object === 'cap');
 const verification = (certificates, counts = {}, more = {}) => drawn(script, {
-  kind: 'verification', octotomy: '1', subject: 'ball <b>.plan.json', not_covered: ['cut: a mask is certified with what it cuts'], worst: null,
+  kind: 'verification', octotomy: '1', subject: 'ball <b>.plan.json', not_covered: ['cut: a mask is certified together with the objects that it cuts'], worst: null,
   counts: { PASS: certificates.length, WARN: 0, FAIL: 0, not_resolved: 0, pass_not_resolved: 0, without_certificate: 0, ...counts },
   answer: { certificates, timings_ms: { certify: 12 }, ...more }
 });
 
 test('a verification shows every quantity and what is not covered', () => {
   const text = verification([certificate]);
-  contains(text, 'ball &lt;b&gt;.plan.json', 'The two kernels agree', 'a mask is certified with what it cuts', 'certify 12 ms');
+  contains(text, 'ball &lt;b&gt;.plan.json', 'The two kernels agree', 'a mask is certified together with the objects that it cuts', 'certify 12 ms');
   for (const quantity of ['volume', 'area', 'centroid', 'inertia', 'symmetric difference', 'hausdorff95'])
     contains(text, `<td>${quantity}</td>`);
   assert.ok(!text.includes('>FAIL<') && !text.includes('without a certificate'));

@@ -37,7 +37,7 @@ class VerificationPage : public testing::Test {
                            {*object.certificate, object.voxel.octree, object.mesh.within});
       }
     verification_.answer["counts"] = to_json(verification_.counts);
-    verification_.not_covered = {"cut: a mask is certified with what it cuts"};
+    verification_.not_covered = {"cut: a mask is certified together with the objects that it cuts"};
   }
 
   tests::ScratchFolder folder_;
