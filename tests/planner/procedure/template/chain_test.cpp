@@ -196,8 +196,9 @@ TEST_F(Chain, WhatCannotBeChainedIsRefusedWithAReason) {
   EXPECT_NE(refusal(first, "genioplasty", {{"bone_low", 200}}).find("bone_low changes nothing"),
             std::string::npos);
   EXPECT_NE(refusal(first, "genioplasty", {{"forward", 2}}).find("forward_mm"), std::string::npos);
-  EXPECT_NE(refusal(first, "genioplasty", {}, {{{"menton", {0, -80, -101}}}}).find("from the plan's landmark"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal(first, "genioplasty", {}, {{{"menton", {0, -80, -101}}}}).find("from the plan's landmark"),
+      std::string::npos);
   EXPECT_NE(refusal(first, "le_fort_i", {}).find("lacks landmarks"), std::string::npos);
   const Plan bone = parse_plan(R"({"octotomy_plan": 1, "name": "b", "scans": {"ct": {"path": "head.nrrd"}},
       "universe": {"voxel_mm": 2}, "steps": [{"id": "bone", "do": "window", "scan": "ct", "low": 300}]})",
