@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // 1 A weight at every point: 1 where the scan counts, 0 where the solid does. It grows along the width of the
-// border with the least of four lengths: the distance of the scan's nearest point from the scan's border, the
-// height of the point above the depth, its distance within the radius of the chosen crowns, and the remaining
-// reach. 2 In a box about the crowns: the surface on which the mixed distances, (1 - w) solid + w scan, are
-// 0. It is made from cells of one size, of six tetrahedra each; its corners are searched on the cells' edges.
-// It ends at the box's walls. Blocks of cells far from it are skipped and keep one value. 3 The solid less a
-// slightly smaller box, united with that. Between both boxes the new surface lies a little within the solid,
-// so that both cross each other nowhere but at the box.
+//   border with the least of four lengths: the distance of the scan's nearest point from the scan's border,
+//   the height of the point above the depth, its distance within the radius of the chosen crowns, and the
+//   remaining reach.
+// 2 In a box about the crowns: the surface on which the mixed distances, (1 - w) solid + w scan, are 0. It is made
+//   from cells of one size, of six tetrahedra each; its corners are searched on the cells' edges. It ends at the box's
+//   walls. Blocks of cells far from it are skipped and keep one value.
+// 3 The solid less a slightly smaller box, united with that. Between both boxes the new surface lies a little
+//   within the solid, so that both cross each other nowhere but at the box.
 //
 // The side of a point of the scan follows from the scan's winding number. Above the plane through its border,
 // this number is at least 1/2 inside a scan of crowns and at most 0 outside. Between these values, which

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 Sweep the part away from its place to before the object's near end. 2 Depth changes by at most the
-// distance between points: a triangle's depth is at most the depth of its middle plus the distance from there
-// to its farthest corner. The depth is also at most the distance to any one triangle of the space's surface.
-// Over a piece that distance is largest at a corner; this bound is tight where both surfaces are flat. Level
-// by level, keep the triangles that can still be deeper than the deepest place found, and cut each into four.
+// 1 Sweep the part away from its place to before the object's near end.
+// 2 Depth changes by at most the distance between points: a triangle's depth is at most the depth of its
+//   middle plus the distance from there to its farthest corner. The depth is also at most the distance to any
+//   one triangle of the space's surface. Over a piece that distance is largest at a corner; this bound is
+//   tight where both surfaces are flat. Level by level, keep the triangles that can still be deeper than the
+//   deepest place found, and cut each into four.
 // 3 Follow the direction from the deepest place: the stretch inside the part shows when the part contains
 // that place.
 #include "brep/shape/seating.h"

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // 1 Turn the surface so that the direction is the depth, and keep the triangles that face it and may be seen.
-// 2 Draw the edges of those triangles into a constrained triangulation of the view: none crosses its faces. 3
-// Each face of the view has the triangle that the line of sight through its middle meets first. 4 At each
-// point of the view, the faces around it lie at one depth or at several. Each depth is one point of the
-// shadow: the object's own point if the object has a point there. 5 Each covered face makes one triangle at
-// its depth and one in the end plane; each edge between faces of different depths makes a wall.
+// 2 Draw the edges of those triangles into a constrained triangulation of the view: none crosses its faces.
+// 3 Each face of the view has the triangle that the line of sight through its middle meets first.
+// 4 At each point of the view, the faces around it lie at one depth or at several. Each depth is one point of
+//   the shadow: the object's own point if the object has a point there.
+// 5 Each covered face makes one triangle at its depth and one in the end plane; each edge between faces of
+//   different depths makes a wall.
 //
 // Step 5 closes the surface for any triangle that step 3 finds: each wall shares its upper and lower edges
 // with the two faces beside it, and walls meet along all the depths of a point. Rounding can therefore move
