@@ -12,14 +12,15 @@
 #include "voxel/space/rounded.h"
 
 // 1 Mesh_3 refines a Delaunay triangulation until facets and cells have the requested sizes, and exudes
-// slivers. Nodes beside sharp edges of the given surface move onto these (sharp_edges.h). 2 The nodes of its
-// surface lie on the given one, so its facets are chords: they lose volume on a convex surface and gain some
-// on a hollow one. Every node of the surface, except those of flat faces and sharp edges, moves along its
-// normal by the same share of the distance allowed there between a facet's middle and the given surface. The
-// share is at most 1: a larger one would mean that something else was lost. 3 Nodes move to mend flat
-// elements (improve_tetrahedra.h). 4 The answer counts only if the volumes are positive, their sum is the
-// surface's, each point of the given surface is near the new surface, and little of the volume lies outside.
-// Without these checks the loss of a thin spike or wall that no cell met would go unnoticed.
+//   slivers. Nodes beside sharp edges of the given surface move onto these (sharp_edges.h).
+// 2 The nodes of its surface lie on the given one, so its facets are chords: they lose volume on a convex
+//   surface and gain some on a hollow one. Every node of the surface, except those of flat faces and sharp
+//   edges, moves along its normal by the same share of the distance allowed there between a facet's middle
+//   and the given surface. The share is at most 1: a larger one would mean that something else was lost.
+// 3 Nodes move to mend flat elements (improve_tetrahedra.h).
+// 4 The answer counts only if the volumes are positive, their sum is the surface's, each point of the given
+//   surface is near the new surface, and little of the volume lies outside. Without these checks the loss of
+//   a thin spike or wall that no cell met would go unnoticed.
 
 namespace octotomy::convert {
 namespace {

@@ -13,17 +13,18 @@
 #include "convert/voxel/winding_threshold.h"
 #include "voxel/space/shared_progress.h"
 
-// The winding number of an open surface S is that of S closed by a cap, less that of the cap. The passes: 1
-// The rim of S: its edges with more triangles one way than the other, each as often as the excess. For any S,
-// as many rim edges enter a vertex as leave it, so that the cone C from any apex over them closes S. 2 Along
-// each row of voxels, crossings of S + C by signs give the whole number n about each centre. 3 A voxel is
-// inside where n - w > 1/2, w the winding number of C. Away from C, w changes no faster than the law of Biot
-// and Savart allows for a current along the rim: |grad w| <= integral along it of 1 / (4 pi r^2). So if a
-// cube of voxels contains no triangle of C, and w(centre) differs from every odd multiple of 1/2 by more than
-// w can change within the cube, one whole number serves as the threshold of n for the whole cube. Other cubes
-// are divided, from the universe down to single voxels. 4 Between crossings of its 256 rows, a row of blocks
-// of 16^3 voxels consists of stretches of one n; other blocks are made voxel by voxel. The octree is put
-// together from above: a cube of one n and one threshold is Full or Empty.
+// The winding number of an open surface S is that of S closed by a cap, less that of the cap. The passes:
+// 1 The rim of S: its edges with more triangles one way than the other, each as often as the excess. For any
+//   S, as many rim edges enter a vertex as leave it, so that the cone C from any apex over them closes S.
+// 2 Along each row of voxels, crossings of S + C by signs give the whole number n about each centre.
+// 3 A voxel is inside where n - w > 1/2, w the winding number of C. Away from C, w changes no faster than the
+//   law of Biot and Savart allows for a current along the rim: |grad w| <= integral along it of 1 / (4 pi
+//   r^2). So if a cube of voxels contains no triangle of C, and w(centre) differs from every odd multiple of
+//   1/2 by more than w can change within the cube, one whole number serves as the threshold of n for the
+//   whole cube. Other cubes are divided, from the universe down to single voxels.
+// 4 Between crossings of its 256 rows, a row of blocks of 16^3 voxels consists of stretches of one n; other
+//   blocks are made voxel by voxel. The octree is put together from above: a cube of one n and one threshold
+//   is Full or Empty.
 //
 // Departure from the source, which sums over all triangles by a tree: here only rims cost, a closed surface
 // has none, and the decision for a cube is proven for each of its voxels.
