@@ -2,12 +2,14 @@
 // A splint between two jaws: a slab along the arch, without the space that the teeth take up.
 //
 // 1 The arch's plane and a band about the curve through its points; the slab reaches `depth_mm` over the tips
-// of both rows of teeth. Only the jaws near the band are used. 2 The insertion directions, typed or found: of
-// a grid of directions, the one with the least undercut. 3 From the slab are taken the teeth grown by the
-// offset, and the shadow of the teeth grown by the offset less the tolerated undercut. That shadow lies
-// within the grown teeth where there is no undercut, so there the grown teeth's surface is the fitting
-// surface. 4 Walls thinner than the least wall are cut off: only the part that is covered by balls of that
-// diameter within the splint stays. 5 The largest piece, with points that files for printers can hold.
+//   of both rows of teeth. Only the jaws near the band are used.
+// 2 The insertion directions, typed or found: of a grid of directions, the one with the least undercut.
+// 3 From the slab are taken the teeth grown by the offset, and the shadow of the teeth grown by the offset
+//   less the tolerated undercut. That shadow lies within the grown teeth where there is no undercut, so there
+//   the grown teeth's surface is the fitting surface.
+// 4 Walls thinner than the least wall are cut off: only the part that is covered by balls of that diameter
+//   within the splint stays.
+// 5 The largest piece, with points that files for printers can hold.
 //
 // The mesh kernel does 3 and 4 without Booleans, on distances to the surfaces (brep/shape/level_body.h). The
 // voxel kernel combines windows of distances. 1 and 2 are settled once, by mesh and voxels, and are shared
