@@ -1,7 +1,8 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later If a whole shell of one operand coincides with a shell of the
-// other, CGAL assumes that both have the same orientation: it checks the orientation of each whole operand
-// only. A plug in the cavity that it fills then counts as the common part of both. These functions find
-// coincident shells of opposite orientation and correct the results.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// If a whole shell of one operand coincides with a shell of the other, CGAL assumes that both have the same
+// orientation: it checks the orientation of each whole operand only. A plug in the cavity that it fills then
+// counts as the common part of both. These functions find coincident shells of opposite orientation and
+// correct the results.
 #pragma once
 
 #include <algorithm>

@@ -1,15 +1,16 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later A strip is a path in a graph: node (i, j) is the span from the
-// lower ring's point i to the upper ring's point j, and a step to (i + 1, j) or (i, j + 1) is a triangle. A
-// path's sum is first the blame of its spans, which is 0 unless spans are to be clear of contours, then its
-// cost. Passes: 1 choose the start; 2 walk greedily from there, or 3 find the path with the least sum among
-// those near the greedy one. No better path has a larger sum at any node, so 4 find the path with the least
-// sum over nodes whose sums do not exceed that limit, after trials with smaller limits of the blame. If costs
-// depend on single triangles, the strip may start elsewhere: every strip has a span at the lower ring's first
-// point. Therefore 5 find the path that starts half way between two known ones, which it need not cross, and
-// so on; 6 write the triangles of the best. Over 600 lines, because all passes share the rings' scores, costs
-// and bounds. Departure from Fuchs, Kedem and Uselton: nodes with a larger sum than a known path are left
-// out. This changes no result, because no step has a negative cost; of greatest_volume only the blame is
-// limited.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A strip is a path in a graph: node (i, j) is the span from the lower ring's point i to the upper ring's
+// point j, and a step to (i + 1, j) or (i, j + 1) is a triangle. A path's sum is first the blame of its
+// spans, which is 0 unless spans are to be clear of contours, then its cost. Passes: 1 choose the start; 2
+// walk greedily from there, or 3 find the path with the least sum among those near the greedy one. No better
+// path has a larger sum at any node, so 4 find the path with the least sum over nodes whose sums do not
+// exceed that limit, after trials with smaller limits of the blame. If costs depend on single triangles, the
+// strip may start elsewhere: every strip has a span at the lower ring's first point. Therefore 5 find the
+// path that starts half way between two known ones, which it need not cross, and so on; 6 write the triangles
+// of the best.
+// Over 600 lines, because all passes share the rings' scores, costs and bounds.
+// Departure from Fuchs, Kedem and Uselton: nodes with a larger sum than a known path are left out. This
+// changes no result, because no step has a negative cost; of greatest_volume only the blame is limited.
 #include "brep/contour/tile.h"
 
 #include <algorithm>

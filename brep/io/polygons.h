@@ -42,8 +42,9 @@ class PolygonSplitter {
   /// 3 Otherwise cuts ears, the most nearly equilateral first, in the projection along the polygon's main
   ///   axis (Meisters, Polygons have ears, 1975), by exact predicates: concave polygons, and those with a
   ///   hole that a double side joins to the outline.
-  /// 4 A polygon that crosses itself or has no area becomes the fan of 2 and is counted. Throws Error (Input)
-  ///   if there are too few corners or a corner is not a point. Cost: usually n log n, n^2 at worst.
+  /// 4 A polygon that crosses itself or has no area becomes the fan of 2 and is counted.
+  /// Throws Error (Input) if there are too few corners or a corner is not a point. Cost: usually n log n, n^2
+  /// at worst.
   void add(std::span<const long long> corners);
   /// Appends a strip of triangles. Triangles that repeat a point only change the strip's direction and are
   /// left out.

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later From inside, a ball can touch a reentrant edge along every
-// direction between the normals of its two faces. The bisector is the direction of a neck's waist for any two
-// sides.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// From inside, a ball can touch a reentrant edge along every direction between the normals of its two faces.
+// The bisector is the direction of a neck's waist for any two sides.
 #include "brep/measure/necks.h"
 
 #include <algorithm>

@@ -1,9 +1,10 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later 1 separate the triangles around hubs, points where many meet,
-// from the others; 2 find the pairs that may meet: triangles around one hub by the arcs that they cover as
-// seen from the hub, all others by their boxes; 3 test each pair by exact predicates, after filters in
-// doubles that exclude most; 4 where sheets touch along an edge, test whether they also cross there. Points
-// with equal coordinates count as one corner. Invariant: two triangles with a common corner meet elsewhere
-// only in a direction that both cover as seen from that corner.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// 1 separate the triangles around hubs, points where many meet, from the others; 2 find the pairs that may
+// meet: triangles around one hub by the arcs that they cover as seen from the hub, all others by their boxes;
+// 3 test each pair by exact predicates, after filters in doubles that exclude most; 4 where sheets touch
+// along an edge, test whether they also cross there. Points with equal coordinates count as one corner.
+// Invariant: two triangles with a common corner meet elsewhere only in a direction that both cover as seen
+// from that corner.
 #include "brep/mesh/self_intersections.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

@@ -4,9 +4,9 @@
 //   border with the least of four lengths: the distance of the scan's nearest point from the scan's border,
 //   the height of the point above the depth, its distance within the radius of the chosen crowns, and the
 //   remaining reach.
-// 2 In a box about the crowns: the surface on which the mixed distances, (1 - w) solid + w scan, are 0. It is
-//   made from cells of one size, of six tetrahedra each; its corners are searched on the cells' edges. It
-//   ends at the box's walls. Blocks of cells far from it are skipped and keep one value.
+// 2 In a box about the crowns: the surface on which the mixed distances, (1 - w) solid + w scan, are 0. It is made
+//   from cells of one size, of six tetrahedra each; its corners are searched on the cells' edges. It ends at the box's
+//   walls. Blocks of cells far from it are skipped and keep one value.
 // 3 The solid less a slightly smaller box, united with that. Between both boxes the new surface lies a little
 //   within the solid, so that both cross each other nowhere but at the box.
 //

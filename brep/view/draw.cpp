@@ -6,10 +6,10 @@
 // buffer in place of sorting back to front, which fails for triangles that cross each other; and each point's
 // tone is computed once, after the visible triangle is known.
 //
-// 1 project(): triangles become facets of pixel positions; parts behind the observer are cut off.
-// 2 Facets and pieces of lines are listed by bands of rows.
-// 3 Each band finds the nearest item at points on a grid, and computes the points' tones: once at the pixels'
-//   centres for depth and item, once at four points a pixel for colours.
+//   1 project(): triangles become facets of pixel positions; parts behind the observer are cut off.
+//   2 Facets and pieces of lines are listed by bands of rows.
+//   3 Each band finds the nearest item at points on a grid, and computes the points' tones: once at the pixels'
+//     centres for depth and item, once at four points a pixel for colours.
 //
 // Invariant: a band reads only its lists, in the scene's order, so neither the bands' order nor the threads' number
 // changes a bit.

@@ -73,18 +73,19 @@ struct DeckOptions {
   voxel::Progress progress{};  ///< of the bytes written, approximately
 };
 
-/// Writes a deck in the format of its extension, beside the destination and then renamed into place: .inp
-/// Abaqus and CalculiX: C3D4 or C3D10 elements, sets of elements by region and material, sets of nodes,
-/// surfaces, materials with their sections, and a static step with the prescribed displacements. .feb  FEBio
-/// 4: the same, prescribed displacements as maps over node sets. .vtu  VTK unstructured grid of tetrahedra,
-/// appended raw data; points in double precision, the nodes of the surface marked by the point array
-/// `surface`, sets by arrays of their own; regions, materials and fields by elements, surfaces by bits of
-/// elements, bit i for the face opposite corner i. .msh  Gmsh 4.1 or 2.2, text: a physical volume a region, a
-/// physical surface a surface. .node TetGen's .node, .ele and .face, the last with the whole surface; linear
-/// elements only. Throws as need_own_deck_files(). Throws std::invalid_argument for another extension, no
-/// tetrahedra, an element that names no node, sets and lists that do not match the elements, or options that
-/// a solver would refuse; voxel::Error (Input or Resource) with path and reason if a file cannot be written;
-/// voxel::Stopped. After a failure no file is left.
+/// Writes a deck in the format of its extension, beside the destination and then renamed into place:
+/// .inp  Abaqus and CalculiX: C3D4 or C3D10 elements, sets of elements by region and material, sets of
+///       nodes, surfaces, materials with their sections, and a static step with the prescribed displacements.
+/// .feb  FEBio 4: the same, prescribed displacements as maps over node sets.
+/// .vtu  VTK unstructured grid of tetrahedra, appended raw data; points in double precision, the nodes of the
+///       surface marked by the point array `surface`, sets by arrays of their own; regions, materials and
+///       fields by elements, surfaces by bits of elements, bit i for the face opposite corner i.
+/// .msh  Gmsh 4.1 or 2.2, text: a physical volume a region, a physical surface a surface.
+/// .node TetGen's .node, .ele and .face, the last with the whole surface; linear elements only.
+/// Throws as need_own_deck_files(). Throws std::invalid_argument for another extension, no tetrahedra, an
+/// element that names no node, sets and lists that do not match the elements, or options that a solver would
+/// refuse; voxel::Error (Input or Resource) with path and reason if a file cannot be written; voxel::Stopped.
+/// After a failure no file is left.
 void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
                 const DeckOptions& options = {});
 

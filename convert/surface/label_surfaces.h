@@ -19,13 +19,14 @@ struct LabelSurfaceOptions {
 
 /// The surfaces of all labels of a label map at once, in LPS millimetres. A part without a name is in `names`
 /// with an empty one. Labels that overlap (Scene::overlaps) each get their whole surface; then the guarantees
-/// below hold within each of voxel::label_layers(). The surfaces partition space: two labels that touch share
-/// the triangles between them, three meet in lines and four in points. So there is no gap and no overlap, and
-/// the parts' volumes add up to the volume that their outer surface encloses. The surface of each label is
-/// closed, manifold, oriented and free of self-intersection for any labels. It passes between neighbouring
-/// samples of different labels, at least a tenth of their distance from each; samples that only touch across
-/// a cell's diagonal are joined along one of its diagonals, apart along the others. A part that reaches the
-/// scan's border is closed half a voxel beyond the outermost samples.
+/// below hold within each of voxel::label_layers().
+/// The surfaces partition space: two labels that touch share the triangles between them, three meet in lines
+/// and four in points. So there is no gap and no overlap, and the parts' volumes add up to the volume that
+/// their outer surface encloses. The surface of each label is closed, manifold, oriented and free of
+/// self-intersection for any labels. It passes between neighbouring samples of different labels, at least a
+/// tenth of their distance from each; samples that only touch across a cell's diagonal are joined along one
+/// of its diagonals, apart along the others. A part that reaches the scan's border is closed half a voxel
+/// beyond the outermost samples.
 ///
 /// Throws std::invalid_argument if the scene fails check(), a sample is no label, or an option is out of
 /// range; std::length_error as voxel::label_layers(); voxel::Error (Input) if a requested label has no

@@ -14,8 +14,8 @@
 
 // 1 Marching cubes over the shares gives the topology, and places to a few hundredths of a voxel.
 // 2 Each voxel's lack is its given share less the surface's own. A point moves outward by the sum of the
-//   lacks of the 27 voxels around it, divided by the surface's area in these voxels.
-// 3 Pass 2 again, as the first move changes normals and areas.
+// lacks of the 27 voxels around it, divided by the surface's area in these voxels. 3 Pass 2 again, as the
+// first move changes normals and areas.
 
 namespace octotomy::convert {
 namespace {

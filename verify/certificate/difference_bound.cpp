@@ -31,13 +31,15 @@
 // Symmetric difference: errors that cancel in the volume add up here. The terms are 0.06 s S on oblique
 // planes between saturated samples (0.02 s S on spheres), 0.33 of the curvature integral without sign, a
 // layer for planes through centres, and three standard deviations of the number of voxels in those layers.
-// Centroid and inertia: the first and second moment of each error. Area: the voxels' Crofton estimate against
-// the same formula on the mesh's triangles, so that flat parts have the same error in both. The terms are 3 %
-// of S for ripple (marching cubes adds up to 2.6 % to the formula's answer), 0.3 h M for displaced edges with
-// M the mean curvature integral, the further loss of voxels at sharp edges, and the strips that displaced
-// planes add beside their rims (boundary_model.cpp derives the last two). Distances: as surface_distances.h
-// defines them. A face of a right answer lies within half a voxel of the surface along the face's axis. Its
-// distance is at most half a voxel's diagonal, and a quarter of an edge on average.
+// Centroid and inertia: the first and second moment of each error.
+// Area: the voxels' Crofton estimate against the same formula on the mesh's triangles, so that flat parts
+// have the same error in both. The terms are 3 % of S for ripple (marching cubes adds up to 2.6 % to the
+// formula's answer), 0.3 h M for displaced edges with M the mean curvature integral, the further loss of
+// voxels at sharp edges, and the strips that displaced planes add beside their rims (boundary_model.cpp
+// derives the last two).
+// Distances: as surface_distances.h defines them. A face of a right answer lies within half a voxel of the
+// surface along the face's axis. Its distance is at most half a voxel's diagonal, and a quarter of an edge on
+// average.
 #include "verify/certificate/difference_bound.h"
 
 #include <algorithm>

@@ -30,14 +30,15 @@
 // may also be a gradient of the object itself, such as a ramp or spongy bone.
 //
 // sources  interpolation: the whole loss at a half level, or the difference from the volume by counting
-// samples if that is larger. Counting does not depend on the interpolation: between coarse slices the surface
-// of a low threshold bulges, and that of thin walls shrinks. digitisation, edges: a share of that loss. blur:
-// the loss by blur, and a share of it. flat: a plane along the lattice lies between samples of shares 1, f
-// and 0, and linear interpolation displaces the whole plane equally, by up to 0.086 s. Noise tilts its
-// triangles, so a part whose mean normal is along the lattice counts with its whole area. sheet: the blur of
-// the other side lowers a sheet's samples (step_share()). window: the surface's shift for ten sample units.
-// The constants were calibrated with solids of all groups in poses of other seeds than those of
-// interval_suite(), so that the intervals contain the truth at the suite's 99th percentile.
+//          samples if that is larger. Counting does not depend on the interpolation: between coarse slices
+//          the surface of a low threshold bulges, and that of thin walls shrinks. digitisation, edges: a
+//          share of that loss. blur: the loss by blur, and a share of it. flat: a plane along the lattice
+//          lies between samples of shares 1, f and 0, and linear interpolation displaces the whole plane
+//          equally, by up to 0.086 s. Noise tilts its triangles, so a part whose mean normal is along the
+//          lattice counts with its whole area. sheet: the blur of the other side lowers a sheet's samples
+//          (step_share()). window: the surface's shift for ten sample units. The constants were calibrated
+//          with solids of all groups in poses of other seeds than those of interval_suite(), so that the
+//          intervals contain the truth at the suite's 99th percentile.
 #include "verify/interval/size_interval.h"
 
 #include <algorithm>

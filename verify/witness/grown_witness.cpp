@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Two floods over the scan's samples: one through the samples that
-// surely belong to the region, one through the samples that may belong to it. A sample that the first one
-// reaches is certainly inside. A sample that the second one does not reach is certainly outside.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Two floods over the scan's samples: one through the samples that surely belong to the region, one through
+// the samples that may belong to it. A sample that the first one reaches is certainly inside. A sample that
+// the second one does not reach is certainly outside.
 #include "verify/witness/grown_witness.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later The convex hull of a convex polyhedron placed at both ends of a
-// segment is the Minkowski sum of the two. Its faces are the polyhedron's faces, each at the end that lies
-// further along the face's normal, and one face for each edge of the silhouette along the segment. A
-// silhouette face's normal and offset are the same positive combination of its edge's two faces' normals and
-// offsets, so no corner has to be computed.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The convex hull of a convex polyhedron placed at both ends of a segment is the Minkowski sum of the two.
+// Its faces are the polyhedron's faces, each at the end that lies further along the face's normal, and one
+// face for each edge of the silhouette along the segment. A silhouette face's normal and offset are the same
+// positive combination of its edge's two faces' normals and offsets, so no corner has to be computed.
 #include "voxel/solid/brush.h"
 
 #include <algorithm>

@@ -26,21 +26,25 @@
 // raw bytes are at most 2^20. Longer data are cut into sections of the same name, all but the last of that
 // length. Sections follow in this order:
 //
-// UNIV  u32 depth, i32 background (0 but for grey), 16 f64 of lps_from_voxel, column by column NAME  UTF-8,
-// may be missing META  UTF-8, JSON by convention, may be missing TREE  binary: the packed treecode
-// (packed_treecode.h) of the voxels; partial: of the voxels wholly inside TOUC  partial: the packed treecode
-// of the voxels touched FRAC  partial: u16 fractions of the voxels touched but not wholly inside, in tree
-// order GRID  grey: a bit per block of 16 x 16 x 16 voxels, x fastest, low bits first: set if the block has a
-// brick; blocks without one are background BRIK  grey: the bricks of up to 64 blocks in the grid's order,
-// first the low bytes of all their numbers, then the high bytes. There is a number for each sample, in tree
-// order (leaves, and samples within each, x + 4y + 16z): the sample's difference, modulo 2^16, from the
-// preceding sample in its row of the leaf. The first sample of a row counts from the row before, of a layer
-// from the layer before, of a leaf from the first sample of the leaf before, and of a brick from the
-// background. Differences 0, -1, 1, -2, ... are written 0, 1, 2, 3, ... SCAN  grey, from version 2 on: the
-// packed treecode of the voxels whose samples are the scan's. Without this section, those voxels are the
-// smallest box that contains all samples other than the background. A file that needs no SCAN is of version 1
-// STEP  grey, version 3 only: a double, the size of one step of the samples in the scan's unit: a power of
-// two other than 1
+//   UNIV  u32 depth, i32 background (0 but for grey), 16 f64 of lps_from_voxel, column by column
+//   NAME  UTF-8, may be missing
+//   META  UTF-8, JSON by convention, may be missing
+//   TREE  binary: the packed treecode (packed_treecode.h) of the voxels; partial: of the voxels wholly inside
+//   TOUC  partial: the packed treecode of the voxels touched
+//   FRAC  partial: u16 fractions of the voxels touched but not wholly inside, in tree order
+//   GRID  grey: a bit per block of 16 x 16 x 16 voxels, x fastest, low bits first: set if the block has a
+//         brick; blocks without one are background
+//   BRIK  grey: the bricks of up to 64 blocks in the grid's order, first the low bytes of all their numbers,
+//         then the high bytes. There is a number for each sample, in tree order (leaves, and samples within
+//         each, x + 4y + 16z): the sample's difference, modulo 2^16, from the preceding sample in its row of
+//         the leaf. The first sample of a row counts from the row before, of a layer from the layer before,
+//         of a leaf from the first sample of the leaf before, and of a brick from the background.
+//         Differences 0, -1, 1, -2, ... are written 0, 1, 2, 3, ...
+//   SCAN  grey, from version 2 on: the packed treecode of the voxels whose samples are the scan's. Without
+//         this section, those voxels are the smallest box that contains all samples other than the
+//         background. A file that needs no SCAN is of version 1
+//   STEP  grey, version 3 only: a double, the size of one step of the samples in the scan's unit: a power of
+//         two other than 1
 
 namespace octotomy::voxel {
 

@@ -46,12 +46,13 @@ struct Refinement {
 voxel::SliceMask refined(const voxel::SliceMask& mask, const Refinement& refinement,
                          std::vector<std::string>& findings);
 
-/// The edits of a file, made in order: { "edits": [ { "slice": 0, "contour": 2, "do": "move", "point": 5,
-/// "to_mm": [u, v] }, ... ] } with "do" one of move (point, to_mm), insert (piece, at_mm), delete (point),
-/// split (first, second), join (piece, with, its_piece), remove, add (points_mm, without contour). Numbers
-/// count from 0 as the edits before have left them; split puts the second part behind the last contour, join
-/// and remove close the gap. Throws std::runtime_error naming the file, the edit and the fault; a contour
-/// that crosses itself is a fault, too.
+/// The edits of a file, made in order:
+///   { "edits": [ { "slice": 0, "contour": 2, "do": "move", "point": 5, "to_mm": [u, v] }, ... ] }
+/// with "do" one of move (point, to_mm), insert (piece, at_mm), delete (point), split (first, second), join
+/// (piece, with, its_piece), remove, add (points_mm, without contour). Numbers count from 0 as the edits
+/// before have left them; split puts the second part behind the last contour, join and remove close the gap.
+/// Throws std::runtime_error naming the file, the edit and the fault; a contour that crosses itself is a
+/// fault, too.
 voxel::SliceMask edited(const voxel::SliceMask& mask, const std::filesystem::path& edits);
 
 /// The mask in the format that read_slices() in region_file.h reads.

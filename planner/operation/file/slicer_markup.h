@@ -28,12 +28,13 @@ struct SlicerMarkup {
   std::vector<std::string> findings;  ///< statements that the file lacks, each begins with "WARN, "
 };
 
-/// The markups of a file that have this type. Others are left out, with a finding in `findings`. Frame and
-/// unit are the file's. If the file states none, LPS and mm are assumed, with a WARN. A plane's axes are
-/// those of its "orientation" about its "center"; else of "baseToNode" about its control point; else of its
-/// three points, the origin at the first and `right` towards the second, with a WARN. Throws
+/// The markups of a file that have this type. Others are left out, with a finding in `findings`.
+/// Frame and unit are the file's. If the file states none, LPS and mm are assumed, with a WARN. A plane's
+/// axes are those of its "orientation" about its "center"; else of "baseToNode" about its control point; else
+/// of its three points, the origin at the first and `right` towards the second, with a WARN. Throws
 /// std::runtime_error with the place in the file: no JSON, no markup of the type, a point that is none, a
-/// plane without axes. Source: 3D Slicer, schema of markups 1.0.3, vtkMRMLMarkupsPlaneJsonStorageNode.
+/// plane without axes.
+/// Source: 3D Slicer, schema of markups 1.0.3, vtkMRMLMarkupsPlaneJsonStorageNode.
 std::vector<SlicerMarkup> read_slicer_markups(const std::filesystem::path& path, const std::string& type,
                                               std::vector<std::string>& findings);
 

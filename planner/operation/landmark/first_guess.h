@@ -42,8 +42,8 @@ struct SkullGuess {
 /// A first guess of a skull's landmarks from its symmetry and its extremal points, by the rules of
 /// skull_profile.h and face_rules.h, on the patient's bone only (head_part.h). `surface` is the surface of
 /// the same bone. The patient's up, left and front must agree with the scan's axes within about 20 degrees;
-/// the pitch is determined from nose, orbits and arches. Names are those of procedures and cephalometry. A
-/// landmark is missing where two trials do not find it or find it far away, or where its position is
+/// the pitch is determined from nose, orbits and arches. Names are those of procedures and cephalometry.
+/// A landmark is missing where two trials do not find it or find it far away, or where its position is
 /// implausible (plausible.h). Throws std::runtime_error where there is no mid-plane or no face, as for an
 /// object that is not a skull; voxel::Stopped. Cost: three mirror fits, three pictures and about forty of a
 /// quarter of their pixels.

@@ -4,7 +4,7 @@
 // seated. The motion is determined first, on meshes, so that both kernels use the same motion.
 //
 // 1. For each place, compute the smallest signed distance from the object's vertices around it to the other
-//   surface.
+//    surface.
 // 2. The rigid motion whose displacements along the direction are those distances, in least squares.
 // 3. Again, as the nearest vertices change, until no place is farther off than the tolerance.
 #include <algorithm>

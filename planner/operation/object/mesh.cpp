@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later Writes the surface of voxels. The verb writes the surface of a
-// scan's window, of an .octree file or of contours; the step writes the surface of an object's octree. The
-// step `surface` writes the mesh kernel's answer.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Writes the surface of voxels. The verb writes the surface of a scan's window, of an .octree file or of
+// contours; the step writes the surface of an object's octree. The step `surface` writes the mesh kernel's
+// answer.
 #include <limits>
 #include <utility>
 

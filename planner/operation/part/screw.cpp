@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later A screw's axis, and its distances from the parts that it must
-// not touch: roots, a nerve's canal, saw cuts. Each kernel measures with its own version of those objects;
-// the mesh's distance is reported as the result.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A screw's axis, and its distances from the parts that it must not touch: roots, a nerve's canal, saw cuts.
+// Each kernel measures with its own version of those objects; the mesh's distance is reported as the result.
 //
 // A screw at a place in a view of the head enters along that view, where the view's line through the place
 // first meets the bone. A flap's screw meets the axis of its segment, where the segment is placed, at a right

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later The credibility page: each number with its evidence, and the
-// standard's factors.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The credibility page: each number with its evidence, and the standard's factors.
 import {Child, el} from "../../browser/page/base/html";
 import {three_figures, unit_text} from "../../browser/page/base/numbers";
 import {Json} from "../../browser/page/protocol";

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later The page of a verification: shares of tolerance by quantity,
-// pictures of the worst certificate, certificates, the suite's own tables, the parts not covered.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The page of a verification: shares of tolerance by quantity, pictures of the worst certificate,
+// certificates, the suite's own tables, the parts not covered.
 import {Child, el} from "../../browser/page/base/html";
 import {grouped, three_figures} from "../../browser/page/base/numbers";
 import {Json} from "../../browser/page/protocol";

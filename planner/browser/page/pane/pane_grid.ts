@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later The four panes, each with its head: the choice of its picture,
-// its slider, its buttons. They request new pictures when what they show has changed.
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The four panes, each with its head: the choice of its picture, its slider, its buttons. They request new
+// pictures when what they show has changed.
 import {fitted} from "../actions";
 import {button, Child, el, fill} from "../base/html";
 import {icon} from "../base/icons";

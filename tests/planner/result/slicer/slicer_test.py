@@ -440,7 +440,7 @@ class RoundTrip(unittest.TestCase):
                 ("nan.tfm", affine + "nan 0 0\n", "no finite number"),
                 ("scaled.tfm", affine + "2 0 0 0 2 0 0 0 2 0 0 0\nFixedParameters: 0 0 0\n", "scales, shears"),
                 ("thin.tfm", affine + "1 0 0 0 1 0 0 0 0 0 0 0\nFixedParameters: 0 0 0\n", "no inverse"),
-                ("two.tfm", head + 2 * "Transform: IdentityTransform_double_3_3\n", "in which order")]:
+                ("two.tfm", head + 2 * "Transform: IdentityTransform_double_3_3\n", "states their order")]:
             lines = self.refusal(self.moved(name, text))
             self.assertEqual(len(lines), 1, lines)
             self.assertIn(words, lines[0])
