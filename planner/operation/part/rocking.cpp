@@ -50,7 +50,7 @@ constexpr double nothing_deg = 1.0;
 constexpr double patch_mm = 4.0;
 /// Walls that face a push by less than this cosine, six degrees, lie along it.
 constexpr double least_facing = 0.1;
-/// So many of the worst points are followed through trials.
+/// The number of worst points that trials follow.
 constexpr std::size_t tried_points = 4;
 
 void check(const Rocking& asked, const FieldLocation& place) {
@@ -61,7 +61,7 @@ void check(const Rocking& asked, const FieldLocation& place) {
                                  "' itself: name the bone or the teeth on which it sits");
 }
 
-/// What both kernels are asked.
+/// The input of both kernels.
 struct Question {
   const Object& part;
   std::vector<const Object*> against;
