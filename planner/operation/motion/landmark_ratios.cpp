@@ -451,8 +451,8 @@ Operation landmark_ratios_operation() {
                    "not fold.")
                  .greater_than(0.0)
                  .to(1000.0))
-      .example(R"({"id": "quick", "do": "landmark_ratios", "object": "head", "pairs": [
-        {"soft": "upper_lip", "bone": "incisor@advanced"}, {"soft": "subnasale", "bone": "ans@advanced", "ratio": 0.5},
+      .example(R"({"id": "quick", "do": "landmark_ratios", "object": "soft", "pairs": [
+        {"soft": "upper_lip", "bone": "incisor@advanced"}, {"soft": "subnasale", "bone": "a_point@advanced", "ratio": 0.5},
         {"soft": "lower_lip"}]})")
       .on_files(
           "octotomy landmark_ratios skin.stl --before now.mrk.json --after planned.mrk.json -o face.stl\n"

@@ -19,7 +19,7 @@ const anything = new Proxy(function () {}, {
 });
 const kept = new Map();
 Object.assign(globalThis, {
-  document: anything, window: anything, addEventListener() {}, matchMedia: () => anything, location: { search: '', host: '' }, Node: class {},
+  document: anything, window: anything, addEventListener() {}, matchMedia: () => anything, location: { search: '', hash: '', host: '' }, Node: class {},
   localStorage: { getItem: (name) => kept.get(name) ?? null, setItem: (name, text) => kept.set(name, text) },
   Element: class {}, SVGElement: class {}, HTMLElement: class {}, HTMLInputElement: class {}, ResizeObserver: anything,
 });

@@ -69,7 +69,7 @@ TEST(OutlineStep, PlanesThatCannotBeAreRefusedInALine) {
   };
   unwritten(R"("from_mm": 50)", "no plane meets the object");
   unwritten(R"("at_mm": [1, 1])", "has a position twice");
-  unwritten(R"("every_mm": 0.001)", "over 5000 planes");
+  unwritten(R"("every_mm": 0.001)", "more than 5000 planes");
 }
 
 }  // namespace

@@ -25,6 +25,8 @@ Scope scope_for(const Operation& operation, const SortedJson& example) {
   bind("advanced", "move");
   bind("sawn", "saw");
   bind("left_1", "screw");
+  for (const char* name : {"upper_lip", "lower_lip", "subnasale", "incisor", "a_point"})
+    scope.bind_landmark("", {name, {}});
   EXPECT_EQ(example.at("do"), operation.name);
   return scope;
 }
