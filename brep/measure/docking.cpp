@@ -7,17 +7,21 @@
 // 2 At one point, the pushes d + x e + y f about the direction d that are held form a convex polygon in x and
 //   y. A linear programme follows a ray from the origin to its border. The programme's prices are a motion
 //   that no contact resists, and the border's line there: pushes beyond it do work in that motion.
-// 3 Begin with the square about the largest angle. Follow the ray to each corner: it is a corner of the polygon, or its line cuts
-//   it off.
+// 3 Begin with the square about the largest angle. Follow the ray to each corner: it is a corner of the polygon, or
+//   its line cuts it off.
 // 4 The line nearest to the origin gives the angle.
 #include "brep/measure/docking.h"
 
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/convex_hull_3.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <numbers>
+#include <set>
 #include <tbb/parallel_for.h>
 
 #include "brep/mesh/error.h"
@@ -97,7 +101,7 @@ class Programme {
     }
     throw Error(
         ErrorCode::Geometry,
-        "the contacts are too nearly dependent to tell what they hold: choose another spacing of contacts");
+        "rounding hides what the contacts hold: change the largest gap of a contact or the push a little");
   }
 
   std::size_t entering(std::size_t aim, bool takes_first) const {
@@ -268,6 +272,19 @@ class Contacts {
   std::vector<Wrench> wrenches_;
 };
 
+/// In the points' order, each once.
+std::vector<glm::dvec3> hull_corners(const std::vector<glm::dvec3>& points_mm) {
+  using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
+  std::vector<Point> points, extreme;
+  for (const glm::dvec3& p : points_mm) points.emplace_back(p.x, p.y, p.z);
+  CGAL::extreme_points_3(points, std::back_inserter(extreme));
+  std::set<Point> left(extreme.begin(), extreme.end());
+  std::vector<glm::dvec3> corners;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (left.erase(points[i]) > 0) corners.push_back(points_mm[i]);
+  return corners;
+}
+
 void check(const std::vector<DockingContact>& contacts, const glm::dvec3& push,
            const std::vector<glm::dvec3>& points_mm) {
   if (contacts.empty()) throw InvalidInput("nothing holds a part without contacts");
@@ -294,47 +311,13 @@ std::vector<Docking> dockings(const std::vector<DockingContact>& contacts, const
   return made;
 }
 
-Docking docking(const std::vector<DockingContact>& contacts, const glm::dvec3& push,
-                const std::vector<glm::dvec3>& points_mm, const Progress& progress) {
+std::vector<Docking> worst_dockings(const std::vector<DockingContact>& contacts, const glm::dvec3& push,
+                                    const std::vector<glm::dvec3>& points_mm, const Progress& progress) {
   check(contacts, push, points_mm);
-  std::vector<glm::dvec3> corners;
-  for (const std::size_t i : hull_corners(points_mm)) corners.push_back(points_mm[i]);
-  const std::vector<Docking> all = dockings(contacts, push, corners, progress);
-  return *std::min_element(all.begin(), all.end(),
-                           [](const Docking& a, const Docking& b) { return a.angle_deg < b.angle_deg; });
-}
-
-/// A point outside the hull of the corners found so far has a plane between it and them. The farthest point
-/// beyond that plane is a corner.
-std::vector<std::size_t> hull_corners(const std::vector<glm::dvec3>& points_mm) {
-  if (points_mm.empty()) return {};
-  glm::dvec3 low = points_mm.front(), high = low;
-  for (const glm::dvec3& p : points_mm) low = glm::min(low, p), high = glm::max(high, p);
-  const glm::dvec3 middle = 0.5 * (low + high);
-  const double size = std::max(glm::distance(low, high), std::numeric_limits<double>::min());
-  const auto lifted = [&](std::size_t i) {
-    const glm::dvec3 p = (points_mm[i] - middle) / size;
-    return Wrench{p.x, p.y, p.z, 1.0, 0.0, 0.0, 0.0};
-  };
-  std::vector<std::size_t> corners;
-  std::vector<Wrench> columns;
-  const auto add_farthest = [&](const Wrench& along) {
-    std::size_t farthest = 0;
-    for (std::size_t i = 1; i < points_mm.size(); ++i)
-      if (dot(along, lifted(i)) > dot(along, lifted(farthest))) farthest = i;
-    if (std::find(corners.begin(), corners.end(), farthest) != corners.end()) return false;
-    corners.push_back(farthest);
-    columns.push_back(lifted(farthest));
-    return true;
-  };
-  add_farthest({1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
-  for (std::size_t i = 0; i < points_mm.size(); ++i)
-    for (;;) {
-      Programme programme(columns, lifted(i));
-      if (programme.reaches_goal() || !add_farthest(programme.prices())) break;
-    }
-  std::sort(corners.begin(), corners.end());
-  return corners;
+  std::vector<Docking> all = dockings(contacts, push, hull_corners(points_mm), progress);
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Docking& a, const Docking& b) { return a.angle_deg < b.angle_deg; });
+  return all;
 }
 
 }  // namespace octotomy::brep

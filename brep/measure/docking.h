@@ -33,24 +33,22 @@ constexpr double most_docking_deg = 89.0;
 /// give.
 constexpr double most_reaction = 10.0;
 
-/// The docking angle at the worst of the pushed points. Contacts push along their normals, without friction.
-/// A push is held if reactions that are not negative and within `most_reaction` balance its force and its
-/// moment. The angle at a point is half the opening of the widest circular cone about `push` of which all
-/// pushes are held. For one push the points where it is held form a convex set, so that only corners of the
-/// points' convex hull are examined. `push` is a unit vector, LPS. Throws std::invalid_argument if it is not,
-/// or without contacts or points; Error (Geometry) if rounding hides the answer; Stopped. The same bits on
-/// any number of threads. Cost: for each corner of the hull about two linear programmes of seven rows for
-/// each side of the set of held pushes; parallel. Source: Mattheijer and others, docking robustness of
-/// patient specific surgical guides. Departures: reactions are limited, and all sides of the set of held
-/// pushes are found, not samples.
-Docking docking(const std::vector<DockingContact>& contacts, const glm::dvec3& push,
-                const std::vector<glm::dvec3>& points_mm, const Progress& progress = {});
-/// The same at each point alone, in their order. Larger angles than `at_most_deg` are reported as that angle, in
-/// less time. Throws std::invalid_argument if it is beyond 0..`most_docking_deg`, too.
+/// The docking angle at each of the pushed points. Contacts push along their normals, without friction. A push
+/// is held if reactions that are not negative and within `most_reaction` balance its force and its moment. The
+/// angle at a point is half the opening of the widest circular cone about `push` of which all pushes are held.
+/// Larger angles than `at_most_deg` are reported as that angle, in less time. `push` is a unit vector, LPS.
+/// Throws std::invalid_argument if it is not, without contacts or points, or if `at_most_deg` is beyond
+/// 0..`most_docking_deg`; Error (Geometry) if rounding hides the answer; Stopped. The same bits on any number
+/// of threads. Cost: for each point about two linear programmes of seven rows for each side of the set of held
+/// pushes; parallel. Source: Mattheijer and others, docking robustness of patient specific surgical guides.
+/// Departures: reactions are limited, and all sides of the set of held pushes are found, not samples.
 std::vector<Docking> dockings(const std::vector<DockingContact>& contacts, const glm::dvec3& push,
                               const std::vector<glm::dvec3>& points_mm, const Progress& progress = {},
                               double at_most_deg = most_docking_deg);
-/// The corners of the convex hull of points, as numbers in ascending order.
-std::vector<std::size_t> hull_corners(const std::vector<glm::dvec3>& points_mm);
+
+/// The same at the corners of the points' convex hull, the smallest angle first. For one push the points where
+/// it is held form a convex set, so the smallest angle of all points is at a corner.
+std::vector<Docking> worst_dockings(const std::vector<DockingContact>& contacts, const glm::dvec3& push,
+                                    const std::vector<glm::dvec3>& points_mm, const Progress& progress = {});
 
 }  // namespace octotomy::brep

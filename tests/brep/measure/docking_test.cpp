@@ -4,6 +4,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
+#include <set>
 #include <tbb/global_control.h>
 
 #include "tests/brep/shapes.h"
@@ -13,6 +14,12 @@ namespace {
 
 double deg(double rad) {
   return rad * 180.0 / std::numbers::pi;
+}
+
+/// At the worst of the points.
+Docking docking(const std::vector<DockingContact>& contacts, const glm::dvec3& push,
+                const std::vector<glm::dvec3>& points_mm) {
+  return worst_dockings(contacts, push, points_mm).front();
 }
 
 /// Three contacts on the floor, two on the wall y = 0, one on the wall x = 0.
@@ -84,7 +91,12 @@ TEST(Docking, TheWorstPointCountsAndInnerPointsAreNotExamined) {
   for (const Docking& one : dockings(flanged_plane(), {0, 0, -1}, points))
     least = std::min(least, one.angle_deg);
   EXPECT_EQ(worst.angle_deg, least);
-  EXPECT_EQ(hull_corners(points), (std::vector<std::size_t>{1, 2, 3, 4}));
+  std::set<double> corners;
+  for (const Docking& one : worst_dockings(flanged_plane(), {0, 0, -1}, points)) {
+    EXPECT_NE(one.at_mm, points[0]);
+    corners.insert(10.0 * one.at_mm.x + one.at_mm.y);
+  }
+  EXPECT_EQ(corners, (std::set<double>{10.0, -3.0, 3.0, -10.0}));
 }
 
 TEST(Docking, ALargestAngleShortensTheSearchAndChangesNoSmallerOne) {
