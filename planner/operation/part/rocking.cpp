@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "brep/measure/docking.h"
-#include "planner/operation/measure/digitised.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/part/insertion.h"
+#include "planner/operation/part/seated_part.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "verify/phantom/chance.h"
@@ -55,10 +55,7 @@ constexpr std::size_t tried_points = 4;
 
 void check(const Rocking& asked, const FieldLocation& place) {
   check(asked.insertion, place);
-  for (const ObjectName& object : asked.against)
-    if (object.name == asked.part.name)
-      place.at("against").refuse("names the part '" + asked.part.name +
-                                 "' itself: name the bone or the teeth on which it sits");
+  check_against(asked.part, asked.against, place);
 }
 
 /// The input of both kernels.
@@ -268,18 +265,6 @@ Json failed(Json json, const std::string& finding) {
   return json;
 }
 
-/// The points with the smallest angles, worst first.
-std::vector<brep::Docking> worst_of(const std::vector<brep::DockingContact>& contacts, const glm::dvec3& push,
-                                    const std::vector<glm::dvec3>& points, const AnswerBench& bench) {
-  std::vector<glm::dvec3> corners;
-  for (const std::size_t i : brep::hull_corners(points)) corners.push_back(points[i]);
-  std::vector<brep::Docking> all = brep::dockings(contacts, push, corners, {bench.stop, {}});
-  std::stable_sort(all.begin(), all.end(),
-                   [](const brep::Docking& a, const brep::Docking& b) { return a.angle_deg < b.angle_deg; });
-  if (all.size() > tried_points) all.resize(tried_points);
-  return all;
-}
-
 /// The place of a surface where a push may deviate most, of places 4 mm apart.
 brep::Docking best_of(const std::vector<brep::DockingContact>& contacts, const Question& question,
                       const AnswerBench& bench) {
@@ -310,7 +295,7 @@ void judge(Json& json, const Question& question, const brep::Docking& worst) {
                                best);
   else if (low < nothing_deg)
     json["findings"].push_back("'" + question.part.id + "' may rock on " + names_of(question) +
-                               " with the errors of scan and printer: in one of 200 trials " + pushed +
+                               " with the errors of scan and printer: in 0.5 % of the trials " + pushed +
                                " may not deviate" + best);
   else
     json["verdict"] = "PASS";
@@ -321,15 +306,6 @@ void judge(Json& json, const Question& question, const brep::Docking& worst) {
                              " degrees in meshes, by " + three_figures(by_voxels) + " in voxels");
 }
 
-std::optional<std::string> what_is_missing(const Object& object) {
-  if (object.voxel.octree.is_empty() || !object.voxel.symbol)
-    return why_no_voxels(object) + ": nothing can be said of its contacts";
-  if (!object.mesh.within || object.mesh.within->empty())
-    return "'" + object.id +
-           "' has no mesh, so one kernel alone would answer: make it by steps that both kernels have";
-  return std::nullopt;
-}
-
 Json measure(const Rocking& asked, const AnswerBench& bench) {
   const Stopwatch watch(bench.timings, "rocking");
   Question question{bench.objects.at(asked.part.name), {}, {}, {}};
@@ -337,9 +313,12 @@ Json measure(const Rocking& asked, const AnswerBench& bench) {
       asked.push ? glm::normalize(*asked.push) : direction_of(asked.insertion, bench.objects.lps_from_head);
   for (const ObjectName& name : asked.against) question.against.push_back(&bench.objects.at(name.name));
   Json json = empty_answer(asked, question);
-  if (const auto missing = what_is_missing(question.part)) json["findings"].push_back(*missing);
-  for (const Object* object : question.against)
-    if (const auto missing = what_is_missing(*object)) json["findings"].push_back(*missing);
+  const auto add_missing = [&](const Object& object) {
+    if (auto missing = missing_kernel(object, "nothing can be said of its contacts"))
+      json["findings"].push_back(std::move(*missing));
+  };
+  add_missing(question.part);
+  for (const Object* object : question.against) add_missing(*object);
   if (!json["findings"].empty()) return json;
 
   const std::vector<brep::DockingContact> contacts = mesh_contacts(question, asked, bench);
@@ -369,7 +348,8 @@ Json measure(const Rocking& asked, const AnswerBench& bench) {
                             voxel::rounded(question.at_mm.front()) +
                             " mm: name points in 'at', or raise 'radius_mm'");
 
-  const std::vector<brep::Docking> worst = worst_of(contacts, question.push, points, bench);
+  std::vector<brep::Docking> worst = brep::worst_dockings(contacts, question.push, points, {bench.stop, {}});
+  worst.resize(std::min(worst.size(), tried_points));
   const VoxelAnswer by_voxels = answer_by_voxels(question, asked, bench);
   json["voxel_contacts"] = by_voxels.contacts;
   std::vector<glm::dvec3> tried;

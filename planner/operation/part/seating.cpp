@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "planner/operation/measure/digitised.h"
 #include "planner/operation/measure/result_json.h"
 #include "planner/operation/part/insertion.h"
+#include "planner/operation/part/seated_part.h"
 #include "planner/operation/table/number_format.h"
 #include "planner/operation/table/operation.h"
 #include "voxel/filter/seating.h"
@@ -32,10 +32,7 @@ constexpr double resolution_mm = 0.01;
 
 void check(const Seating& seating, const FieldLocation& place) {
   check(seating.insertion, place);
-  for (const ObjectName& object : seating.against)
-    if (object.name == seating.part.name)
-      place.at("against").refuse("names the part '" + seating.part.name +
-                                 "' itself: name the bone or the teeth on which it sits");
+  check_against(seating.part, seating.against, place);
 }
 
 /// Both kernels' results for one object.
@@ -94,20 +91,13 @@ Json measure(const Seating& asked, const AnswerBench& bench) {
   Json json{{"object", part.id},         {"direction", to_json(along)}, {"tolerance_mm", asked.tolerance_mm},
             {"verdict", nullptr},        {"depth_mm", nullptr},         {"resolution_mm", resolution_mm},
             {"voxel_error_mm", nullptr}, {"against", Json::array()},    {"findings", Json::array()}};
-  const auto lacks = [&](const Object& object) {
-    if (object.voxel.octree.is_empty() || !object.voxel.symbol)
-      json["findings"].push_back(why_no_voxels(object) + ": nothing can be seated");
-    else if (!object.mesh.within || object.mesh.within->empty())
-      json["findings"].push_back("'" + object.id +
-                                 "' has no mesh, so one kernel alone would answer: make it by "
-                                 "steps that both kernels have");
-    else
-      return false;
-    return true;
+  const auto add_missing = [&](const Object& object) {
+    if (auto missing = missing_kernel(object, "nothing can be seated"))
+      json["findings"].push_back(std::move(*missing));
   };
-  bool is_lacking = lacks(part);
-  for (const ObjectName& name : asked.against) is_lacking = lacks(bench.objects.at(name.name)) || is_lacking;
-  if (is_lacking) return json;
+  add_missing(part);
+  for (const ObjectName& name : asked.against) add_missing(bench.objects.at(name.name));
+  if (!json["findings"].empty()) return json;
 
   // Each digitised surface may be off by half a voxel's diagonal.
   const double voxel_error_mm = glm::length(bench.universe.lattice().spacing_mm());
