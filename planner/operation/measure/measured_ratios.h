@@ -21,7 +21,7 @@ struct RatioLandmark {
   glm::dvec3 bone_moved_mm{0.0}, moved_mm{0.0};  ///< LPS
   double forward_mm = 0.0, left_mm = 0.0, up_mm = 0.0;
   std::string words;
-  /// Contains the true displacement's length in 99 of 100 people; none: the ratio's spread is not known.
+  /// Contains 99 of 100 displacements' lengths if ratios among people have this deviation; none: no deviation.
   std::optional<double> half_width_mm;
 };
 constexpr auto members_of(const RatioLandmark&) {

@@ -32,6 +32,9 @@ constexpr double steepest_allowed = 0.9;
 /// 99 of 100 values of a normal distribution lie within this multiple of its standard deviation.
 constexpr double coverage_factor = 2.5758;
 
+/// The source of a ratio that the user states.
+constexpr const char* typed_source = "typed";
+
 struct LandmarkRatios {
   /// A landmark of the skin and the one of the bone that it follows.
   struct Pair {
@@ -160,7 +163,7 @@ std::vector<Follower> followers_of_pairs(const LandmarkRatios& step, const Objec
       one.bone_by_mm = mark_mm(*pair.bone, objects) - mark_mm(still, objects);
       if (pair.ratio) {
         one.ratio.ratio = *pair.ratio;
-        one.ratio.source = "typed";
+        one.ratio.source = typed_source;
         one.deviation = pair.deviation;
       } else {
         one.ratio = *published_ratio(pair.soft.landmark, pair.bone->landmark);
@@ -202,7 +205,7 @@ std::vector<Follower> followers_of_files(const LandmarkRatios& step, const std::
   };
   for (const std::string& text : step.ratios) {
     const TypedRatio typed = typed_ratio(text);
-    add({typed.soft, typed.bone, typed.ratio, 0.0, "typed"}, std::nullopt, true);
+    add({typed.soft, typed.bone, typed.ratio, 0.0, typed_source}, std::nullopt, true);
   }
   for (const PublishedRatio& ratio : published_ratios()) add(ratio, ratio.deviation, false);
   if (all.empty())
@@ -298,9 +301,14 @@ void need_no_fold(const LandmarkRatios& step, const std::vector<RatioLandmark>& 
       " mm, which folds the tissue between them: leave one of them out, or check their places and ratios");
 }
 
-/// The results in one sentence each, for people.
-void report(const MeasuredRatios& measured, std::vector<std::string>& findings) {
+/// Published ratios were measured where the bone went forward: by at least this share of its motion.
+constexpr double least_forward = 0.7;
+
+/// The results in one sentence each, for people, and what was assumed.
+void report(const MeasuredRatios& measured, const glm::dmat3& lps_from_head,
+            std::vector<std::string>& findings) {
   std::string text, unsure;
+  bool has_published = false;
   for (const RatioLandmark& each : measured.landmarks) {
     text += (text.empty() ? "" : "; ") + landmark_name(each);
     if (each.follows.empty()) {
@@ -311,8 +319,19 @@ void report(const MeasuredRatios& measured, std::vector<std::string>& findings) 
             (each.half_width_mm ? " \u00b1 " + grouped(*each.half_width_mm, 1) + " mm" : "") + " (" +
             three_figures(*each.ratio) + " of " + each.follows + ", " + each.source + ")";
     if (!each.half_width_mm) unsure += (unsure.empty() ? "'" : ", '") + landmark_name(each) + "'";
+    if (each.source == typed_source) continue;
+    has_published = true;
+    const Displacement bone = displacement_of(each.bone_moved_mm, lps_from_head);
+    if (bone.forward_mm < least_forward * glm::length(each.bone_moved_mm))
+      findings.push_back("the published ratio of '" + landmark_name(each) +
+                         "' is of operations that advance the bone, and " + each.follows + " moves " +
+                         in_words(bone) + ": type a ratio of such operations");
   }
   findings.push_back("landmarks by ratios: " + text);
+  if (has_published)
+    findings.push_back(
+        "the published ratios are those that later literature attributes to the named papers, and their "
+        "deviations are estimates: type ratios and deviations that were measured where they are known");
   if (!unsure.empty()) findings.push_back("no interval for " + unsure + ": its ratio has no deviation");
 }
 
@@ -333,7 +352,7 @@ LandmarkRatios settle(const LandmarkRatios& asked, const SettleBench& bench) {
   const Object& object = bench.objects.at(asked.object.name);
   if (object.mesh.whole) need_skin(measured.landmarks, asked.object, *object.mesh.whole);
   need_no_fold(settled, measured.landmarks);
-  report(measured, bench.findings);
+  report(measured, bench.objects.lps_from_head, bench.findings);
   bench.details.update(print_record(measured));
   return settled;
 }
@@ -415,10 +434,11 @@ Operation landmark_ratios_operation() {
                      "A landmark of the bone with the object that carries it, as incisor@advanced. Without "
                      "it, the "
                      "skin's landmark stays where it is."),
-               field(
-                   "ratio", &Pair::ratio,
-                   "The share of the bone's motion. Default: the published one of this pair (Freihofer 1976 "
-                   "and 1977; Lines and Steinhauser 1974).")
+               field("ratio", &Pair::ratio,
+                     "The share of the bone's motion. Default: the one of this pair that later literature "
+                     "attributes to Freihofer 1976 and 1977 or to Lines and Steinhauser 1974, of operations "
+                     "that "
+                     "advance the bone.")
                    .from(0.0)
                    .to(2.0),
                field("ratio_up", &Pair::ratio_up, "The share of the bone's motion upwards. Default: 'ratio'.")

@@ -42,7 +42,7 @@ export function ratios({objects}: Result): Child {
       table(["Prediction", "Landmark", "follows", "#ratio", "source", "#forward, mm", "#up, mm", "#left, mm", "#interval, mm"], rows),
       soft("A landmark of the skin moves by its ratio of the bone's motion; between landmarks the displacement is " +
            `interpolated, and beyond ${predictions.map((one) => `${grouped(one.details!.fade_mm, 0)} mm`).join(", ")} of all ` +
-           "landmarks it is zero. Interval: what the spread of the ratio between studies leaves open in 99 of 100 people."));
+           "landmarks it is zero. Interval: 99 of 100 values, if ratios among people have the stated deviation; that of a published ratio is an estimate."));
 }
 
 export function cephalometry(of: CephalometryTable|null, cephalogram: string): Child {

@@ -63,6 +63,19 @@ TEST(LandmarkRatios, LandmarksMoveByThePublishedRatioAndOthersStay) {
   EXPECT_GT(at_rest, 1000);
 }
 
+TEST(LandmarkRatios, APublishedRatioOfABoneThatGoesBackIsAFinding) {
+  for (const auto& [translate, is_setback] :
+       {std::pair("[0, -4, 1]", false), std::pair("[0, 4, 1]", true), std::pair("[4, -1, 0]", true)}) {
+    const ScratchFolder folder;
+    std::string steps = marks + by_ratio;
+    steps.replace(steps.find("[0, -4, 1]"), 10, translate);
+    const Evaluation evaluation = evaluate(ball_plan(folder, steps));
+    const std::string findings = testing::PrintToString(evaluation.object("face").findings);
+    EXPECT_EQ(findings.find("that advance the bone") != std::string::npos, is_setback) << findings;
+    EXPECT_NE(findings.find("deviations are estimates"), std::string::npos) << findings;
+  }
+}
+
 TEST(LandmarkRatios, RatiosUpwardsAndDeviationsAreThoseTyped) {
   const ScratchFolder folder;
   const Evaluation evaluation =
