@@ -17,6 +17,7 @@
 #include "brep/mesh/for_vectors.h"
 #include "brep/mesh/halving.h"
 #include "brep/mesh/morton_tree.h"
+#include "brep/mesh/triangle_cluster.h"
 
 namespace octotomy::brep {
 namespace {
@@ -61,18 +62,9 @@ OCTOTOMY_FOR_VECTORS void add_solid_angles(std::span<const Corners> triangles, P
   }
 }
 
-/// The moments and extent of a cluster of triangles.
-struct Cluster {
-  glm::dvec3 centre_mm{0.0};
-  double radius_mm = 0.0;  ///< radius of a ball around the centre that contains all corners
-  double area_mm2 = 0.0;
-  glm::dvec3 normal{0.0};  ///< sum of area vectors
-  glm::dmat3 moment{0.0};  ///< column j: sum of area vectors times coordinate j of (middle - centre)
-};
-
 /// Adds the solid angle of a cluster at each point: the gradient of 1 / r and its derivative, applied to the
 /// area vectors and their first moment.
-OCTOTOMY_FOR_VECTORS void add_moments(const Cluster& cluster, Points& points) {
+OCTOTOMY_FOR_VECTORS void add_moments(const TriangleCluster& cluster, Points& points) {
   const glm::dmat3 m = cluster.moment;
   const glm::dvec3 centre = cluster.centre_mm, normal = cluster.normal;
   const double trace = m[0][0] + m[1][1] + m[2][2];
@@ -93,7 +85,7 @@ OCTOTOMY_FOR_VECTORS void add_moments(const Cluster& cluster, Points& points) {
 struct WindingTree::Tree {
   /// A leaf holds `count` triangles from `first`; an inner node's children are the next node and node
   /// `first`.
-  struct Node : Cluster {
+  struct Node : TriangleCluster {
     std::uint32_t first = 0, count = 0;
   };
   std::vector<Corners> triangles;  ///< in the order of the leaves
@@ -116,48 +108,12 @@ struct WindingTree::Tree {
         items, leaf_size,
         [&](std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
           for (std::uint32_t i = begin; i < end; ++i) triangles[i] = corners[items[i].number];
-          nodes[self].first = begin;
-          nodes[self].count = end - begin;
-          sum_leaf(nodes[self]);
+          nodes[self] = {cluster_of(std::span(triangles).subspan(begin, end - begin)), begin, end - begin};
         },
         [&](std::uint32_t self, std::uint32_t second) {
-          nodes[self].first = second;
-          sum_halves(nodes[self], nodes[self + 1], nodes[second]);
+          nodes[self] = {cluster_of(nodes[self + 1], nodes[second]), second, 0};
         },
         0, 0, count);
-  }
-
-  void sum_leaf(Node& node) const {
-    glm::dvec3 middle_sum(0.0), plain_sum(0.0);
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const Corners& t = triangles[i];
-      const glm::dvec3 area = 0.5 * glm::cross(t[1] - t[0], t[2] - t[0]), middle = (t[0] + t[1] + t[2]) / 3.0;
-      node.area_mm2 += glm::length(area);
-      middle_sum += glm::length(area) * middle;
-      plain_sum += middle;
-      node.normal += area;
-    }
-    node.centre_mm = node.area_mm2 > 0.0 ? middle_sum / node.area_mm2 : plain_sum / double(node.count);
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const Corners& t = triangles[i];
-      const glm::dvec3 area = 0.5 * glm::cross(t[1] - t[0], t[2] - t[0]), middle = (t[0] + t[1] + t[2]) / 3.0;
-      node.moment += glm::outerProduct(area, middle - node.centre_mm);
-      for (const glm::dvec3& p : t)
-        node.radius_mm = std::max(node.radius_mm, glm::distance(p, node.centre_mm));
-    }
-  }
-
-  static void sum_halves(Node& node, const Node& a, const Node& b) {
-    node.area_mm2 = a.area_mm2 + b.area_mm2;
-    node.normal = a.normal + b.normal;
-    node.centre_mm = node.area_mm2 > 0.0
-                         ? (a.area_mm2 * a.centre_mm + b.area_mm2 * b.centre_mm) / node.area_mm2
-                         : 0.5 * (a.centre_mm + b.centre_mm);
-    for (const Node* half : {&a, &b}) {
-      node.moment += half->moment + glm::outerProduct(half->normal, half->centre_mm - node.centre_mm);
-      node.radius_mm =
-          std::max(node.radius_mm, half->radius_mm + glm::distance(half->centre_mm, node.centre_mm));
-    }
   }
 
   /// Points with a ball that contains them.

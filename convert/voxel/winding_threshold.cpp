@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <tbb/parallel_for.h>
 
 #include "brep/mesh/distance.h"
@@ -24,14 +25,6 @@ using Triangle = std::array<glm::dvec3, 3>;
 constexpr std::uint32_t leaf_size = 2;
 constexpr double sphere = 4.0 * std::numbers::pi;
 
-glm::dvec3 area_vector(const Triangle& t) {
-  return 0.5 * glm::cross(t[1] - t[0], t[2] - t[0]);
-}
-
-glm::dvec3 middle_of(const Triangle& t) {
-  return (t[0] + t[1] + t[2]) / 3.0;
-}
-
 /// How much a triangle's covered share may differ between the middle and other points of a ball. The lesser
 /// of two bounds: by its area, and by Biot and Savart's law for a current along its edges, whose integral of
 /// 1 / r^2 along an edge is the angle that the edge subtends, divided by the distance of its line.
@@ -40,8 +33,8 @@ double change_bound(const Triangle& triangle, const glm::dvec3& middle_mm, doubl
       glm::distance(middle_mm, brep::nearest_of_triangle(middle_mm, triangle[0], triangle[1], triangle[2]));
   if (!(distance > reach_mm)) return 1.0;  // the ball may meet the triangle
   const double d = reach_mm / distance;
-  const double by_area = glm::length(area_vector(triangle)) / (sphere * distance * distance) * d * (2.0 - d) /
-                         ((1.0 - d) * (1.0 - d));
+  const double area_mm2 = 0.5 * glm::length(glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0]));
+  const double by_area = area_mm2 / (sphere * distance * distance) * d * (2.0 - d) / ((1.0 - d) * (1.0 - d));
   double integral = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec3 from = triangle[i] - middle_mm, to = triangle[(i + 1) % 3] - middle_mm;
@@ -93,38 +86,16 @@ WindingThreshold::WindingThreshold(const voxel::Universe& universe, std::vector<
     : lattice_(universe.lattice()), cap_(cap.size()) {
   if (cap.empty()) return;
   std::vector<brep::Centred> items;
-  for (const Triangle& t : cap) items.push_back({middle_of(t), static_cast<std::uint32_t>(items.size())});
+  for (const Triangle& t : cap)
+    items.push_back({(t[0] + t[1] + t[2]) / 3.0, static_cast<std::uint32_t>(items.size())});
   const auto count = static_cast<std::uint32_t>(cap.size());
   clusters_.resize(brep::halving_nodes(count, leaf_size));
   const auto leaf = [&](std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
-    Cluster& cluster = clusters_[self];
-    cluster.first = begin;
-    cluster.count = end - begin;
-    for (std::uint32_t i = begin; i < end; ++i) {
-      cap_[i] = cap[items[i].number];
-      cluster.centre_mm += middle_of(cap_[i]) / static_cast<double>(end - begin);
-    }
-    for (std::uint32_t i = begin; i < end; ++i) {
-      const glm::dvec3 area = area_vector(cap_[i]);
-      cluster.normal += area;
-      cluster.area_mm2 += glm::length(area);
-      cluster.moment += glm::outerProduct(area, middle_of(cap_[i]) - cluster.centre_mm);
-      for (const glm::dvec3& p : cap_[i])
-        cluster.radius_mm = std::max(cluster.radius_mm, glm::distance(p, cluster.centre_mm));
-    }
+    for (std::uint32_t i = begin; i < end; ++i) cap_[i] = cap[items[i].number];
+    clusters_[self] = {brep::cluster_of(std::span(cap_).subspan(begin, end - begin)), begin, end - begin};
   };
   const auto inner = [&](std::uint32_t self, std::uint32_t second) {
-    Cluster& cluster = clusters_[self];
-    cluster.first = second;
-    const std::array<const Cluster*, 2> halves{&clusters_[self + 1], &clusters_[second]};
-    cluster.centre_mm = 0.5 * (halves[0]->centre_mm + halves[1]->centre_mm);
-    for (const Cluster* half : halves) {
-      const glm::dvec3 away = half->centre_mm - cluster.centre_mm;
-      cluster.normal += half->normal;
-      cluster.area_mm2 += half->area_mm2;
-      cluster.moment += half->moment + glm::outerProduct(half->normal, away);
-      cluster.radius_mm = std::max(cluster.radius_mm, half->radius_mm + glm::length(away));
-    }
+    clusters_[self] = {brep::cluster_of(clusters_[self + 1], clusters_[second]), second, 0};
   };
   brep::halve(items, leaf_size, leaf, inner, 0, 0, count);
 }

@@ -9,6 +9,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "brep/mesh/triangle_cluster.h"
 #include "convert/voxel/slab_triangles.h"
 #include "voxel/space/lattice.h"
 #include "voxel/space/progress.h"
@@ -48,14 +49,8 @@ class WindingThreshold {
   }
 
  private:
-  /// Triangles near each other. A leaf holds `count` of them from `first`; an inner node's children are the
-  /// next node and node `first`.
-  struct Cluster {
-    glm::dvec3 centre_mm{0.0};
-    double radius_mm = 0.0;  ///< of a ball around the centre that holds all corners
-    double area_mm2 = 0.0;
-    glm::dvec3 normal{0.0};  ///< sum of area vectors
-    glm::dmat3 moment{0.0};  ///< column j: sum of area vectors times coordinate j of (middle - centre)
+  /// A leaf holds `count` triangles from `first`; an inner node's children are the next node and node `first`.
+  struct Cluster : brep::TriangleCluster {
     std::uint32_t first = 0, count = 0;
   };
   /// The cap's winding number about the points of a ball: `middle` + `slope` (p - centre), within `error`.
