@@ -420,7 +420,7 @@ Operation guide_operation() {
               .from(1.0)
               .to(40.0))
       .takes(field("slot_wall_mm", &Guide::slot_wall_mm,
-                   "The thickness of the walls beside a slot; 2 is twice the least that leads a saw.")
+                   "The thickness of the walls beside a slot; 2 is twice the least that is allowed.")
                  .from(1.0)
                  .to(10.0))
       .takes(
