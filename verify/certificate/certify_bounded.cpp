@@ -323,16 +323,28 @@ void judge_volume(Certificate& certificate, const Evidence& evidence) {
              .statement = "The centroids are % apart"});
 }
 
-/// Compares the mesh's volume with the number of voxel centres inside it. Parts that the mesh has several
-/// times count once among the centres.
+/// Compares the mesh's volume with the number of voxel centres inside it. Parts that the mesh contains several times
+/// count once among the centres. In walls thinner than a voxel, centres do not measure volume: where `third` confirms
+/// the mesh's volume, the verdict is WARN at worst.
 void compare_counted(Certificate& certificate, const Evidence& evidence, const voxel::Octree& digitised) {
+  // A part that is repeated or inside out moves the mesh's volume away from the lines' volume by at least as
+  // much as from the counted one.
+  constexpr double confirmed_share = 0.2;
   const double counted_mm3 = static_cast<double>(digitised.voxel_count()) * evidence.voxel_mm3;
-  add_comparison(certificate,
-                 {"volume counted inside of the mesh", "mm3", counted_mm3, evidence.mesh.volume_mm3,
-                  std::abs(counted_mm3 - evidence.mesh.volume_mm3),
-                  certificate.tolerance_mm3 + evidence.voxel_mm3, "the volume's tolerance, and a voxel",
-                  "The mesh's volume and its inside, counted by voxels' centres, are % apart, for example "
-                  "because the mesh contains a part several times"});
+  const double difference_mm3 = std::abs(counted_mm3 - evidence.mesh.volume_mm3);
+  const bool confirmed =
+      certificate.third &&
+      std::abs(evidence.mesh.volume_mm3 - certificate.third->volume_mm3) <= confirmed_share * difference_mm3;
+  add_comparison(
+      certificate,
+      {"volume counted inside of the mesh", "mm3", counted_mm3, evidence.mesh.volume_mm3, difference_mm3,
+       certificate.tolerance_mm3 + evidence.voxel_mm3, "the volume's tolerance, and a voxel",
+       confirmed
+           ? "The mesh's volume and the volume of the voxels with their centres in the mesh are % apart. "
+             "Lines through the scan confirm the mesh's volume: walls are thinner than a voxel"
+           : "The mesh's volume and the volume of the voxels with their centres in the mesh are % apart, "
+             "for example because the mesh contains a part several times"},
+      confirmed ? Verdict::Warn : Verdict::Fail);
 }
 
 /// Indices of the keys that share a slot of a hash table with at least eight slots per key: all equal keys,
@@ -477,9 +489,9 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
     lost_voxels = std::move(places.lost);
   }
   judge_volume(certificate, evidence);
+  compare_with_lines(certificate, evidence, inputs.witness.lines(), voxel::bounds(lattice), progress);
   if (evidence.witnessed) compare_counted(certificate, evidence, digitised);
   compare_repeated(certificate, solid.triangles());
-  compare_with_lines(certificate, evidence, inputs.witness.lines(), voxel::bounds(lattice), progress);
   progress.at(0.45);
   compare_topology(certificate, octree, digitised);
   judge_extent(certificate, evidence);

@@ -265,6 +265,42 @@ TEST_F(Witnessed, ACapAtTheScansBorderThatIsShiftedFails) {
   }
 }
 
+/// A plate thinner than a sample, of which only single samples reach the window's bound.
+class Plate : public Speckled {
+ protected:
+  Plate() {
+    voxel::Scene scene = *scan_;
+    auto& samples = std::get<voxel::Int16Samples>(scene.samples);
+    std::fill(samples.begin(), samples.end(), std::int16_t{-1000});
+    for (int y = 8; y < 56; y += 2)
+      for (int x = 8; x < 56; x += 2)
+        samples[static_cast<std::size_t>((30 * 64 + y) * 64 + x)] =
+            static_cast<std::int16_t>(50 + (37 * x + 11 * y) % 200);
+    scan_ = std::make_shared<const voxel::Scene>(std::move(scene));
+    universe_.depth = 6;
+    universe_.lps_from_voxel = glm::dmat4(1.0);
+    inputs_.witness = witness_of_window(scan_, 0.0, endless, universe_);
+  }
+};
+
+TEST_F(Plate, IsNoPassAndNoFailWhereLinesConfirmTheMesh) {
+  const Certificate right = certified(octree(), mesh());
+  EXPECT_EQ(right.voxel.volume_mm3, 576.0);
+  EXPECT_LT(right.mesh.volume_mm3, 20.0);
+  EXPECT_EQ(right.verdict, Verdict::Warn);
+  EXPECT_FALSE(right.resolved());
+  EXPECT_TRUE(std::any_of(right.reasons.begin(), right.reasons.end(), [](const std::string& reason) {
+    return reason.find("walls are thinner than a voxel") != std::string::npos;
+  }));
+}
+
+TEST_F(Plate, WithAPartThatIsLargerThanTheScansFails) {
+  // Each part of the mesh, eight times as long about its sample.
+  brep::Triangles grown = mesh();
+  for (glm::dvec3& p : grown.points_mm) p = glm::round(p) + 8.0 * (p - glm::round(p));
+  EXPECT_EQ(certified(octree(), grown).verdict, Verdict::Fail);
+}
+
 /// A rind that is thinner than the distance of samples.
 class Rind : public Witnessed {
  protected:
