@@ -422,23 +422,16 @@ void compare_with_lines(Certificate& certificate, const Evidence& evidence, cons
                                "Lines through the scan find " + voxel::rounded(third.volume_mm3) +
                                    " mm3; the nearer answer differs from that by %"});
   if (both_stray || std::abs(certificate.difference_mm3) <= certificate.tolerance_mm3) return;
-  const auto told = [&](const char* kernel, double volume_mm3) {
-    const double lost_mm3 = third.volume_mm3 - volume_mm3;
-    const double share = 100.0 * std::abs(lost_mm3) / std::max(third.volume_mm3, volume_mm3);
-    certificate.reasons.push_back("The scan's own samples have " + voxel::rounded(third.volume_mm3) +
-                                  " mm3 along lines: " + kernel +
-                                  (lost_mm3 > 0.0 ? voxel::rounded(share) + " % of this tissue."
-                                                  : voxel::rounded(share) + " % too much."));
-  };
-  if (of_voxels > of_mesh)
-    told(evidence.voxels.volume_mm3 < third.volume_mm3 ? "at this voxel size resampling loses "
-                                                       : "at this voxel size resampling adds ",
-         evidence.voxels.volume_mm3);
-  else
-    told(evidence.mesh.volume_mm3 < third.volume_mm3
-             ? "the mesh, whose triangles are flat between samples, loses "
-             : "the mesh has ",
-         evidence.mesh.volume_mm3);
+  const bool voxels_stray = of_voxels > of_mesh;
+  const double more_mm3 =
+      (voxels_stray ? evidence.voxels.volume_mm3 : evidence.mesh.volume_mm3) - third.volume_mm3;
+  const std::string loses = voxels_stray ? "at this voxel size resampling loses "
+                                         : "the mesh, whose triangles are flat between samples, loses ",
+                    adds = voxels_stray ? "at this voxel size resampling adds " : "the mesh adds ";
+  certificate.reasons.push_back(
+      "The scan's own samples have " + voxel::rounded(third.volume_mm3) + " mm3 along lines: " +
+      (more_mm3 > 0.0 ? adds + voxel::rounded(more_mm3) + " mm3."
+                      : loses + voxel::rounded(-100.0 * more_mm3 / third.volume_mm3) + " % of this tissue."));
 }
 
 /// Lowers the verdict to WARN where an answer or both are empty, because no surfaces were compared.
