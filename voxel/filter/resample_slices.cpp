@@ -134,8 +134,8 @@ Scene resample_slices(const Scene& scene, double spacing_mm, SliceKernel kernel,
   if (scene.meaning == Meaning::Label && kernel != SliceKernel::Nearest)
     throw InvalidInput("labels cannot be mixed: resample a label map by the nearest slice");
   Scene result = empty_scene_like(scene, with_slice_spacing(scene.lattice, spacing_mm));
-  need_memory(scene.source, result.lattice.sample_count(),
-              std::holds_alternative<FloatSamples>(scene.samples) ? sizeof(float) : sizeof(std::int16_t));
+  need_room(scene.source, result.lattice.sample_count(),
+            std::holds_alternative<FloatSamples>(scene.samples) ? sizeof(float) : sizeof(std::int16_t));
   const double from_mm = scene.lattice.spacing_mm().z;
   const std::size_t size = slice_size(scene.lattice);
   const int last = scene.lattice.dims.z - 1;
@@ -179,7 +179,7 @@ Scene interpolate_shape(const Scene& scene, const ShapeOptions& options) {
   Scene result = empty_scene_like(scene, with_slice_spacing(scene.lattice, options.spacing_mm));
   result.meaning = Meaning::Label;
   result.padding.reset();
-  need_memory(scene.source, result.lattice.sample_count(), sizeof(std::int16_t));
+  need_room(scene.source, result.lattice.sample_count(), sizeof(std::int16_t));
   const double from_mm = scene.lattice.spacing_mm().z;
   const std::size_t size = slice_size(scene.lattice);
   const int last = scene.lattice.dims.z - 1;

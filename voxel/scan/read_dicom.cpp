@@ -65,9 +65,8 @@ class SeriesReader {
     std::visit([&](auto& samples) { take_padding(stack, samples); }, scene_.samples);
     audit_contents(stack);
     if (!plan.is_copy()) {
-      need_memory(
-          path_, std::uint64_t(plan.size_px.x) * std::uint64_t(plan.size_px.y) * plan.slice_count,
-          std::holds_alternative<FloatSamples>(scene_.samples) ? sizeof(float) : sizeof(std::int16_t));
+      need_room(path_, std::uint64_t(plan.size_px.x) * std::uint64_t(plan.size_px.y) * plan.slice_count,
+                std::holds_alternative<FloatSamples>(scene_.samples) ? sizeof(float) : sizeof(std::int16_t));
       scene_.samples = tilt_corrected_samples(plan, stack.first().size_px, scene_.samples, scene_.padding);
     }
     scene_.lattice = lattice_of(stack, plan);
@@ -103,7 +102,7 @@ class SeriesReader {
   bool decode_as(const Stack& stack) {
     const glm::ivec2 size_px = stack.first().size_px;
     const std::size_t area = static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y);
-    need_memory(path_, area * stack.slices.size(), sizeof(Sample));
+    need_room(path_, area * stack.slices.size(), sizeof(Sample));
     Samples<Sample> samples(area * stack.slices.size());
     std::optional<Sample> mark;
     if (scene_.padding) mark = static_cast<Sample>(*scene_.padding);

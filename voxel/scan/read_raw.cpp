@@ -100,7 +100,7 @@ Scene read_raw(const fs::path& path, const ReadOptions& options) {
     refuse(path, "holds " + std::to_string(held) + " bytes, but the raw layout takes " +
                      std::to_string(layout.offset) + " + " + std::to_string(bytes) +
                      ": check dims, type and offset");
-  need_memory(path, bytes / bytes_of(layout.type), 2 * bytes_of(layout.type));
+  need_room(path, bytes / bytes_of(layout.type), 2 * bytes_of(layout.type));
   Scene scene;
   scene.source = path.string();
   if (!options.spacing_mm) refuse_without_spacing(path);

@@ -126,8 +126,8 @@ class LayerReader {
     }
     wide_.lattice.dims = header.geometry.dims;
     wide_.lattice.dims.x *= header.layers;
-    need_memory(path, wide_.lattice.sample_count(),
-                bytes_of(header.samples.stored.type) + 2 * sizeof(std::int16_t));
+    need_room(path, wide_.lattice.sample_count(),
+              bytes_of(header.samples.stored.type) + 2 * sizeof(std::int16_t));
     read_samples(path, header.samples, {}, wide_);
   }
 
@@ -332,9 +332,9 @@ Scene read_volume(const fs::path& path, VolumeFormat format, const ReadOptions& 
     take_segments(segments, scene);
     return scene;
   }
-  need_memory(path, scene.lattice.sample_count(),
-              are_own(header.samples) ? sizeof(std::int16_t)
-                                      : bytes_of(header.samples.stored.type) + sizeof(std::int16_t));
+  need_room(path, scene.lattice.sample_count(),
+            are_own(header.samples) ? sizeof(std::int16_t)
+                                    : bytes_of(header.samples.stored.type) + sizeof(std::int16_t));
   const SmallNumbers small = read_samples(path, header.samples, options, scene);
   take_padding_below_all(header.padding, scene);
   if (take_segments(segments, scene))

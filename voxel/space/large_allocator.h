@@ -7,7 +7,7 @@
 #include <utility>
 
 #if defined(__linux__)
-#include <sys/mman.h>
+#include "voxel/space/large_memory.h"
 #endif
 
 namespace octotomy::voxel {
@@ -15,7 +15,7 @@ namespace octotomy::voxel {
 /// An allocator for arrays of many megabytes. Elements constructed without a value stay uninitialised, so
 /// that the threads that fill an array are the first to touch it. Requests huge pages: a page fault per 4 KiB
 /// takes longer than filling the page, and in scattered reads the address translation of small pages takes
-/// longer than the read.
+/// longer than the read. Arrays that do not fit into memory lie in files, see allocate_large().
 template <typename Value>
 struct LargeAllocator {
   using value_type = Value;
@@ -25,21 +25,21 @@ struct LargeAllocator {
   LargeAllocator(const LargeAllocator<Other>&) {}
 
   Value* allocate(std::size_t count) {
-    constexpr std::size_t page = std::size_t{2} << 20;
     if (count > std::size_t(-1) / 2 / sizeof(Value)) throw std::bad_alloc();
     const std::size_t bytes = count * sizeof(Value);
-    if (bytes < 2 * page) return static_cast<Value*>(::operator new(bytes, std::align_val_t(alignment)));
-    const std::size_t whole = (bytes + page - 1) / page * page;
-    void* const memory = ::operator new(whole, std::align_val_t(page));
 #if defined(__linux__)
-    // Advice only: a system that ignores it maps small pages.
-    static_cast<void>(::madvise(memory, whole, MADV_HUGEPAGE));
+    if (bytes >= 2 * huge_page) return static_cast<Value*>(allocate_large(whole_pages(bytes)));
 #endif
-    return static_cast<Value*>(memory);
+    return static_cast<Value*>(::operator new(bytes, std::align_val_t(alignment)));
   }
   void deallocate(Value* memory, std::size_t count) {
-    constexpr std::size_t page = std::size_t{2} << 20;
-    ::operator delete(memory, std::align_val_t(count * sizeof(Value) < 2 * page ? alignment : page));
+#if defined(__linux__)
+    const std::size_t bytes = count * sizeof(Value);
+    if (bytes >= 2 * huge_page) return free_large(memory, whole_pages(bytes));
+#else
+    static_cast<void>(count);
+#endif
+    ::operator delete(memory, std::align_val_t(alignment));
   }
   template <typename Other>
   void construct(Other* at) {
@@ -56,6 +56,11 @@ struct LargeAllocator {
 
  private:
   static constexpr std::size_t alignment = 64;
+#if defined(__linux__)
+  static std::size_t whole_pages(std::size_t bytes) {
+    return (bytes + huge_page - 1) / huge_page * huge_page;
+  }
+#endif
 };
 
 }  // namespace octotomy::voxel

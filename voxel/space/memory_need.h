@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 
 namespace octotomy::voxel {
@@ -11,10 +12,15 @@ namespace octotomy::voxel {
 /// limit. Small allocations do not fail at it, because libraries crash when they do; a thread should check
 /// is_memory_over() regularly and end the process. An allocation far beyond the limit throws std::bad_alloc.
 void limit_memory(std::uint64_t bytes);
+/// The limit of limit_memory(), or no_memory_limit.
+std::uint64_t memory_limit() noexcept;
+inline constexpr std::uint64_t no_memory_limit = std::numeric_limits<std::uint64_t>::max();
 /// Removes the limit on single allocations, so that a process that ends can still print the reason.
 void lift_memory_limit() noexcept;
 /// Whether this process uses more memory than limit_memory() allows. Cost: microseconds, no allocation.
 bool is_memory_over() noexcept;
+/// Resident bytes of this process that files back. Cost: microseconds, no allocation.
+std::uint64_t resident_file_bytes() noexcept;
 
 /// Bytes that this process may still allocate: the system's free memory, or the rest of limit_memory() if
 /// that is less.
@@ -25,5 +31,7 @@ std::uint64_t free_memory();
 /// are not the file's samples.
 void need_memory(const std::filesystem::path& path, std::uint64_t sample_count, std::uint64_t sample_bytes,
                  const std::string& what = "its samples");
+/// As need_memory(), for samples in arrays of LargeAllocator, which may lie in files if the disk has room.
+void need_room(const std::filesystem::path& path, std::uint64_t sample_count, std::uint64_t sample_bytes);
 
 }  // namespace octotomy::voxel

@@ -59,7 +59,9 @@ CLI::App& Program::verb(const std::string& name, const std::string& does, const 
                  "Stop after this number of seconds, with exit status 3 and nothing written")
       ->check(above_zero())
       ->type_name("S");
-  sub.add_option("--memory", memory_gb, "Use at most this many GB of memory, else exit status 3")
+  sub.add_option("--memory", memory_gb,
+                 "Use at most this many GB of memory, else exit status 3; a scan that takes more than half "
+                 "of it lies in a temporary file")
       ->check(above_zero())
       ->type_name("GB");
   sub.footer("Example:\n  " + example);

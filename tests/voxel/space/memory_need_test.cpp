@@ -28,6 +28,19 @@ TEST(NeedMemory, RefusesWithBothFiguresWhatDoesNotFit) {
   EXPECT_THROW(need_memory("absurd.nrrd", std::numeric_limits<std::uint64_t>::max(), 2), Error);
 }
 
+TEST(NeedRoom, RefusesWithTheFiguresOfMemoryAndDisk) {
+  EXPECT_NO_THROW(need_room("small.nrrd", 1000, 2));
+  try {
+    need_room("large.nrrd", std::uint64_t{1} << 50, 2);
+    FAIL() << "two million gigabytes fit";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Resource);
+    const std::string text = error.what();
+    for (const char* part : {"large.nrrd: ", "GB of memory", "of disk", "--memory", "TMPDIR"})
+      EXPECT_NE(text.find(part), std::string::npos) << part;
+  }
+}
+
 TEST(LimitMemory, BoundsWhatIsFreeAndWhatIsGiven) {
 #ifdef OCTOTOMY_SANITIZED
   GTEST_SKIP() << "a sanitizer's shadow takes terabytes of data";
