@@ -59,7 +59,8 @@ Shells shells_of(const brep::Linked& linked) {
   return found;
 }
 
-/// Larger shells without a centre would be sheets of thousands of voxels between two layers of centres.
+/// Largest volume of a tested shell, in voxels. A larger shell without a voxel's centre would be a sheet of
+/// thousands of voxels between two layers of centres.
 constexpr double most_voxels = 4096.0;
 
 /// The faces of each small shell; none for the others.
@@ -89,8 +90,9 @@ double twice_area(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c)
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// Adds the rows that cross a triangle, whose corners are in voxels. Rows are moved by a part of a voxel that
-/// no lattice of samples has, so that they meet no corner or edge of a mesh along the lattice.
+/// Adds the crossings of a triangle with rows of voxel centres along x. Corners are in voxels. Rows are moved
+/// by a part of a voxel that no lattice of samples has, so that they meet no corner or edge of a mesh along
+/// the lattice.
 void add_crossings(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
                    std::vector<Crossing>& crossings) {
   constexpr double by_y = 1.37e-7, by_z = 2.71e-7;
@@ -110,8 +112,7 @@ void add_crossings(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c
     }
 }
 
-/// Whether a closed shell encloses no voxel's centre. Returns false in doubt: if rounding lost or doubled a
-/// crossing.
+/// Whether a closed shell encloses no voxel's centre. If rounding lost or doubled a crossing, returns false.
 bool is_between_centres(const brep::Triangles& mesh, const std::vector<std::uint32_t>& faces,
                         const voxel::Lattice& lattice) {
   std::vector<Crossing> crossings;
@@ -129,7 +130,7 @@ bool is_between_centres(const brep::Triangles& mesh, const std::vector<std::uint
   return true;
 }
 
-/// A speck as a place; `faces` are its own.
+/// The place of a speck with these faces.
 WorstPlace place_of(const brep::Triangles& mesh, const std::vector<std::uint32_t>& faces, double volume_mm3) {
   glm::dvec3 low_mm(std::numeric_limits<double>::infinity()), high_mm(-low_mm);
   for (const std::uint32_t face : faces)
