@@ -96,7 +96,9 @@ struct SharePoint {
 /// symmetrical Gaussian quadrature rules for the triangle", 1985).
 std::array<SharePoint, 6> share_points_of(const Triangle& triangle) {
   struct Orbit {
-    double share, corner, side;  // weight of a point; its barycentric coordinates: one corner's, each other's
+    // `share`: weight of a point; `corner`, `side`: its barycentric coordinates for one corner, and for each
+    // other corner
+    double share, corner, side;
   };
   constexpr std::array<Orbit, 2> orbits{{{0.223381589678011, 0.108103018168070, 0.445948490915965},
                                          {0.109951743655322, 0.816847572980459, 0.091576213509771}}};
@@ -454,8 +456,8 @@ class Modeller {
     model_.rims_mm2 += std::min(all_mm2, coverage * std::sqrt(squares));
   }
 
-  /// Returns for each face the number of its set of adjacent coplanar faces. A face in a lattice plane is a
-  /// set of its own.
+  /// Returns for each face the number of the set of adjacent coplanar faces that contains it. A face in a
+  /// lattice plane is a set of its own.
   std::vector<std::uint32_t> flat_sets() const {
     brep::DisjointSets sets(triangles_.faces.size());
     struct Pair {
@@ -567,8 +569,8 @@ class Modeller {
   };
 
   /// Area lost per unit length of an edge whose faces turn by `angle`, for voxels of edge 1; see `sharp`
-  /// above. The turn counts as 165 degrees at most, because a wedge of less than 15 degrees ends before it
-  /// loses more.
+  /// above. The turn counts as 165 degrees at most. The formula has no bound towards 180 degrees, but a wedge
+  /// of less than 15 degrees ends before it loses more area than that.
   static double sharp_loss(double angle) {
     constexpr double bluntest = 75.0 / 180.0 * pi, sharpest = 165.0 / 180.0 * pi;
     const double turn = std::min(std::abs(angle), sharpest);
@@ -623,8 +625,8 @@ class Modeller {
       model_.curvature_mm += std::abs(cell.mm);
     });
   }
-  /// Adds the volume gained at an edge between two displaced planes, or the uncertain rim of one displaced
-  /// plane.
+  /// Adds what counting gains at an edge: between two displaced planes a volume; at the rim of one displaced
+  /// plane an area, and a volume of unknown sign.
   void add_displaced(std::uint32_t side, double angle) {
     const std::uint32_t a = side / 3, b = linked_.opposite[side] / 3;
     if (!moved_[a] && !moved_[b]) return;

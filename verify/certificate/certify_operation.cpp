@@ -24,7 +24,8 @@ double undecided_mm(double reach_mm, double shift_mm) {
   return shift_mm + 64.0 * std::numeric_limits<double>::epsilon() * reach_mm;
 }
 
-/// Voxel centres at which the kernels differ, farther than `within_mm` from the result's surface.
+/// Counts the voxel centres at which the kernels differ and that are farther than `within_mm` from the
+/// result's surface. `farthest_mm` is the farthest one of all differing centres.
 struct DifferingCentres {
   std::size_t count = 0;
   glm::dvec3 farthest_mm{0.0};

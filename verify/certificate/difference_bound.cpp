@@ -61,7 +61,7 @@ constexpr double edge_shift = 0.3;
 /// Relative error of a sum of many terms of one sign: some units in the last place in each kernel.
 constexpr double rounded_sums = 64.0 * std::numeric_limits<double>::epsilon();
 
-/// Spacings for the curvature integral (see `bent` above).
+/// Returns the spacings for the curvature integral: those of the samples, limited as stated for `bent` above.
 glm::dvec3 seen_spacing_mm(const glm::dvec3& sample_mm, const glm::dvec3& voxel_mm) {
   const double finest_mm = std::min({sample_mm.x, sample_mm.y, sample_mm.z});
   return glm::min(glm::min(sample_mm, 2.0 * voxel_mm), glm::dvec3(3.0 * finest_mm));

@@ -21,8 +21,8 @@ constexpr const char* of_others = "the answer to be judged";
 constexpr const char* lacks_part = "the answer lacks a part there";
 constexpr const char* has_more = "the answer has a part there that it must not have";
 
-/// Bound of the rounding of coordinates in a file. They have 32 bits, and their unit in the last place is
-/// 2^-23 of the coordinate. A program rounds once when it computes and once when it writes.
+/// Bound of the rounding of coordinates in a file. Files hold 32-bit coordinates, whose unit in the last
+/// place is 2^-23 of the coordinate. A program rounds once when it computes and once when it writes.
 double rounding_mm(const brep::Solid& solid) {
   const brep::Size& size = solid.size();
   return 0x1p-22 * glm::length(glm::max(glm::abs(size.low_mm), glm::abs(size.high_mm)));

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::uint32_t no_shell = std::numeric_limits<std::uint32_t>::max();
 
-/// The connected sets of triangles, in the order of their first triangles.
+/// The connected sets of a mesh's triangles, in the order of their first triangles.
 struct Shells {
   std::vector<double> volumes_mm3;  ///< negative for a cavity
   std::vector<std::uint32_t> of_face;
@@ -63,7 +63,7 @@ Shells shells_of(const brep::Linked& linked) {
 /// thousands of voxels between two layers of centres.
 constexpr double most_voxels = 4096.0;
 
-/// The faces of each small shell; none for the others.
+/// Returns for each shell its faces if it is small, and no faces otherwise.
 std::vector<std::vector<std::uint32_t>> faces_of_small(const Shells& found, double voxel_mm3) {
   std::vector<std::vector<std::uint32_t>> faces(found.volumes_mm3.size());
   const auto is_small = [&](std::uint32_t shell) {

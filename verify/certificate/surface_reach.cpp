@@ -49,7 +49,7 @@ double area_of(const brep::Triangles& mesh) {
   return area_mm2;
 }
 
-/// The first triangle at each vertex.
+/// Returns for each vertex the lowest number of a triangle at this vertex.
 std::vector<std::uint32_t> first_faces(const brep::Triangles& mesh) {
   std::vector<std::uint32_t> first(mesh.points_mm.size(), std::numeric_limits<std::uint32_t>::max());
   for (std::uint32_t face = 0; face < mesh.faces.size(); ++face)

@@ -9,7 +9,7 @@
 
 namespace octotomy::verify {
 
-/// The region and the accuracy of judge_reach().
+/// The region in which judge_reach() compares surfaces, and how finely it samples them.
 struct ReachOptions {
   voxel::Box world_mm;      ///< box at whose border the answer ends, unlike the expected surface
   double shift_mm = 0.0;    ///< how far earlier Booleans moved the operand; added to the reach

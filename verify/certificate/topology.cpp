@@ -52,7 +52,7 @@ bool set_centres_of_blocks(const std::array<SliceBits, 3>& slices, SliceBits& ce
   return any;
 }
 
-/// The parts that hold a block of three voxels a side.
+/// Returns the parts of an octree that hold a block of three voxels a side.
 Octree with_blocks(const Octree& octree, Neighbours neighbours) {
   Octree large = voxel::components_of_at_least(octree, 27, neighbours);
   if (large.is_empty()) return large;
@@ -87,7 +87,7 @@ Unmatched told(const Octree& of_voxels, const Octree& of_mesh, Neighbours neighb
   return found;
 }
 
-/// The components of `parts` that share no voxel with `set`.
+/// Returns the components of `parts` that share no voxel with `set`.
 Octree apart_from(const Octree& parts, const Octree& set, Neighbours neighbours) {
   return parts.is_empty() ? parts : difference(parts, voxel::components_that_meet(parts, set, neighbours));
 }

@@ -414,7 +414,7 @@ class Reading {
   SampleMask filled_;           ///< samples of a third density, which count as surroundings
   SampleDensity all_, beside_;  ///< density of most of the scan, and of the samples beside the solid
   bool is_of_two_ = false;      ///< treat the scan as one of two densities, without a third
-  bool is_beside_ = false;      ///< beside_ comes from samples beside the solid; enough reach the bound
+  bool is_beside_ = false;      ///< whether beside_ was measured beside the solid
   double low_ = 0.0, background_ = 0.0, contrast_ = 0.0, noise_ = 0.0, least_seen_ = 0.0, white_ = 0.0;
 };
 

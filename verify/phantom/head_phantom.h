@@ -16,7 +16,7 @@ struct HeadTissues {
   double air = -1000.0;
   double soft = 40.0;
   double bone = 560.0;
-  double tooth_core = 1800.0;  ///< over two millimetres below a tooth's surface; the rest has `bone`
+  double tooth_core = 1800.0;  ///< more than 2 mm below a tooth's surface; the rest has `bone`
   double headrest = -150.0;
 };
 

@@ -346,7 +346,7 @@ HeadSolids build() {
   head.air = air();
   head.skin = skin();
   // Bone keeps a distance from the outside and from the airways. A form's value never exceeds the distance to
-  // its surface, so the soft tissue between them is at least as thick as `grown` states.
+  // its surface, so the soft tissue between them is at least as thick as the distance passed to `grown`.
   const ImplicitSolid lined = grown(head.skin, -3.0) - grown(head.air, 2.0);
   const ImplicitSolid orbits = both_sides(orbit_left());
   ImplicitSolid face = blended(brow(), both_sides(orbital_rim_left()), 3.0);

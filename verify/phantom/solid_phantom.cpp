@@ -146,7 +146,7 @@ SolidPhantom cut_sphere(const SolidFrame& place) {
           place.centre_mm - normal * (cap_centre * cap_mm3(r, height) / volume)};
 }
 
-/// The cells of a chequerboard with an odd number of even indices.
+/// The cells of a chequerboard: those for which an odd number of the three indices is even.
 voxel::Octree chequerboard(const voxel::Universe& universe) {
   const voxel::Box bounds = voxel::bounds(universe.lattice());
   const glm::dvec3 cell_mm = (bounds.high_mm - bounds.low_mm) / static_cast<double>(chequers);

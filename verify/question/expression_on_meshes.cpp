@@ -278,8 +278,7 @@ void MeshExpressions::corefine(brep::Operation operation, Pair& pair) {
     learn(brep::booleans(pair.a, pair.b, {true, true, true, false}, stop_));
     if (pair.answers.contains(operation)) return;
   } catch (const brep::Error& error) {
-    // Perhaps the mesh kernel cannot represent one of the other two answers only. So the required answer is
-    // computed alone.
+    // The error may concern only one of the other two answers, so the required answer is now computed alone.
     if (error.code() == brep::ErrorCode::Cancelled) throw;
   }
   learn(brep::booleans(pair.a, pair.b,

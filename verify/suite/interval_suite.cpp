@@ -175,7 +175,7 @@ bool is_likely(const IntervalCoverage& row, double least) {
 }
 
 std::vector<IntervalCoverage> drawn_suite(const IntervalSuiteOptions& options) {
-  if (options.solids < 1) throw voxel::InvalidInput("a suite of intervals takes at least one solid");
+  if (options.solids < 1) throw voxel::InvalidInput("a suite of intervals needs at least one solid");
   std::vector<Errors> all(static_cast<std::size_t>(options.solids));
   const MeasureSizes measure = options.measure ? options.measure : sizes_of;
   voxel::SharedProgress done(options.progress, all.size());
@@ -205,7 +205,7 @@ std::vector<IntervalCoverage> drawn_suite(const IntervalSuiteOptions& options) {
 }
 
 std::vector<IntervalCoverage> interval_suite(const IntervalSuiteOptions& options) {
-  if (options.solids < 1) throw voxel::InvalidInput("a suite of intervals takes at least one solid");
+  if (options.solids < 1) throw voxel::InvalidInput("a suite of intervals needs at least one solid");
   std::vector<Errors> all(static_cast<std::size_t>(options.solids));
   voxel::SharedProgress done(options.progress, all.size());
   tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {

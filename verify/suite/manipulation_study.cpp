@@ -160,16 +160,17 @@ RepresentationStudy manipulation_study() {
 
   const auto count = [](std::uint64_t n) { return std::to_string(n); };
   study.beside.push_back({"table 7.2",
-                          "intersection, difference, translation, union: printed s; ours Full voxels",
+                          "intersection, difference, translation, union: printed: seconds; ours: Full voxels",
                           "35 50 280 51",
                           count(voxel_count(inside)) + " " + count(voxel_count(outside)) + " " +
                               count(voxel_count(moved_inside)) + " " + count(voxel_count(merged))});
   study.beside.push_back(
-      {"table 7.4", "display of intersection, difference back to front: printed s; ours visits", "106 103",
-       count(visits_back_to_front(inside)) + " " + count(visits_back_to_front(outside))});
-  study.beside.push_back({"table 7.6", "intersection before, after translation: printed s; ours nodes",
-                          "35 280", count(node_count(inside)) + " " + count(node_count(moved_inside))});
-  study.beside.push_back({"table 7.6", "difference before, after translation: printed s; ours nodes",
+      {"table 7.4", "display of intersection, difference back to front: printed: seconds; ours: visits",
+       "106 103", count(visits_back_to_front(inside)) + " " + count(visits_back_to_front(outside))});
+  study.beside.push_back({"table 7.6",
+                          "intersection before, after translation: printed: seconds; ours: nodes", "35 280",
+                          count(node_count(inside)) + " " + count(node_count(moved_inside))});
+  study.beside.push_back({"table 7.6", "difference before, after translation: printed: seconds; ours: nodes",
                           "55 144", count(node_count(outside)) + " " + count(node_count(moved_outside))});
   table_7_3(universe, study);
   table_7_7({inside, moved_inside, outside, moved_outside}, study);

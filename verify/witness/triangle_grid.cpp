@@ -111,7 +111,7 @@ BoxGrid::BoxGrid(const std::vector<Box>& boxes, double cell_mm) {
   constexpr double most_a_side = 1024.0;
   cell_mm_ = std::max(cell_mm, longest_mm / most_a_side);
   if (!(cell_mm_ > 0.0)) cell_mm_ = 1.0;
-  // Doubles the cells' edge until there are few cells for each box, and few cells in which a box lies.
+  // Doubles the cells' edge until there are few cells for each box, and each box lies in few cells.
   const double most_cells = 16.0 * static_cast<double>(boxes.size()) + 4096.0;
   for (;; cell_mm_ *= 2.0) {
     const glm::dvec3 all = glm::floor((high_mm - low_mm_) / cell_mm_) + 1.0;
