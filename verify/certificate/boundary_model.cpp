@@ -15,9 +15,8 @@
 //          this step over the triangles within 15 degrees of an axis is exact up to the scatter of columns,
 //          which `count` includes. A displaced part adds area past its rim: a displacement d times the
 //          integral of the curvature there (the first variation of area; do Carmo, Differential Geometry of
-//          Curves and
-//          Surfaces, section 3.5), which is d times the rim's length where the surface turns by a right
-//          angle. Parts are displaced independently, so the squares of their areas add up.
+//          Curves and Surfaces, section 3.5), which is d times the rim's length where the surface turns by a
+//          right angle. Parts are displaced independently, so the squares of their areas add up.
 //
 // count    Elsewhere the error of a count is a sum over the reciprocal lattice (Poisson; Kendall, "On the
 //          number of lattice points inside a random oval", 1948). Over all positions of the lattice its
@@ -48,9 +47,8 @@
 //          angle a to one face. The loss is twice h f / 2 crossings along each unit of the edge. Over all
 //          directions, with the 13 directions' mean distance of 1.39 h, the area loses
 //          2 / (3 pi) 1.39 h (1 - t cot t) = 0.295 h (1 - t cot t) along each unit. Up to 75 degrees that is
-//          less than 0.3 of the mean curvature's
-//          0.5 t. The probability of chords: Santalo, Integral Geometry and Geometric Probability, 1976,
-//          chapter 4.
+//          less than 0.3 times 0.5 t, the edge's share of the mean curvature. The probability of chords:
+//          Santalo, Integral Geometry and Geometric Probability, 1976, chapter 4.
 // This file is long because all terms of the model use the same points and displacements.
 #include "verify/certificate/boundary_model.h"
 

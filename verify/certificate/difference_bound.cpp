@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // Bounds the difference of two right answers, an octree and a solid that other code computed.
-// boundary_model.h has the theory and its symbols; the constants are here. The terms of the volume's bound:
+// boundary_model.cpp has the theory and its symbols; the constants are here. Terms of the volume's bound:
 //
 // count        Three standard deviations of a count. Against closed forms (eight solids in 60 random poses
 //              each, spacings 1:1:1 to 5:1:1) the deviation was 0.8 to 1.1 of the predicted one. Narrow cones

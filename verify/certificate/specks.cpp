@@ -2,9 +2,9 @@
 //
 // 1 Shells. Triangles that share an edge belong to one shell. Its volume is that of the tetrahedra from the
 //   shell's own first point, so that no digits cancel far from the origin.
-// 2 Crossings. Of each small shell, every row of centres along the universe's first axis is crossed with the
-//   triangles. A shell encloses a centre if a centre lies between a row's first and second crossing, or third
-//   and fourth, and so on.
+// 2 Crossings. For each small shell, the rows of centres along the universe's first axis are intersected with
+//   its triangles. The shell encloses a centre if a centre lies between a row's first and second crossing, or
+//   third and fourth, and so on.
 #include "verify/certificate/specks.h"
 
 #include <algorithm>

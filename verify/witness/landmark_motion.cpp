@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The weights come from elimination with a choice of pivots, because neither kernel solves them like that.
+// The weights are computed by elimination with a choice of pivots. Neither kernel solves the system in this way.
 #include "verify/witness/landmark_motion.h"
 
 #include <array>

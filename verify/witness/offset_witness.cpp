@@ -22,9 +22,10 @@
 //           place, so no surface is farther from both kinds of places than allowed. There the mesh kernel must
 //           have the wall, and the voxel kernel, which resampled it away, may answer either.
 // On the mean over the surface (offset_allowance_mm):
-//   voxels  On a plane a point is within D / sqrt(12) of a point that is measured to, on the mean of squares
-//           within a third of that squared: D^2 / 36. That lengthens d by D^2 / 72 (1 / d + 1 / r), r the
-//           radius with which the operand bends; three voxels at least, below which nothing is resolved.
+//   voxels  On a plane, the nearest point to which the kernel measures is at most D / sqrt(12) away. The mean
+//           of the squared distance is a third of that squared: D^2 / 36. That lengthens d by
+//           D^2 / 72 (1 / d + 1 / r), r the operand's radius of curvature. r is three voxels at least, because
+//           voxels do not resolve smaller radii.
 //           If only whole voxels are known, an offset follows those that stick out farthest, up to h / 2.
 //   mesh    Chords: a third of the kernel's tolerance, c^2 / (4 b), and the two shares of c above.
 //   edges   Across an operand's edge with an exterior angle t the offset is a sector of a ball. A cell cuts
