@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A brush slides along a piece that starts at a and extends by the vector d. At the position t of the piece it covers
-// a point p if n.(p - a) - t n.d <= h for each face of the brush. Each face limits t on one side, so the brush covers
-// the point if an interval of t is left. For points of a line, each limit is a half-plane over the position on the line and t.
-// These half-planes leave a polygon, whose extent along the first coordinate is the covered part of the line.
+// A brush slides along a piece that starts at a and extends by the vector d. At the position t of the piece
+// it covers a point p if n.(p - a) - t n.d <= h for each face of the brush. Each face limits t on one side,
+// so the brush covers the point if an interval of t is left. For points of a line, each limit is a half-plane
+// over the position on the line and t. These half-planes leave a polygon, whose extent along the first
+// coordinate is the covered part of the line.
 #include "verify/witness/brush_witness.h"
 
 #include <algorithm>
