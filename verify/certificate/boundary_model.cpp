@@ -15,9 +15,8 @@
 //          this step over the triangles within 15 degrees of an axis is exact up to the scatter of columns,
 //          which `count` includes. A displaced part adds area past its rim: a displacement d times the
 //          integral of the curvature there (the first variation of area; do Carmo, Differential Geometry of
-//          Curves and
-//          Surfaces, section 3.5), which is d times the rim's length where the surface turns by a right
-//          angle. Parts are displaced independently, so the squares of their areas add up.
+//          Curves and Surfaces, section 3.5), which is d times the rim's length where the surface turns by a
+//          right angle. Parts are displaced independently, so the squares of their areas add up.
 //
 // count    Elsewhere the error of a count is a sum over the reciprocal lattice (Poisson; Kendall, "On the
 //          number of lattice points inside a random oval", 1948). Over all positions of the lattice its
@@ -48,9 +47,8 @@
 //          angle a to one face. The loss is twice h f / 2 crossings along each unit of the edge. Over all
 //          directions, with the 13 directions' mean distance of 1.39 h, the area loses
 //          2 / (3 pi) 1.39 h (1 - t cot t) = 0.295 h (1 - t cot t) along each unit. Up to 75 degrees that is
-//          less than 0.3 of the mean curvature's
-//          0.5 t. The probability of chords: Santalo, Integral Geometry and Geometric Probability, 1976,
-//          chapter 4.
+//          less than 0.3 times 0.5 t, the edge's share of the mean curvature. The probability of chords:
+//          Santalo, Integral Geometry and Geometric Probability, 1976, chapter 4.
 // This file is long because all terms of the model use the same points and displacements.
 #include "verify/certificate/boundary_model.h"
 
@@ -85,17 +83,20 @@ struct Triangle {
   glm::dvec3 area_vector() const { return 0.5 * glm::cross(p[1] - p[0], p[2] - p[0]); }
 };
 
-/// A point and its share of a triangle.
+/// A quadrature point of a triangle, and the point's weight. A triangle's weights add up to 1.
 struct SharePoint {
   glm::dvec3 p{0.0};
   double share = 0.0;
 };
 
-/// Six weighted points of a triangle, for which integrals of polynomials up to the fourth degree are exact
-/// (Dunavant, "High degree efficient symmetrical Gaussian quadrature rules for the triangle", 1985).
+/// Six weighted points of a triangle. The weighted sum of a polynomial's values at these points is the
+/// polynomial's mean over the triangle, exact up to the fourth degree (Dunavant, "High degree efficient
+/// symmetrical Gaussian quadrature rules for the triangle", 1985).
 std::array<SharePoint, 6> share_points_of(const Triangle& triangle) {
   struct Orbit {
-    double share, corner, side;  // weights of one corner and of the two others
+    // `share`: weight of a point; `corner`, `side`: its barycentric coordinates for one corner, and for each
+    // other corner
+    double share, corner, side;
   };
   constexpr std::array<Orbit, 2> orbits{{{0.223381589678011, 0.108103018168070, 0.445948490915965},
                                          {0.109951743655322, 0.816847572980459, 0.091576213509771}}};
@@ -108,17 +109,18 @@ std::array<SharePoint, 6> share_points_of(const Triangle& triangle) {
   return pieces;
 }
 
-/// A plane n . q = c of index space q whose normal has small integers.
+/// A lattice plane: the points q of index space with normal . q = offset. The normal is a vector of small
+/// integers.
 struct LatticePlane {
   glm::ivec3 normal{0};
   double offset = 0.0;
 };
 
-/// The largest distance, in voxels, of a lattice plane's points from it: a thousand times the rounding of
-/// coordinates in a universe of 4096 voxels.
+/// Points within this distance, in voxels, of a plane count as lying in the plane: a thousand times the
+/// rounding of coordinates in a universe of 4096 voxels.
 constexpr double flatness_voxels = 1000.0 * 4096.0 * std::numeric_limits<double>::epsilon();
-/// The largest component of a LatticePlane's normal. Planes with larger normals err by less than h / 8 in each voxel,
-/// and not coherently.
+/// The largest component of a LatticePlane's normal. Counting moves a plane with a larger normal by less than
+/// h / 8 in each voxel, and not coherently.
 constexpr int largest_index = 3;
 
 std::optional<LatticePlane> lattice_plane(const std::array<glm::dvec3, 3>& q) {
@@ -155,8 +157,8 @@ std::array<glm::dvec3, 13> units(const glm::dmat3& from_index) {
   return unit;
 }
 
-/// The share of the sphere's directions that are nearest to each unit vector, from a Fibonacci lattice of
-/// 20 000 points on the sphere: the error of a share is below 1 %.
+/// For each of 13 lines: the share of all directions that are nearer to this line than to the others.
+/// Computed from a Fibonacci lattice of 20 000 points on the sphere; the error of a share is below 1 %.
 std::array<double, 13> shares_of_space(const std::array<glm::dvec3, 13>& unit) {
   constexpr int points = 20000;
   std::array<int, 13> count{};
@@ -175,11 +177,12 @@ std::array<double, 13> shares_of_space(const std::array<glm::dvec3, 13>& unit) {
   return share;
 }
 
-/// The variance of a count, computed from the boundary's normals, all in voxels.
+/// Computes the variance of a count of voxel centres from the areas and normals of the boundary. Lengths are
+/// in voxels.
 class CountVariance {
  public:
   CountVariance() : unit_(units(glm::dmat3(1.0))) {}
-  /// An area, and one bit for each cone that contains its normal.
+  /// A triangle's area, and one bit for each cone that contains the triangle's normal.
   struct Share {
     double size = 0.0;
     std::uint64_t cones = 0;
@@ -200,7 +203,8 @@ class CountVariance {
     }
   }
   double sum() const {
-    // Sum of 1 / |k|^4 over all integer vectors but zero, and over the multiples of one unit vector.
+    // Sums of 1 / |k|^4: over all integer vectors k but zero, and over the positive multiples of a unit
+    // vector.
     constexpr double epstein = 16.5323;
     constexpr double multiples = pi * pi * pi * pi / 90.0;
     double counted = 0.0, variance = 0.0;
@@ -212,34 +216,35 @@ class CountVariance {
       double most = 0.0;
       for (std::size_t w = 0; w < cosines.size(); ++w) {
         const double per_angle = in_cone_[d][w] / (2.0 * pi * (1.0 - cosines[w]));
-        // The largest variance is that of a fully coherent error: evenly distributed between half of a
-        // lattice plane's distance 1 / |g| inward and half of it outward.
+        // The variance is at most that of a fully coherent error. Such an error moves the whole area by up to
+        // half of the distance 1 / |g| of lattice planes, inward or outward, all distances being equally
+        // likely.
         const double in_step = in_cone_[d][w] * in_cone_[d][w] / (12.0 * square);
         most = std::max(most, std::min(both / (4.0 * pi * pi) * per_angle, in_step));
       }
       variance += most;
     }
-    // Normals along +k and along -k count: twice the even density S / (4 pi).
+    // Evenly spread normals have the area S / (4 pi) per solid angle. Normals along k and along -k both
+    // contribute.
     return variance + (epstein - counted) / (4.0 * pi * pi) * area_ / (2.0 * pi);
   }
 
  private:
-  /// 15, 7 and 3.5 degrees.
+  /// Cosines of the cones' half-angles: 15, 7 and 3.5 degrees.
   static constexpr std::array<double, 3> cosines{0.9659258262890683, 0.992546151641322, 0.9981347984218669};
   std::array<glm::dvec3, 13> unit_;
   std::array<std::array<double, 3>, 13> in_cone_{};
   double area_ = 0.0;
 };
 
-/// The count's variance of flat parts of this area or more, in voxel faces, is computed from their Fourier
-/// transforms. Smaller parts are numerous and their errors independent.
+/// A flat part of at least this area, in voxel faces, contributes to the count's variance by its Fourier
+/// transform. Smaller parts are numerous, and their errors are independent.
 constexpr double large_facet = 16.0;
 
-/// The cosine of 15 degrees. A part within that angle of an axis lies between two layers of centres over
-/// several voxels.
+/// The cosine of 15 degrees. A part whose normal is within that angle of an axis lies between two layers of
+/// centres over several voxels.
 constexpr double nearly_along = 0.9659258262890683;
 
-/// Computes the model of one mesh.
 class Modeller {
  public:
   Modeller(const brep::Solid& solid, const BoundaryFrame& frame)
@@ -301,7 +306,8 @@ class Modeller {
     return {{points_voxel_[corner[0]], points_voxel_[corner[1]], points_voxel_[corner[2]]}};
   }
 
-  /// A face's area, and the second and fourth moments of each piece's area about the frame's origin.
+  /// A face's area. For each of its six pieces: the area times the squared distance from the frame's origin
+  /// of moments, and times the fourth power of that distance.
   struct ArmsOfFace {
     double mm2 = 0.0;
     std::array<double, 6> mm4{}, mm6{};
@@ -318,8 +324,8 @@ class Modeller {
     return made;
   }
 
-  /// Adds the count's variance for the boundary outside lattice planes: large flat facets by their
-  /// transforms, the rest by its normals.
+  /// Adds the count's variance for the boundary outside lattice planes. Large flat facets contribute by their
+  /// Fourier transforms, all other faces by their normals.
   void add_counts() {
     const std::vector<std::uint32_t> set = flat_sets();
     std::vector<double> area(set.size(), 0.0);
@@ -375,15 +381,15 @@ class Modeller {
     add_nearly_rims();
   }
 
-  /// A face nearly along the lattice. `way`: its normal's axis, 1 to 3, negative for a normal along the
-  /// negative axis; 0 if the face is not nearly along the lattice. `mm3`: volume of the voxels beyond the
-  /// face, negative where voxels are lacking.
+  /// The volume that counting adds beyond a face nearly along the lattice; negative where counting loses
+  /// volume. `way`: the axis of the face's normal, 1 to 3, negative for a normal along the negative axis; 0
+  /// for a face that is not nearly along the lattice.
   struct Displaced {
     int way = 0;
     double mm3 = 0.0;
   };
-  /// The volumes of the voxels beyond the pieces of a face nearly along the lattice; any other face has no
-  /// pieces.
+  /// The pieces of a face nearly along the lattice, with the volume that counting adds beyond each piece.
+  /// `count` is 0 for any other face.
   struct NearlyPlane {
     std::size_t count = 0;
     int way = 0;
@@ -392,8 +398,8 @@ class Modeller {
 
     Displaced displaced() const { return {way, std::accumulate(mm3.begin(), mm3.end(), 0.0)}; }
   };
-  /// The pieces of a face whose normal is nearly along an axis. A column of centres along that axis follows
-  /// the face to half a voxel's step.
+  /// Returns the pieces of a face whose normal is nearly along an axis; none for any other face. In each
+  /// column of centres along that axis, counting moves the face to the middle between two centres.
   NearlyPlane nearly_plane_of(std::size_t face, const glm::dvec3& across) const {
     NearlyPlane made;
     int axis = 0;
@@ -412,8 +418,7 @@ class Modeller {
     return made;
   }
 
-  /// Joins faces nearly along the lattice, of one `way`, to connected parts. Adds the area that each part gains past
-  /// its rim.
+  /// Joins adjacent faces of one `way` into parts, and adds the area that each part gains past its rim.
   void add_nearly_rims() {
     brep::DisjointSets sets(nearly_.size());
     const auto each_side = [&](const auto& take) {
@@ -449,7 +454,8 @@ class Modeller {
     model_.rims_mm2 += std::min(all_mm2, coverage * std::sqrt(squares));
   }
 
-  /// For each face, the number of its set of coplanar faces. A face in a lattice plane is a set of its own.
+  /// Returns for each face the number of the set of adjacent coplanar faces that contains it. A face in a
+  /// lattice plane is a set of its own.
   std::vector<std::uint32_t> flat_sets() const {
     brep::DisjointSets sets(triangles_.faces.size());
     struct Pair {
@@ -482,7 +488,7 @@ class Modeller {
     return set;
   }
 
-  /// Adds to the facet those sides of a face at which the facet ends.
+  /// Adds to the facet those sides of a face beyond which another facet begins.
   void add_rims(Facet& facet, std::uint32_t face, const std::vector<std::uint32_t>& set) const {
     for (std::uint32_t side = 3 * face; side != 3 * face + 3; ++side) {
       const std::uint32_t beyond = linked_.opposite[side] / 3;
@@ -491,7 +497,7 @@ class Modeller {
     }
   }
 
-  /// An area and its second and fourth moments.
+  /// The area of several faces, and the sums of its second and fourth moments.
   struct Arms {
     double mm2 = 0.0, mm4 = 0.0, mm6 = 0.0;
     void add(const ArmsOfFace& face) {
@@ -512,7 +518,7 @@ class Modeller {
     model_.count_mm10 += mm6 * arms.mm6 / arms.mm2;
   }
 
-  /// How far counting moves a plane outward.
+  /// The displacement of a plane by counting; `mm` is positive outward.
   struct Moved {
     double mm = 0.0;
     bool tied = false;  ///< the plane goes through voxel centres, so it may move to either side
@@ -520,7 +526,7 @@ class Modeller {
   };
 
   Moved add_plane(const LatticePlane& plane, const Triangle& triangle, double area_mm2) {
-    // A displacement by 1 in n . q is a displacement by 1 / |n'| millimetres, n' the normal in LPS.
+    // A step of 1 in n . q is a step of 1 / |n'| millimetres, with n' the normal in LPS.
     const glm::dmat3 normal_from_voxel =
         glm::transpose(glm::inverse(glm::dmat3(frame_.lattice.lps_from_voxel)));
     const glm::dvec3 normal = normal_from_voxel * glm::dvec3(plane.normal);
@@ -545,9 +551,10 @@ class Modeller {
     return moved;
   }
 
-  /// An edge's contribution to its cell, or the sum of a cell. The sum has the position of the last edge.
+  /// The integral of mean curvature along an edge, or over the edges of a cell. A sum has the position of the
+  /// edge that was added last.
   struct Bend {
-    std::uint64_t cell = 0;  // of three samples a side, and the direction of the normal
+    std::uint64_t cell = 0;  // number of a cell of three samples a side, and of the normal's nearest axis
     double mm = 0.0;
     double mm3 = 0.0;
     glm::dvec3 arm_mm{0.0};
@@ -560,8 +567,8 @@ class Modeller {
   };
 
   /// Area lost per unit length of an edge whose faces turn by `angle`, for voxels of edge 1; see `sharp`
-  /// above. The turn counts as 165 degrees at most, because a wedge of less than 15 degrees ends before it
-  /// loses more.
+  /// above. The turn counts as 165 degrees at most. The formula has no bound towards 180 degrees, but a wedge
+  /// of less than 15 degrees ends before it loses more area than that.
   static double sharp_loss(double angle) {
     constexpr double bluntest = 75.0 / 180.0 * pi, sharpest = 165.0 / 180.0 * pi;
     const double turn = std::min(std::abs(angle), sharpest);
@@ -569,13 +576,14 @@ class Modeller {
     return std::max(0.0, 0.295 * (1.0 - turn / std::tan(turn)) - 0.3 * 0.5 * turn);
   }
 
-  /// An edge with its dihedral angle, and its contribution to its cell if it bends.
+  /// The dihedral angle of an inner edge, and the edge's curvature if the angle is not zero.
   struct BentEdge {
     double angle = 0.0, sharp_mm = 0.0;
     bool is_inner = false, bends = false;
     Bend bend;
   };
-  /// The edge of a side; empty for the second side of an edge, so that each edge counts once.
+  /// Computes the edge of a side. The second side of an edge returns an empty BentEdge, so that each edge
+  /// counts once.
   BentEdge bent_edge(std::uint32_t side) const {
     BentEdge made;
     if (!linked_.is_inner_edge(side)) return made;
@@ -615,7 +623,8 @@ class Modeller {
       model_.curvature_mm += std::abs(cell.mm);
     });
   }
-  /// Adds the gain along an edge between two displaced planes, or at the rim of one displaced plane.
+  /// Adds what counting gains at an edge: between two displaced planes a volume; at the rim of one displaced
+  /// plane an area, and a volume of unknown sign.
   void add_displaced(std::uint32_t side, double angle) {
     const std::uint32_t a = side / 3, b = linked_.opposite[side] / 3;
     if (!moved_[a] && !moved_[b]) return;
@@ -627,7 +636,8 @@ class Modeller {
     model_.rims_mm2 += mm2;
     model_.unsure.add(mm2 * longest_mm_, glm::length(middle - frame_.about_mm));
   }
-  /// The volume that two displaced planes gain at their common edge beyond their own gains.
+  /// Adds the volume at the common edge of two displaced planes, which the planes' own displacements leave
+  /// out.
   void add_corner(const Moved& a, const Moved& b, double angle, double length_mm, const glm::dvec3& arm_mm) {
     // Parallel planes have no common edge. An edge between their triangles comes from rounding.
     if (a.normal == b.normal || a.normal == -b.normal || !(std::abs(std::sin(angle)) > flatness_voxels))
@@ -661,7 +671,7 @@ class Modeller {
   const BoundaryFrame& frame_;
   const brep::Triangles& triangles_;
   std::vector<glm::dvec3> points_voxel_;     ///< the points of the triangles
-  std::vector<std::optional<Moved>> moved_;  ///< of each face that is part of a lattice plane
+  std::vector<std::optional<Moved>> moved_;  ///< by face; none for a face outside all lattice planes
   std::vector<Displaced> nearly_;            ///< by face
   const double longest_mm_ =
       std::max({frame_.sample_spacing_mm.x, frame_.sample_spacing_mm.y, frame_.sample_spacing_mm.z});

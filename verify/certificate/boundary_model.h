@@ -6,11 +6,11 @@
 #include "brep/mesh/solid.h"
 #include "voxel/space/lattice.h"
 
-// Models the errors of a solid's boundary: of counting voxel centres inside it, and of computing it as an
-// isosurface of samples. The source has the derivations.
+// Models two errors of a solid's volume and area: that of counting voxel centres inside the boundary, and
+// that of replacing the boundary by an isosurface of samples. boundary_model.cpp has the derivations.
 namespace octotomy::verify {
 
-/// A signed volume that a boundary gains, and its first moment about a point.
+/// A signed volume gained at a boundary, and its first moment about BoundaryFrame::about_mm.
 struct VolumeShift {
   double mm3 = 0.0;
   glm::dvec3 mm4{0.0};
@@ -20,7 +20,8 @@ struct VolumeShift {
   }
 };
 
-/// An unsigned volume, and the volume times its arm and its arm squared.
+/// An unsigned volume, and the volume times its distance from BoundaryFrame::about_mm and times the distance
+/// squared.
 struct VolumeSpread {
   double mm3 = 0.0;
   double mm4 = 0.0;
@@ -34,38 +35,43 @@ struct VolumeSpread {
 
 struct BoundaryModel {
   double area_mm2 = 0.0;
-  glm::dvec3 flat_mm2{0.0};   ///< area of planes along the universe's planes, by the axis of their normal
-  double coherent_mm2 = 0.0;  ///< area of all planes whose normal has small integers in voxels
-  /// Volume by which counting centres displaces the planes of `coherent_mm2`: exact, with its sign.
+  glm::dvec3 flat_mm2{0.0};   ///< area in planes perpendicular to a lattice axis, by that axis
+  double coherent_mm2 = 0.0;  ///< area in lattice planes, whose normal in voxels has small integers
+  /// Signed volume by which counting centres displaces the planes of `coherent_mm2`. It is exact. Planes
+  /// through voxel centres are in `unsure` instead.
   VolumeShift planes;
   VolumeSpread planes_without_sign;
-  /// The shift of boundary that is curved or rough but nearly along the lattice, as a plane is after blur and
-  /// noise.
+  /// Signed volume by which counting centres displaces parts of the boundary that are nearly perpendicular to
+  /// an axis but not flat, for instance a plane after blur and noise.
   VolumeShift nearly_planes;
-  /// Area gained or lost past the rims of `planes` and `nearly_planes`: the rims' length times the displacement.
+  /// Area gained or lost past the rims of `planes` and `nearly_planes`: the length of the rims times the
+  /// displacement.
   double rims_mm2 = 0.0;
-  /// Displacement of unknown sign: of planes through voxel centres and of the rims of planes. An isosurface
-  /// chamfers a rim over the width of a sample, so the rim is not found to be flat.
+  /// Volume of displacements of unknown sign: of planes through voxel centres, and at the rims of planes. An
+  /// isosurface is chamfered there over the width of a sample, so the model finds no plane.
   VolumeSpread unsure;
-  double tied_mm3 = 0.0;  ///< the part of planes through voxel centres: half a layer of voxels
-  /// The variance of a count over all positions of the lattice, for the boundary outside lattice planes: in mm6,
-  /// times the arm squared, and times the fourth power of the arm.
+  double tied_mm3 = 0.0;  ///< the share of planes through voxel centres in `unsure`: half a layer of voxels
+  /// Variance of the counted volume over all positions of the lattice, for the boundary outside lattice
+  /// planes (mm6). The same variance times the mean squared arm (mm8), and times the mean fourth power of the
+  /// arm (mm10).
   double count_mm6 = 0.0, count_mm8 = 0.0, count_mm10 = 0.0;
   /// The integral of mean curvature in units of samples: half the sum over edges of length times angle times
-  /// the squared spacing of samples across the edge, positive for convex edges. `bent` keeps the sign;
-  /// `bent_without_sign` adds the absolute values of cells of three samples a side.
+  /// the squared spacing of samples across the edge, positive for convex edges. `bent` keeps the sign.
+  /// `bent_without_sign` adds the absolute values of the sums over cells of three samples a side.
   VolumeShift bent;
   VolumeSpread bent_without_sign;
-  double curvature_mm = 0.0;  ///< the integral of absolute mean curvature, by the same cells
-  /// Area that lattice lines miss at sharp edges beyond 0.3 times the mean curvature, per millimetre of voxel edge.
+  double curvature_mm = 0.0;  ///< the integral of mean curvature, as the sum of the cells' absolute values
+  /// Area that lattice lines miss at sharp edges, in mm2 per millimetre of voxel edge: the part beyond 0.3
+  /// times the mean curvature.
   double sharp_mm = 0.0;
-  /// The Crofton formula with 13 directions on these triangles, in the limit of fine voxels.
+  /// The area that the Crofton formula with 13 directions yields for these triangles, in the limit of fine
+  /// voxels.
   double crofton13_mm2 = 0.0;
 };
 
 struct BoundaryFrame {
-  voxel::Lattice lattice;             ///< whose centres count the inside
-  glm::dvec3 sample_spacing_mm{1.0};  ///< of the isosurface's samples, along the LPS axes
+  voxel::Lattice lattice;             ///< of the voxels; a voxel counts if its centre is inside
+  glm::dvec3 sample_spacing_mm{1.0};  ///< of the samples of the isosurface, along LPS axes
   glm::dvec3 about_mm{0.0};           ///< origin of the moments
 };
 /// Cost: linear in the solid's edges, parallel.

@@ -22,8 +22,8 @@ std::string with_unit(double value, const std::string& unit) {
   return voxel::rounded(value) + (unit.empty() ? "" : " " + unit);
 }
 
-/// "The volume is 768 mm3 in the voxel kernel and 808 mm3 in the mesh kernel, 39.6 mm3 apart; theory allows
-/// 12 mm3."
+/// Returns a sentence, for example: "The volume is 768 mm3 in the voxel kernel and 808 mm3 in the mesh
+/// kernel, 39.6 mm3 apart; theory allows 12 mm3."
 std::string disagreement(const Certificate& certificate, const Comparison& comparison) {
   const std::string difference = with_unit(comparison.difference, comparison.unit);
   std::string text = comparison.statement;
@@ -51,7 +51,7 @@ void lower(Certificate& certificate, Verdict verdict, const std::string& reason)
 }
 
 void add_comparison(Certificate& certificate, Comparison comparison, Verdict worst_verdict) {
-  // The comparison is written so that a NaN difference fails.
+  // A difference that is not a number is not within any tolerance, so it fails.
   const auto within = [&](double allowed) { return comparison.difference <= allowed; };
   if (comparison.tolerance && !within(*comparison.tolerance)) {
     comparison.verdict =

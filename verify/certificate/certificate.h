@@ -24,7 +24,8 @@ struct Answer {
   double volume_mm3 = 0.0;
   double area_mm2 = 0.0;
   std::optional<glm::dvec3> centroid_mm;
-  /// Each piece of code that computed the answer or its operands, back to the scan. One clause each, sorted.
+  /// Names of all code that computed the answer or its operands, back to the scan: one clause each, in
+  /// ascending order.
   std::vector<std::string> makers = {};
 };
 /// The makers that two answers share.
@@ -34,7 +35,7 @@ std::vector<std::string> shared_makers(const Answer& a, const Answer& b);
 struct ToleranceTerm {
   std::string name;     ///< a key: "count", "flat", ...
   std::string cause;    ///< a sentence for people
-  std::string formula;  ///< its size, in symbols that the source explains
+  std::string formula;  ///< formula of value_mm3, for the report
   double value_mm3 = 0.0;
 };
 
@@ -42,12 +43,12 @@ struct ToleranceTerm {
 struct Comparison {
   std::string quantity;  ///< "volume", "centroid", "euler", ...
   std::string unit;      ///< "mm3", "mm2", "mm", "mm5"; empty for a count
-  /// The two kernels' answers. None if the quantity itself is a difference, such as a distance between the
-  /// two.
+  /// Each kernel's value. None if the quantity itself is a difference, such as the distance between the
+  /// answers' surfaces.
   std::optional<double> voxel = {}, mesh = {};
   double difference = 0.0;               ///< compared with the tolerance, not negative
   std::optional<double> tolerance = {};  ///< none: theory has no bound, and there is no verdict
-  std::string formula = {};              ///< of the tolerance, or why there is none
+  std::string formula = {};              ///< of the tolerance, or the reason why there is none
   /// First clause of the reason where the difference is too large; % stands for the difference: "The
   /// centroids are % apart". Empty: the reason quotes both answers.
   std::string statement = {};
@@ -56,18 +57,19 @@ struct Comparison {
 
 /// An object that is too small or too thin for its voxels. Its PASS proves little; its FAIL remains valid.
 struct Unresolved {
-  /// The smallest extent of its box, or its mean thickness. None: the object is large enough, but its bound
-  /// is too wide.
+  /// The smallest extent of the object's box, or the object's mean thickness. None: the object is unresolved
+  /// for another reason.
   std::optional<double> extent_voxels;
   std::string reason;  ///< a clause: "the object's smallest extent is 2.4 voxels, six are needed"
 };
-/// Share of the object's volume. A certificate that could pass with a larger wrong part is not evidence.
+/// A certificate that could pass with a wrong part larger than this share of the object's volume is no
+/// evidence.
 inline constexpr double evident_share = 0.1;
 
 /// The place at which the two answers differ most.
 struct WorstPlace {
   glm::dvec3 at_mm{0.0};
-  double size_mm = 0.0;     ///< how far the surfaces are apart there, or how large the differing part is
+  double size_mm = 0.0;     ///< distance of the surfaces there, or extent of the differing part
   std::string what;         ///< a clause: "the mesh has a part there that the voxels lack"
   double volume_mm3 = 0.0;  ///< volume of the differing part; zero: unknown
 };
@@ -76,7 +78,7 @@ inline constexpr const char* part_of_voxels_only = "the voxels have a part there
 
 /// The smallest error that a certificate detects in this object, measured by injecting errors into it.
 struct DetectionLimit {
-  double volume_mm3 = 0.0;  ///< volume of a part that one kernel or both lose or add, in one place
+  double volume_mm3 = 0.0;  ///< volume of one connected part that one kernel or both lose or add
   /// Shift of the whole object, in any direction. None: not even a shift of four voxels is detected.
   std::optional<double> shift_mm;
 };
@@ -94,11 +96,11 @@ struct Certificate {
   double symmetric_difference_tolerance_mm3 = 0.0;
   std::optional<double> centroid_distance_mm;
   std::optional<double> centroid_tolerance_mm;
-  std::optional<double> hausdorff_mm;    ///< largest, both directions, voxel faces to triangles and back
-  std::optional<double> hausdorff95_mm;  ///< 95th percentile, as the report defines it
+  std::optional<double> hausdorff_mm;    ///< largest distance, both ways, between voxel faces and triangles
+  std::optional<double> hausdorff95_mm;  ///< the larger of both directions' 95th percentiles by area
   std::optional<WorstPlace> worst;       ///< none: the answers are equal, or there is no mesh to compare
-  std::optional<DetectionLimit> limit;   ///< set if the answers were judged place by place
-  std::vector<WorstPlace> bridges;       ///< parts of one kernel alone beyond thin necks, the largest first
+  std::optional<DetectionLimit> limit;   ///< none if no smallest detected error was determined
+  std::vector<WorstPlace> bridges;       ///< parts beyond thin necks that one kernel alone has, largest first
   /// volume along lines through the scan, computed by code of neither kernel
   std::optional<LineCount> third;
   /// Inputs that both kernels share and neither computed: filtered samples, and values that a step measures once for
@@ -111,7 +113,7 @@ struct Certificate {
   double milliseconds = 0.0;
 
   bool resolved() const { return !unresolved; }
-  /// Whether no code made both answers.
+  /// Whether the two answers have no maker in common.
   bool independent() const { return shared_makers(voxel, mesh).empty(); }
   /// Volume of the largest wrong part that could pass: the detection limit if there is one, else the
   /// tolerance.
@@ -120,8 +122,8 @@ struct Certificate {
   double larger_mm3() const;
 };
 
-/// Whether the verdict rests on evidence: the voxels resolve the object, or its detection limit is at most
-/// evident_share of its volume.
+/// Whether the verdict rests on evidence: the voxels resolve the object, or the detection limit is at most
+/// evident_share of the object's volume.
 bool is_evident(const Certificate& certificate);
 /// Sets `unresolved` if a wrong part of more than evident_share of the object could pass, or if the volume's
 /// tolerance exceeds that share of the object. Keeps an `unresolved` that is set already.
@@ -136,11 +138,11 @@ void judge_independence(Certificate& certificate);
 /// beyond that and for a difference that is not a number; but never worse than `worst_verdict`. Lowers the
 /// certificate's verdict to it and adds a reason.
 void add_comparison(Certificate& certificate, Comparison comparison, Verdict worst_verdict = Verdict::Fail);
-/// Lowers the certificate's verdict, never raises it, and adds the reason.
+/// Adds the reason, and sets the certificate's verdict to `verdict` if that is worse.
 void lower(Certificate& certificate, Verdict verdict, const std::string& reason);
 
-/// "The two surfaces differ by up to 6.04 mm near (12, -80, 44): the mesh has a part there that the voxels
-/// lack."
+/// Returns a sentence, for example: "The two surfaces differ by up to 6.04 mm near (12, -80, 44): the mesh
+/// has a part there that the voxels lack."
 std::string text_of(const WorstPlace& worst);
 
 /// The largest ratio of difference to tolerance over all comparisons; up to 1 is PASS. With tolerance zero
@@ -151,18 +153,20 @@ double worst_share(const Certificate& certificate);
 /// If that is equal, too, the certificate with the larger worst_share() is worse.
 bool is_worse(const Certificate& a, const Certificate& b);
 
-/// A certificate's objects, kept for pictures.
+/// A certificate with the two objects that it compares, for pictures of their difference.
 struct Contested {
   Certificate certificate;
   voxel::Octree octree;
   std::optional<brep::Solid> solid;
 };
-/// Keeps the worse of both. Of equals it keeps the earlier one, so the result depends on their order alone.
+/// Replaces `kept` by `found` if `found` is worse (is_worse()). Of equals the earlier one stays, so the
+/// result depends only on the order of the calls.
 void keep_worse(std::optional<Contested>& kept, const Contested& found);
 
 std::string to_string(Tier tier);
 std::string to_string(Verdict verdict);
-/// "FAIL", or "PASS, not resolved: the object's smallest extent is 2.4 voxels, six are needed".
+/// Returns for example "FAIL", or "PASS, not resolved: the object's smallest extent is 2.4 voxels, six are
+/// needed".
 std::string verdict_text(const Certificate& certificate);
 
 }  // namespace octotomy::verify

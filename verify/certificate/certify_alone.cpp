@@ -15,12 +15,13 @@
 namespace octotomy::verify {
 namespace {
 
-/// The witness's readings at the centres of some voxels.
+/// Numbers of voxels, by the witness's readings at their centres.
 struct CentreCount {
-  /// voxels that the octree has and must not have; that it lacks and must have
+  /// voxels that the octree has although the witness excludes them; that it lacks although the witness
+  /// requires them
   std::uint64_t surplus = 0, lacking = 0;
   std::uint64_t on_surface = 0, unknown = 0;
-  /// voxels inside by the witness; where it allows both sides, those that the octree has
+  /// voxels inside by the witness; where the witness allows both sides, the voxels that the octree has
   std::uint64_t by_witness = 0;
   std::optional<glm::ivec3> first_surplus, first_lacking;
 

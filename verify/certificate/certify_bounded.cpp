@@ -32,22 +32,24 @@
 namespace octotomy::verify {
 namespace {
 
-/// The least extent of a resolved object. With fewer voxels across, most of its voxels lie on its boundary.
+/// Least extent of a resolved object, in voxels. Most voxels of a smaller object lie on its boundary.
 constexpr double resolved_voxels = 6.0;
 /// A surface has no counterpart if the other surface is further away than this multiple of the distance that
 /// digitisation explains. Parts thinner than a voxel may be lost over two or three voxels, so the verdict is
 /// WARN, not FAIL.
 constexpr double lost = 3.0;
 
-/// Adds a comparison of totals. With a witness the verdict is WARN at worst, unless totals decide: if no place shows
-/// an error of a kernel, resampling or flat triangles between samples cause the difference.
+/// Adds a comparison of totals. With a witness the verdict is WARN at worst, unless `totals_decide`. The
+/// witness judges every place; if no place shows an error, resampling or flat triangles between samples cause
+/// the difference.
 void compare(Certificate& certificate, const Evidence& evidence, Comparison comparison,
              Verdict worst_verdict = Verdict::Fail) {
   add_comparison(certificate, std::move(comparison),
                  evidence.witnessed && !evidence.totals_decide ? Verdict::Warn : worst_verdict);
 }
 
-/// Inertia about a point at a density of one, by the tetrahedra from the point to each triangle.
+/// The inertia tensor of the solid about a point for density 1, as a sum over the tetrahedra from the point
+/// to each triangle.
 glm::dmat3 inertia_about(const brep::Triangles& triangles, const glm::dvec3& about_mm) {
   glm::dmat3 second(0.0);
   for (const auto& face : triangles.faces) {
@@ -113,12 +115,13 @@ void add_specks(Certificate& certificate, const Specks& specks) {
   judge_evidence(certificate);
 }
 
-/// Compares area and distances; for a resolved object with a witness, at first on a sample of the surfaces' points.
-/// If a bound is exceeded, looks for parts thinner than a voxel. A resolved object that differs only by such parts is
-/// not resolved there, and the certificate states the lost area. Mean and percentile leave out surfaces beside
-/// `lost_voxels`, which the certificate lists as lost by resampling. With a witness, if a bound is exceeded, they
-/// also leave out parts of the mesh that its own voxels, `digitised`, do not represent: the witness judges their
-/// triangles and every voxel in which the kernels differ.
+/// Compares areas and distances. For a resolved object with a witness and without lost voxels, mean and
+/// percentile come from a sample of the surfaces' points. If a bound is exceeded, searches for parts thinner
+/// than a voxel. A resolved object that differs only by such parts becomes unresolved, and the certificate
+/// states the share of their area. Mean and percentile leave out surfaces beside `lost_voxels`, which the
+/// certificate lists as lost by resampling. With a witness, if a bound is exceeded, they also leave out parts
+/// of the mesh that `digitised`, the voxels of the mesh, does not represent: the witness judges the triangles
+/// there and every voxel in which the kernels differ.
 void compare_surfaces(Certificate& certificate, const Evidence& evidence, const voxel::Octree& octree,
                       const brep::Solid& solid, const voxel::Octree& digitised,
                       const std::vector<glm::ivec3>& lost_voxels) {
@@ -152,7 +155,7 @@ void compare_surfaces(Certificate& certificate, const Evidence& evidence, const 
       certificate.unresolved->reason += ", and " + thin;
     else if (is_strict && loses_area)
       certificate.reasons.push_back("At this voxel size " + lost_share +
-                                    " % of the surface is lost: of walls and gaps that are thinner than a "
+                                    " % of the surface is lost, on walls and gaps that are thinner than a "
                                     "voxel.");
   }
   if (loses_area && certificate.unresolved)
@@ -166,13 +169,14 @@ void compare_surfaces(Certificate& certificate, const Evidence& evidence, const 
            .difference = distances.percentile95_mm(),
            .tolerance = bounds.percentile95_mm,
            .formula = "half a voxel's diagonal + 0.1 s; if exceeded, without parts thinner than a voxel",
-           .statement = "Five per cent of one surface is % or more from the other"});
+           .statement = "Five per cent of one surface lies % or more from the other surface"});
   compare(certificate, evidence,
           {.quantity = "mean distance",
            .unit = "mm",
            .difference = distances.mean_mm(),
            .tolerance = bounds.mean_mm,
-           .formula = "h/4 on curved boundary + displacement of flats + 0.1 s; if exceeded, as above",
+           .formula = "h/4 on curved boundary + displacement of flats + 0.1 s; if exceeded, without parts "
+                      "thinner than a voxel",
            .statement = "The surfaces are % apart on average"});
   if (!evidence.witnessed && distances.largest_mm() > far_mm)
     lower(certificate, Verdict::Warn, text_of(distances.worst()));
@@ -195,7 +199,7 @@ void judge_by_witness(Certificate& certificate, const Evidence& evidence, const 
                   .unit = "mm3",
                   .difference = voxels_mm3,
                   .tolerance = 0.0,
-                  .formula = "0: voxels at which the scan and the plan allow a kernel only one answer",
+                  .formula = "0: no voxel may be on a side that the scan and the plan exclude for its kernel",
                   .statement = "Voxels with a total volume of % contradict the scan"},
                  most);
   add_comparison(certificate,
@@ -208,9 +212,11 @@ void judge_by_witness(Certificate& certificate, const Evidence& evidence, const 
                  most);
 }
 
-/// Adds the places of bridges: the kernels chose differently whether a thin neck connects a part. Parts larger than the
-/// limit are a WARN. Smaller ones are only listed: the certificate already states that a part of the limit's size could
-/// be wrong anywhere, and the comparisons of volumes and surfaces judge their sum. `places.open` has the largest first.
+/// Adds the places of bridges: thin necks that one kernel kept and the other cut, so that one kernel alone
+/// has the part beyond. A part larger than the limit lowers the verdict to WARN. Smaller parts are only
+/// listed: the certificate already states that a part of the limit's size could be wrong anywhere, and the
+/// comparisons of volumes and surfaces judge their sum. Precondition: `places.open` has the largest part
+/// first.
 void judge_bridges(Certificate& certificate, const Places& places) {
   constexpr std::size_t most_told = 3;
   for (const OpenPart& part : places.open) certificate.bridges.push_back(part.bridge);
@@ -230,7 +236,7 @@ void judge_bridges(Certificate& certificate, const Places& places) {
     lower(certificate, Verdict::Warn,
           "An ambiguous bridge near " + voxel::rounded(bridge.at_mm) + ": " + bridge.what + ", " +
               voxel::rounded(bridge.volume_mm3) +
-              " mm3, that the other one cuts off. The neck is thinner than " + thin_neck +
+              " mm3, that the other kernel cuts off. The neck is thinner than " + thin_neck +
               ": decide it by 'keep_bridges_mm' or 'cut_bridges_mm' of the step that chooses parts, "
               "or take smaller voxels.");
   }
@@ -360,9 +366,9 @@ std::vector<std::uint32_t> in_shared_slots(const std::vector<std::uint64_t>& key
   return found;
 }
 
-/// Adds the area of triangles that the mesh has a second time with the same winding; a set of voxels cannot
-/// show them. Equal triangles are found by a hash of their corners. Among a million triangles two different
-/// ones have the same hash with a probability of 2^-24.
+/// Adds the total area of triangles that the mesh repeats with the same winding; a set of voxels cannot show
+/// them. Equal triangles are found by a hash of their corners. The probability that two different triangles
+/// among a million have the same hash is 2^-24.
 void compare_repeated(Certificate& certificate, const brep::Triangles& mesh) {
   const auto hash = [](const glm::dvec3& p) {
     std::uint64_t made = 0;
@@ -399,8 +405,8 @@ void compare_repeated(Certificate& certificate, const brep::Triangles& mesh) {
                                .statement = "Triangles with a total area of % are repeated in the mesh"});
 }
 
-/// Compares amounts measured along lines with both answers. If the answers agree with each other and not with
-/// the lines, both are wrong.
+/// Compares the volume measured along lines with both answers. If the answers agree with each other but not
+/// with the lines, both are wrong.
 void compare_with_lines(Certificate& certificate, const Evidence& evidence, const LineReading& lines,
                         const voxel::Box& world, const voxel::Progress& progress) {
   if (!lines) return;
@@ -419,8 +425,8 @@ void compare_with_lines(Certificate& certificate, const Evidence& evidence, cons
                                of_voxels < of_mesh ? evidence.voxels.volume_mm3 : evidence.mesh.volume_mm3,
                                std::min(of_voxels, of_mesh), tolerance_mm3,
                                "the volume's tolerance, five deviations of the lines, and a voxel",
-                               "Lines through the scan find " + voxel::rounded(third.volume_mm3) +
-                                   " mm3; the nearer answer differs from that by %"});
+                               "Lines through the scan measure " + voxel::rounded(third.volume_mm3) +
+                                   " mm3; the nearer answer differs from this volume by %"});
   if (both_stray || std::abs(certificate.difference_mm3) <= certificate.tolerance_mm3) return;
   const bool voxels_stray = of_voxels > of_mesh;
   const double more_mm3 =
@@ -429,7 +435,7 @@ void compare_with_lines(Certificate& certificate, const Evidence& evidence, cons
                                          : "the mesh, whose triangles are flat between samples, loses ",
                     adds = voxels_stray ? "at this voxel size resampling adds " : "the mesh adds ";
   certificate.reasons.push_back(
-      "The scan's own samples have " + voxel::rounded(third.volume_mm3) + " mm3 along lines: " +
+      "Measured along lines, the scan's own samples enclose " + voxel::rounded(third.volume_mm3) + " mm3: " +
       (more_mm3 > 0.0 ? adds + voxel::rounded(more_mm3) + " mm3."
                       : loses + voxel::rounded(-100.0 * more_mm3 / third.volume_mm3) + " % of this tissue."));
 }
@@ -501,7 +507,7 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
   if (!inputs.is_surely_empty)
     judge_emptiness(certificate, octree, solid, 8.0 * evidence.voxel_mm3);
   else if (!octree.is_empty() || !solid.empty())
-    lower(certificate, Verdict::Fail, "The object must be empty, and an answer is not.");
+    lower(certificate, Verdict::Fail, "The object must be empty, but one of the answers is not.");
   const auto has_place = [&](const std::string& reason) { return reason.rfind("The two surfaces", 0) == 0; };
   if (certificate.verdict != Verdict::Pass && certificate.worst && certificate.worst->size_mm > 0.0 &&
       std::none_of(certificate.reasons.begin(), certificate.reasons.end(), has_place))

@@ -24,7 +24,8 @@ double undecided_mm(double reach_mm, double shift_mm) {
   return shift_mm + 64.0 * std::numeric_limits<double>::epsilon() * reach_mm;
 }
 
-/// Voxel centres at which the kernels differ, farther than `within_mm` from the result's surface.
+/// Counts the voxel centres at which the kernels differ and that are farther than `within_mm` from the
+/// result's surface. `farthest_mm` is the farthest one of all differing centres.
 struct DifferingCentres {
   std::size_t count = 0;
   glm::dvec3 farthest_mm{0.0};
@@ -73,14 +74,15 @@ double unseen_ball_mm3(const voxel::Lattice& lattice) {
   return 4.0 / 3.0 * std::numbers::pi * radius_mm * radius_mm * radius_mm;
 }
 
-/// Marks two empty answers as unresolved if the voxels may have missed one of the operands.
+/// Sets `unresolved` for two empty answers if a part of more than evident_share of the smaller operand could
+/// be missed.
 void judge_operands(const brep::Solid& a, const brep::Solid& b, Certificate& certificate) {
   const double smaller_mm3 = std::min(a.size().volume_mm3, b.size().volume_mm3);
   if (certificate.unseen_mm3() <= evident_share * smaller_mm3) return;
   certificate.unresolved = {std::nullopt, "both answers are empty and a part of " +
                                               voxel::rounded(certificate.unseen_mm3()) +
                                               " mm3 could be missed; the smaller operand has " +
-                                              voxel::rounded(smaller_mm3) + ": take smaller voxels"};
+                                              voxel::rounded(smaller_mm3) + " mm3: take smaller voxels"};
 }
 
 }  // namespace
@@ -118,12 +120,14 @@ Certificate certify_at_centres(const voxel::Octree& octree, const brep::Solid& s
   certificate.symmetric_difference_mm3 = static_cast<double>(differing.voxel_count()) * lattice.voxel_mm3();
   const double reach_mm = glm::length(glm::max(glm::abs(triangles.low_mm), glm::abs(triangles.high_mm)));
   const DifferingCentres beyond = differing_centres(differing, solid, undecided_mm(reach_mm, shift_mm));
-  add_comparison(certificate, {.quantity = "centres of voxels on different sides",
-                               .unit = "",
-                               .difference = static_cast<double>(beyond.count),
-                               .tolerance = 0.0,
-                               .formula = "0: none further from the surface than rounding reaches",
-                               .statement = "Centres of % voxels are inside for one kernel only"});
+  add_comparison(
+      certificate,
+      {.quantity = "centres of voxels on different sides",
+       .unit = "",
+       .difference = static_cast<double>(beyond.count),
+       .tolerance = 0.0,
+       .formula = "0: no such centre farther from the surface than coordinates are rounded or moved",
+       .statement = "Centres of % voxels are inside for one kernel only"});
   if (beyond.count > 0) {
     const glm::dvec3 p_voxel = glm::inverse(lattice.lps_from_voxel) * glm::dvec4(beyond.farthest_mm, 1.0);
     certificate.worst = {

@@ -20,21 +20,21 @@ struct OperationAnswers {
 };
 
 struct MeshOperationOptions {
-  std::optional<double> voxel_mm;  ///< edge; none: 1/128 of the largest extent of both operands
-  /// for the comparison; none: cubes of that edge around both operands
+  std::optional<double> voxel_mm;  ///< edge of a voxel; none: 1/128 of the operands' largest extent
+  /// universe of the comparison; none: cubic voxels of edge voxel_mm around both operands
   std::optional<voxel::Universe> universe = {};
   voxel::Progress progress{};
 };
-/// A Boolean of two solids in both kernels (tier Bounded): by corefinement, and by voxelising each operand
-/// (D3) and combining the octrees. Both kernels have the same surfaces, so no voxel's centre may be inside
-/// one answer and outside the other. Exempt are centres that lie nearer to the surface than rounding and the
-/// shift that corefinement reported. Volumes are compared with the error of sampling at centres as tolerance.
-/// Throws as brep::boolean() and convert::voxelise(); std::length_error if the voxels are too small for a
-/// universe; voxel::Stopped.
+/// Computes a Boolean of two solids in both kernels (tier Bounded): by corefinement, and by digitising each
+/// operand at voxel centres (D3) and combining the octrees. Both kernels start from the same surfaces, so no
+/// voxel's centre may be inside one answer and outside the other. Exempt are centres that lie nearer to the
+/// surface than the rounding plus the shift that corefinement reported. The tolerance of the volumes is the
+/// error of sampling at centres. Throws as brep::boolean() and convert::voxelise(); std::length_error if the
+/// voxels are too small for a universe; voxel::Stopped.
 OperationAnswers certify_operation(const brep::Solid& a, brep::Operation operation, const brep::Solid& b,
                                    const MeshOperationOptions& options = {});
 
-/// The operation in words: "a | b".
+/// Returns the operation as an expression, for example "a | b".
 std::string text_of(brep::Operation operation);
 
 /// Compares an octree with a solid that has the same surfaces, at voxels' centres (tier Bounded). `shift_mm`

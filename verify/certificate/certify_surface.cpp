@@ -9,7 +9,7 @@
 namespace octotomy::verify {
 namespace {
 
-/// A certificate with the octree's answer alone.
+/// A certificate that has only the octree's answer.
 Certificate without_mesh(const voxel::Octree& octree, const BoundInputs& inputs) {
   const voxel::Measures voxels = voxel::measure(octree);
   Certificate certificate;

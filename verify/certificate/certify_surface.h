@@ -6,9 +6,9 @@
 
 namespace octotomy::verify {
 
-/// certify_bounded() for any triangles. The certificate fails, with reasons, if the triangles are no closed,
-/// oriented manifold surface. It still compares them with the octree if every edge joins two triangles of one
-/// winding. Cost: brep::health() without intersections in addition.
+/// As certify_bounded(), for triangles in any state. The certificate fails, with reasons, if the triangles
+/// are no closed, oriented manifold surface. If every edge still joins two triangles of one winding, they are
+/// compared with the octree all the same. Cost: brep::health() without intersections in addition.
 Certificate certify_surface(const voxel::Octree& octree, const brep::Triangles& triangles,
                             const BoundInputs& inputs, const voxel::Progress& progress = {});
 

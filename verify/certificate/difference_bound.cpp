@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // Bounds the difference of two right answers, an octree and a solid that other code computed.
-// boundary_model.h has the theory and its symbols; the constants are here. The terms of the volume's bound:
+// boundary_model.cpp has the theory and its symbols; the constants are here. Terms of the volume's bound:
 //
 // count        Three standard deviations of a count. Against closed forms (eight solids in 60 random poses
 //              each, spacings 1:1:1 to 5:1:1) the deviation was 0.8 to 1.1 of the predicted one. Narrow cones
@@ -61,13 +61,14 @@ constexpr double edge_shift = 0.3;
 /// Relative error of a sum of many terms of one sign: some units in the last place in each kernel.
 constexpr double rounded_sums = 64.0 * std::numeric_limits<double>::epsilon();
 
-/// Spacings for the curvature integral (see `bent` above).
+/// Returns the spacings for the curvature integral: those of the samples, limited as stated for `bent` above.
 glm::dvec3 seen_spacing_mm(const glm::dvec3& sample_mm, const glm::dvec3& voxel_mm) {
   const double finest_mm = std::min({sample_mm.x, sample_mm.y, sample_mm.z});
   return glm::min(glm::min(sample_mm, 2.0 * voxel_mm), glm::dvec3(3.0 * finest_mm));
 }
 
-/// Half a sample times the area of the mesh's faces on the scan's border.
+/// A layer of half a sample on those faces of the mesh that lie on the scan's border. Empty without a
+/// scan_box_mm.
 VolumeSpread border_of(const brep::Solid& solid, const BoundInputs& inputs, const glm::dvec3& about_mm) {
   VolumeSpread border;
   if (!inputs.scan_box_mm) return border;
@@ -90,7 +91,7 @@ VolumeSpread border_of(const brep::Solid& solid, const BoundInputs& inputs, cons
   return border;
 }
 
-/// A layer over all of the mesh.
+/// A layer of the given thickness over the whole mesh.
 VolumeSpread layer_of(const brep::Solid& solid, double thick_mm, const glm::dvec3& about_mm) {
   VolumeSpread layer;
   if (!(thick_mm > 0.0)) return layer;
@@ -196,7 +197,8 @@ void derive_other_tolerances(Certificate& certificate, const Evidence& evidence)
 double inertia_tolerance_mm5(const Certificate& certificate, const Evidence& evidence, double largest_mm5) {
   const BoundaryModel& model = evidence.model;
   const double arm_mm = 0.5 * glm::length(evidence.mesh.high_mm - evidence.mesh.low_mm);
-  // Where displaced planes meet, the error is of second order in a voxel over the least extent.
+  // Where displaced planes meet, their errors multiply. The product is smaller than the errors by a voxel
+  // over the least extent.
   const glm::dvec3 extent_mm = evidence.mesh.high_mm - evidence.mesh.low_mm;
   const double meeting = 1.0 + longest(evidence.voxel_mm) / std::min({extent_mm.x, extent_mm.y, extent_mm.z});
   return coverage * std::sqrt(model.count_mm10) +

@@ -40,8 +40,8 @@ using voxel::Expression;
 using Term = Expression::Term;
 
 /// The largest rounding error of an integer coordinate after corefinement: a few roundings of coordinates up
-/// to `reach`. Coordinates that are not integers have denominators below the third power of the lattice's
-/// side, so their distance from an integer is a thousand times larger.
+/// to `reach`. Other coordinates are fractions with denominators below the third power of the lattice's side.
+/// On a lattice of up to 512 voxels a side they are at least a thousand times farther from an integer.
 double whole_within(double reach) {
   return 64.0 * std::numeric_limits<double>::epsilon() * std::max(reach, 1.0);
 }
@@ -66,13 +66,13 @@ brep::Mesh with_whole_numbers(brep::Mesh mesh) {
   return mesh;
 }
 
-/// A solid or its complement.
+/// A set of points: the inside of a solid, or its outside if `complement` is set.
 struct SolidOrComplement {
   brep::Solid solid;
   bool complement = false;
 };
 
-/// The leaves of an expression in reading order.
+/// Returns the leaves of an expression from left to right. Throws for a leaf that is no octree.
 std::vector<voxel::Octree> leaves_of(const Expression& expression) {
   std::vector<voxel::Octree> sets;
   voxel::for_each_term(expression, [&](const voxel::MetTerm& met) {
@@ -86,7 +86,7 @@ std::vector<voxel::Octree> leaves_of(const Expression& expression) {
   return sets;
 }
 
-/// The motion of a term, a translation by whole voxels, on the refined lattice.
+/// Converts the motion of a term to the refined lattice. Throws unless it is a translation by whole voxels.
 glm::dmat4 refined_motion(const Term& term, const voxel::Universe& own, int refinement) {
   const glm::dmat4 voxels = glm::inverse(own.lps_from_voxel) * term.moved_from_still * own.lps_from_voxel;
   const glm::dvec3 by = glm::round(glm::dvec3(voxels[3]));
@@ -100,13 +100,13 @@ glm::dmat4 refined_motion(const Term& term, const voxel::Universe& own, int refi
   return whole;
 }
 
-/// Evaluates an expression over operands in general position, in both kernels.
+/// Evaluates one expression, over operands in general position, by octrees and by meshes.
 class Evaluation {
  public:
   Evaluation(const voxel::Universe& own, const GeneralPosition& position, const voxel::Progress& progress)
       : own_(own), position_(position), progress_(progress) {}
 
-  /// The expression with its leaves replaced by the operands' octrees.
+  /// Replaces the leaves by the octrees of the operands.
   Expression on_octrees(const Expression& expression) {
     std::size_t next = 0;
     return voxel::evaluate_terms<Expression>(
@@ -129,7 +129,7 @@ class Evaluation {
         });
   }
 
-  /// The inside and the outside of an expression, each as pieces with disjoint insides.
+  /// The inside and the outside of an expression, each as pieces whose insides are disjoint.
   struct Sides {
     std::vector<SolidOrComplement> in, out;
     bool single() const { return in.size() == 1 && out.size() == 1; }
@@ -156,7 +156,7 @@ class Evaluation {
   double shift_mm() const { return shift_mm_; }
   std::vector<std::string> findings() { return std::move(findings_); }
 
-  /// The part of a piece within the universe.
+  /// Cuts off a piece at the universe's border.
   brep::Solid within_universe(const SolidOrComplement& piece) {
     const double side = position_.universe.side();
     const SolidOrComplement world{
@@ -213,8 +213,8 @@ class Evaluation {
   }
   Sides intersection(const Sides& left, const Sides& right) {
     if (left.single() && right.single()) return both(intersection(left.in.front(), right.in.front()));
-    // The outside of the intersection is the left's outside plus the left's inside without the right. These
-    // two share faces.
+    // The outside of the intersection consists of the outside of `left`, and of the inside of `left` without
+    // `right`. These two parts share faces.
     areas_add_up_ = false;
     return {pairs(left.in, right.in), joined(left.out, pairs(left.in, right.out))};
   }
@@ -249,7 +249,7 @@ class Evaluation {
   std::vector<std::string> findings_;
 };
 
-/// Labels every leaf a, b, c, ... in order.
+/// Prints an expression with its leaves named a, b, c, ... from left to right.
 std::string text_of(const Expression& expression) {
   std::size_t leaves = 0;
   voxel::Labels labels;
@@ -263,7 +263,8 @@ std::string text_of(const Expression& expression) {
   return voxel::print_expression(expression, labels);
 }
 
-/// The differing voxel nearest to the middle of the box of all differing voxels, and the largest side of this box.
+/// The place of the differing voxel that is nearest to the middle of the box of all differing voxels. Its
+/// size is the longest side of this box.
 WorstPlace worst_of(const ExactAnswers& answers, const voxel::Octree& differing) {
   const voxel::VoxelRange range = voxel::range_of(differing);
   glm::ivec3 found = range.low;
@@ -313,8 +314,8 @@ ExactAnswers exact_answers(const Expression& expression, const voxel::Progress& 
 std::optional<std::int64_t> whole_volume(const std::vector<brep::Mesh>& solids) {
   using Whole = glm::vec<3, std::int64_t>;
   std::int64_t six = 0;
-  // Summed in 64 bits of mantissa: a sum of n terms below r^3 is off by less than n^2 r^3 2^-64 / 2, and
-  // rounded points move n triangles of areas below r^2 by r 2^-53.
+  // A long double has 64 bits of mantissa: a sum of n terms below r^3 is off by less than n^2 r^3 2^-64 / 2.
+  // Rounding the points moves n triangles with areas below r^2 by r 2^-53 each.
   long double rest = 0.0;
   for (const brep::Mesh& solid : solids)
     for (const auto face : solid.faces()) {
@@ -335,8 +336,8 @@ std::optional<std::int64_t> whole_volume(const std::vector<brep::Mesh>& solids) 
     }
   const long double total = static_cast<long double>(six) + rest;
   const auto volume = static_cast<std::int64_t>(std::llround(total / 6.0L));
-  // The sum is six times the volume: a wrong answer is off by whole voxels, six each, and the rounding of a
-  // right answer is far below a hundredth.
+  // The sum is six times the volume. A wrong answer is off by six for each voxel; the rounding of a right
+  // answer is far below a hundredth.
   if (std::abs(total - 6.0L * static_cast<long double>(volume)) > 0.01L) return std::nullopt;
   return volume;
 }
@@ -350,8 +351,9 @@ Certificate certify_exact(const ExactAnswers& answers) {
   const double unit_mm2 = std::pow(answers.unit_mm3, 2.0 / 3.0);
   const auto voxels = static_cast<std::int64_t>(answers.octree.voxel_count());
   const auto faces = static_cast<double>(voxel::cuberille_faces(answers.octree).face_count());
-  certificate.voxel = {"Boolean of octrees in one walk, sets refined and parted",
-                       static_cast<double>(voxels) * answers.unit_mm3, faces * unit_mm2, std::nullopt};
+  certificate.voxel = {
+      "Boolean of octrees in one walk, on refined sets whose voxels do not touch at edges or corners",
+      static_cast<double>(voxels) * answers.unit_mm3, faces * unit_mm2, std::nullopt};
   certificate.mesh = {"corefinement of the same sets' cuberilles", 0.0, 0.0, std::nullopt};
 
   double area = 0.0, float_volume = 0.0;

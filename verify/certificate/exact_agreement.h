@@ -24,9 +24,9 @@ struct ExactAnswers {
   std::vector<brep::Mesh> solids;
   std::string operation;
   double unit_mm3 = 1.0;              ///< volume of a refined voxel in the patient
-  glm::dmat4 lps_from_unit{1.0};      ///< to LPS millimetres, accurate to a voxel
-  bool areas_add_up = true;           ///< no two of the solids share a face
-  double shift_mm = 0.0;              ///< how far the corefinements moved operands; not zero is a failure
+  glm::dmat4 lps_from_unit{1.0};      ///< LPS millimetres from refined voxels; less than a voxel off
+  bool areas_add_up = true;           ///< whether no two of the solids share a face
+  double shift_mm = 0.0;              ///< sum over all corefinements, in refined voxels; above 0 fails
   std::vector<std::string> findings;  ///< of the corefinements
 };
 
@@ -37,13 +37,14 @@ struct ExactAnswers {
 /// voxel::Stopped. Cost: see general_position(); one corefinement for each operator, about 10 us a triangle.
 ExactAnswers exact_answers(const voxel::Expression& expression, const voxel::Progress& progress = {});
 
-/// Compares both answers with tolerance zero (tier Exact): six times the mesh's volume as an integer, its
-/// area, and its set of voxels. The mesh's surface must be closed and oriented. FAIL if anything differs.
+/// Compares both answers with tolerance zero (tier Exact): the mesh's volume as an integer, the voxels whose
+/// centre lies inside the mesh, and the area, up to rounding, if `areas_add_up`. The mesh's surface must be
+/// closed and oriented. FAIL if anything differs.
 Certificate certify_exact(const ExactAnswers& answers);
 
-/// The volume of solids with corners on the unit lattice, as an integer. Triangles of whole points are summed
-/// in 64-bit integers. The other points are roundings of points on lines between whole ones; they change the
-/// sum by far less than a half (see source). None if the sum is not an integer.
+/// The volume of solids with corners on the unit lattice, as an integer. Triangles with integer corners are
+/// summed in 64-bit integers. The other corners are roundings of points on lines between lattice points; they
+/// change the sum by far less than a half (see the source). None if the sum is not an integer.
 std::optional<std::int64_t> whole_volume(const std::vector<brep::Mesh>& solids);
 
 }  // namespace octotomy::verify

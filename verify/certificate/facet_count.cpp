@@ -35,10 +35,10 @@ constexpr int longest_wave = 6;
 constexpr int reach_along_normals = 64;
 constexpr std::size_t normals_followed = 32;
 
-/// Number of sides of a facet in one part: their powers fit the cache of a core.
+/// Largest number of sides of a facet in one Part, so that the powers of their phases fit a core's cache.
 constexpr std::size_t part_sides = 48;
-/// Number of groups in which parts are summed. It is fixed so that the order of a sum does not depend on the
-/// number of threads.
+/// Number of groups of parts. Each group is summed by one thread. The number is fixed, so that the order of a
+/// sum does not depend on the number of threads.
 constexpr std::size_t sum_groups = 32;
 
 /// Sides end to end: side i goes from points[i] to points[i + 1]. A side that does not count leads from the
@@ -52,7 +52,7 @@ bool before(const glm::dvec3& a, const glm::dvec3& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
 
-/// The path without the points that lie on the straight line between their neighbours.
+/// Returns the path without the points on the straight line between their neighbours.
 Path straightened(const Path& path) {
   constexpr double off_line_voxels = 1e-9;
   Path made;
@@ -100,7 +100,7 @@ Path path_of(std::vector<std::array<glm::dvec3, 2>> sides) {
   return straightened(path);
 }
 
-/// Up to part_sides sides of a facet, and their contribution to the sum for each vector k.
+/// Up to part_sides sides of one facet. Computes their contribution to the sum over facets for each vector k.
 class Part {
  public:
   Part(const Facet& facet, const Path& path, std::size_t first, std::size_t last)
@@ -119,8 +119,9 @@ class Part {
     }
   }
 
-  /// Adds to each total the part's contribution to the sum over facets, times -i |k|^2 2 pi, a factor that
-  /// all facets of one k share. `most` has the largest components of the vectors.
+  /// Adds the part's contribution to the total of each vector k. Contributions are multiplied by -i |k|^2 2
+  /// pi, a factor that is the same for all facets. `most`: the largest absolute value of each component of
+  /// the vectors.
   void add(const std::vector<glm::ivec3>& vectors, const glm::ivec3& most, std::vector<Complex>& totals) {
     for (int axis = 0; axis < 3; ++axis) take_powers(axis, most[axis]);
     multiply(power_[1][0], power_[2][0], false, false, yz_);
@@ -173,8 +174,8 @@ class Part {
     const glm::dvec3 tangent = k - along * normal_;
     const double square = glm::dot(tangent, tangent);
     take_phases(k_integer);
-    // If the phase changes by less than a ten-thousandth of a turn across the facet, the phase of any point
-    // is used. The sum over sides would lose that share of its digits by cancellation.
+    // If the phase changes by less than a ten-thousandth of a turn across the facet, the facet counts with
+    // the phase of its first point. The sum over sides would lose four digits or more by cancellation.
     if (square * area_ < 1e-8)
       return is_first_ ? along * area_ * Complex(phase_.re[0], phase_.im[0]) : Complex(0.0);
     constexpr double small_turn = 0.01;
@@ -208,7 +209,7 @@ class Part {
   bool is_first_;
   std::size_t sides_;
   std::vector<glm::dvec3> points_;
-  /// by axis: each side's phase in radians for k = 1, and its outward weight
+  /// by axis, for each side: its phase in radians for k = 1, and its outward weight
   std::array<std::vector<double>, 3> side_, outward_;
   std::array<std::vector<Phases>, 3> power_;
   glm::ivec3 last_{0};
@@ -216,13 +217,14 @@ class Part {
   std::array<double, part_sides> turn_, weight_, re_, im_;
 };
 
-/// The representative of the pair k and -k.
+/// Returns the same vector for k and for -k: one of the two.
 glm::ivec3 one_of_opposites(const glm::ivec3& k) {
   const bool lower = k.z != 0 ? k.z < 0 : k.y != 0 ? k.y < 0 : k.x < 0;
   return lower ? -k : k;
 }
 
-/// The vectors nearest to the multiples of a normal: nine for each step along its largest component.
+/// Adds the integer vectors nearest to the multiples of a normal: nine for each step along the normal's
+/// largest component.
 void add_along(const glm::dvec3& normal, std::vector<glm::ivec3>& vectors) {
   int most = 0;
   for (int axis = 1; axis < 3; ++axis)
@@ -298,9 +300,9 @@ double count_variance(const std::vector<Facet>& facets) {
     seen.variance += 2.0 * std::norm(total) / (4.0 * pi * pi * square * square);
     seen.fourths += 2.0 / (square * square);
   }
-  // The terms beyond `seen` are small for the facets whose normals were followed. For the others: the sum of
-  // 1 / |k|^4 over all integer vectors but zero is 16.5323, and normals spread evenly over the directions of
-  // both k and -k have area / (2 pi) per solid angle.
+  // Terms beyond `seen` are small for facets whose normals were followed. For the other facets they are
+  // estimated: the sum of 1 / |k|^4 over all integer vectors but zero is 16.5323, and normals spread evenly
+  // over the directions of both k and -k have area / (2 pi) per solid angle.
   constexpr double epstein = 16.5323;
   double others = 0.0;
   for (std::size_t i = normals_followed; i < flat.size(); ++i) others += glm::length(flat[i].area);

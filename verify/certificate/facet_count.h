@@ -7,10 +7,10 @@
 
 namespace octotomy::verify {
 
-/// A flat part of a solid's boundary, in voxels.
+/// A flat part of a solid's boundary. Lengths are in voxels.
 struct Facet {
   glm::dvec3 area{0.0};  ///< along the outward normal
-  /// The facet's rims, each side with the facet on its left as seen from outside, in any order.
+  /// The sides of the facet's rims, in any order. Seen from outside, the facet lies on the left of each side.
   std::vector<std::array<glm::dvec3, 2>> sides;
 };
 

@@ -24,7 +24,7 @@
 namespace octotomy::verify {
 namespace {
 
-/// A universe with voxels of `edge_mm`, the first one's corner at (first_mm, first_mm, first_mm).
+/// A universe of cubic voxels with this edge. The lowest corner is at (first_mm, first_mm, first_mm).
 voxel::Universe cubes(int depth, double edge_mm, double first_mm) {
   voxel::Universe universe;
   universe.depth = depth;
@@ -39,7 +39,7 @@ glm::dmat4 translation(const glm::dvec3& by_mm) {
   return matrix;
 }
 
-/// Step 1: the kept cells of a set, as cells of one millimetre.
+/// Step 1 above. Returns the kept cells of a set as voxels of one millimetre.
 voxel::Octree parted(const voxel::Octree& set) {
   const int depth = set.universe().depth;
   const voxel::Universe fine = cubes(depth + 1, 1.0, 0.0);
@@ -55,7 +55,7 @@ voxel::Octree parted(const voxel::Octree& set) {
 }  // namespace
 
 GeneralPosition general_position(const std::vector<voxel::Octree>& sets, const voxel::Progress& progress) {
-  if (sets.empty()) throw voxel::InvalidInput("general position: there is no set of voxels");
+  if (sets.empty()) throw voxel::InvalidInput("general position needs at least one set of voxels");
   const int depth = sets.front().universe().depth;
   int cell = 2, doublings = 2;
   for (; cell <= static_cast<int>(sets.size()); cell *= 2) ++doublings;
@@ -71,7 +71,7 @@ GeneralPosition general_position(const std::vector<voxel::Octree>& sets, const v
   int shift = 0;
   for (const voxel::Octree& set : sets) {
     if (!(set.universe() == sets.front().universe()))
-      throw voxel::InvalidInput("general position: the sets are of different universes");
+      throw voxel::InvalidInput("general position: all sets of voxels must have the same universe");
     progress.at(static_cast<double>(shift) / static_cast<double>(sets.size()));
     ++shift;
     const voxel::Octree cells = parted(set);

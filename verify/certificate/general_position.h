@@ -19,7 +19,7 @@ struct ExactOperand {
 struct GeneralPosition {
   /// Unit voxels: refined voxel q reaches from q to q + 1 millimetres, so all coordinates are integers.
   voxel::Universe universe;
-  int refinement = 1;  ///< refined voxels along an edge of one of the sets' own
+  int refinement = 1;  ///< refined voxels along an edge of an original voxel
   std::vector<ExactOperand> operands;
 };
 
@@ -29,7 +29,7 @@ struct GeneralPosition {
 /// voxels along (-1,-1,-1). So no plane of one set is a plane of another set or of the universe's border. The
 /// sets differ a little from the input, but both kernels get the same sets. Throws std::invalid_argument if
 /// there is no set or the universes differ; voxel::Error (Resource) if the refined universe would be too
-/// large; voxel::Stopped. Cost: a lattice refined by twice the number of sets, rounded up to a power of two;
+/// large; voxel::Stopped. Cost: a lattice refined by twice the least power of two above the number of sets;
 /// eight times as many triangles as a cuberille has faces.
 GeneralPosition general_position(const std::vector<voxel::Octree>& sets,
                                  const voxel::Progress& progress = {});

@@ -21,8 +21,8 @@ constexpr const char* of_others = "the answer to be judged";
 constexpr const char* lacks_part = "the answer lacks a part there";
 constexpr const char* has_more = "the answer has a part there that it must not have";
 
-/// Bound of a file's rounding. Files hold 32-bit coordinates, with a unit in the last place of 2^-23 of the
-/// coordinate. A program rounds once when it computes and once when it writes.
+/// Bound of the rounding of coordinates in a file. Files hold 32-bit coordinates, whose unit in the last
+/// place is 2^-23 of the coordinate. A program rounds once when it computes and once when it writes.
 double rounding_mm(const brep::Solid& solid) {
   const brep::Size& size = solid.size();
   return 0x1p-22 * glm::length(glm::max(glm::abs(size.low_mm), glm::abs(size.high_mm)));
@@ -45,7 +45,7 @@ Certificate against_solid(const brep::Solid& solid, const brep::Solid& answer, d
   if (solid.empty() || answer.empty()) {
     if (solid.empty() != answer.empty())
       lower(certificate, Verdict::Fail,
-            solid.empty() ? "The answer must be empty and is not." : "The answer is empty and must not be.");
+            solid.empty() ? "The answer must be empty but is not." : "The answer is empty but must not be.");
     return certificate;
   }
   const double near_mm = rounding_mm(solid) + shift_mm;
@@ -144,7 +144,8 @@ std::vector<Certificate> judge_mesh(const KernelAnswers& kernels, const brep::Tr
 
 std::vector<Certificate> judge_voxels(const KernelAnswers& kernels, const voxel::Octree& answer) {
   if (!(answer.universe() == kernels.octree.universe()))
-    throw voxel::InvalidInput("the answer's voxels are not those that the kernels answered in");
+    throw voxel::InvalidInput(
+        "the answer must have the same universe of voxels as the voxel kernel's octree");
   const double voxel_mm3 = answer.universe().lattice().voxel_mm3();
   Certificate certificate;
   certificate.tier = Tier::Exact;

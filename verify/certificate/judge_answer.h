@@ -25,9 +25,9 @@ struct KernelAnswers {
 std::vector<Certificate> judge_mesh(const KernelAnswers& kernels, const brep::Triangles& answer,
                                     const voxel::Progress& progress = {});
 
-/// Judges a set of voxels. Throws std::invalid_argument unless it has the universe of the kernels' octree.
-/// The set is compared with the octree voxel by voxel, except voxels whose centre lies so near the solid's
-/// surface that rounding decides its side. It is compared with the solid at voxels' centres.
+/// Judges a set of voxels. Throws std::invalid_argument unless the set has the universe of the kernels'
+/// octree. The set is compared with the octree voxel by voxel, except where a voxel's centre lies so near the
+/// solid's surface that rounding decides its side. The set is compared with the solid at voxels' centres.
 std::vector<Certificate> judge_voxels(const KernelAnswers& kernels, const voxel::Octree& answer);
 
 }  // namespace octotomy::verify

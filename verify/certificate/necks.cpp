@@ -32,7 +32,7 @@ namespace octotomy::verify {
 namespace {
 
 constexpr int fine = 4;
-/// The search ends at this number of points, which is a few thousand voxels without a contact.
+/// neck_by_reading() gives up after this number of points, which is a few thousand voxels.
 constexpr std::size_t most_followed = 200000;
 
 bool has(const voxel::Octree& octree, const glm::ivec3& at) {
@@ -82,7 +82,7 @@ Necks::Side* Necks::side_near(const glm::ivec3& at) const {
 bool Necks::is_thick(Side& side, const std::vector<glm::ivec3>& part) const {
   if (!side.eroded) {
     const glm::dvec3 voxel_mm = octree_.universe().lattice().spacing_mm();
-    // A little more than one voxel, or than half a sample.
+    // A little more than a voxel or half a sample, whichever is larger.
     const glm::dvec3 past_mm = 1.01 * glm::max(voxel_mm, 0.5 * sample_mm_);
     const double radius_mm = std::max({past_mm.x, past_mm.y, past_mm.z});
     side.eroded = connected(voxel::erode(*side.set, radius_mm), *common_);
@@ -96,7 +96,8 @@ bool Necks::is_surely_connected(const std::vector<glm::ivec3>& part) const {
     const Reading reading = whole_.allowed_sides(lattice.lps_mm(voxel));
     return reading.voxel.in && !reading.voxel.near && reading.mesh.in && !reading.mesh.near;
   };
-  // The part is a whole group of voxels, so a path out of it ends at its first voxel of both answers.
+  // The part is a whole group of touching voxels, so the first step of a path out of it reaches a voxel of
+  // both answers.
   const auto leads_to = [&](const glm::ivec3& at, const glm::ivec3& on) {
     for (int i = 0; i <= fine; ++i)
       if (!is_sure(glm::mix(glm::dvec3(at), glm::dvec3(on), static_cast<double>(i) / fine))) return false;
@@ -208,7 +209,8 @@ bool Necks::is_near_any(const std::vector<glm::dvec3>& places_mm, const glm::dve
 
 std::optional<glm::dvec3> Necks::any_neck_mm(const std::vector<glm::dvec3>& part_mm) const {
   const std::lock_guard lock(mutex_);
-  // A thread that waits for its own loops here must not begin a certificate that waits for this lock.
+  // Isolated: a thread that waits for the parallel loops below must not start another task, which could wait
+  // for this mutex.
   return tbb::this_task_arena::isolate([&]() -> std::optional<glm::dvec3> {
     prepare();
     const voxel::Lattice lattice = octree_.universe().lattice();
@@ -247,7 +249,8 @@ bool Necks::keeps(const std::vector<glm::dvec3>& part_mm, const glm::dvec3& foun
 
 namespace {
 
-/// The thin neck by which one of the choices connects a part. `part_mm` is in the frame of the object.
+/// The place of the thin neck by which one of the choices connects a part; none if there is no such neck.
+/// `part_mm` is in the frame of the judged object.
 std::optional<WorstPlace> bridge_of(const std::vector<glm::dvec3>& part_mm, bool in_voxels, double volume_mm3,
                                     const std::vector<PartChoice>& choices) {
   for (const PartChoice& choice : choices) {
@@ -295,7 +298,7 @@ std::vector<std::vector<std::size_t>> groups_of(const std::vector<glm::ivec3>& v
   return groups;
 }
 
-// Besides the earlier choices of parts, the two judged answers themselves may differ by a thin neck.
+// The two judged answers count as a choice, too, because they may differ by a thin neck.
 Bridges::Bridges(const voxel::Octree& octree, const voxel::Octree& digitised, const Witness& witness)
     : octree_(octree) {
   if (witness.choices().empty()) return;

@@ -9,18 +9,19 @@
 #include "verify/witness/reading.h"
 #include "voxel/tree/octree.h"
 
-// How a kernel errs at a voxel, and which voxels are read. Shared by the comparison of places and by its limit.
+// The kinds of faults at a voxel, and the choice of sampled voxels. Both places.cpp and place_limit.cpp judge
+// by them.
 namespace octotomy::verify {
 
-/// The error of a kernel at a voxel. Apart: the kernels differ and the witness does not decide. Lost:
-/// resampling lost or filled a part that the mesh rightly has or lacks, which is not an error.
+/// The fault at a voxel. Apart: the kernels differ and the witness does not decide. Lost: resampling lost or
+/// filled a part that the mesh rightly has or lacks, which is not an error.
 enum class PlaceFault : std::uint8_t { None, VoxelsLack, VoxelsHave, MeshLacks, MeshHas, Apart, Lost };
 
 PlaceFault fault_of(const Reading& reading, bool in_voxels, bool in_mesh);
 
-/// Where less than a voxel connects a part, as in thin bone, chance decides whether a kernel keeps the part. So a
-/// group of Apart voxels is no fault if it has fewer voxels than a block of three a side and shares no face with
-/// voxels of the kernel that lacks it.
+/// Where a connection is thinner than a voxel, as in thin bone, chance decides whether a kernel keeps the
+/// part beyond. So a group of Apart voxels is no fault if it has fewer voxels than a block of three a side,
+/// and shares no face with voxels of the kernel that lacks the group.
 inline constexpr std::size_t chance_voxels = 27;
 
 inline bool is_within(const glm::ivec3& voxel, const voxel::Octree& octree) {
@@ -28,7 +29,7 @@ inline bool is_within(const glm::ivec3& voxel, const voxel::Octree& octree) {
          glm::all(glm::lessThan(voxel, glm::ivec3(octree.universe().side())));
 }
 
-/// Away from surfaces the witness is read at one of this number of voxels: one in each block of two voxels a side.
+/// Away from surfaces the witness is read at one voxel in eight: one in each block of two voxels a side.
 inline constexpr int sampled_one_in = 8;
 constexpr bool is_sampled(int x, int y, int z) {
   return ((x + 2 * y + 4 * z) & (sampled_one_in - 1)) == 0;
@@ -44,7 +45,6 @@ inline glm::ivec3 sampled_in_block(const glm::ivec3& first) {
   return at;
 }
 
-/// A triangle's centroid and area.
 struct CentredFace {
   glm::dvec3 centroid_mm{0.0};
   double area_mm2 = 0.0;

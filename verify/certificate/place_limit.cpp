@@ -30,8 +30,10 @@ std::vector<glm::ivec3> steps_outward() {
   return steps;
 }
 
-/// The size of the largest error around a voxel that could pass. Counts voxels of the same state outward, up
-/// to the first one at which an error of the octree would be detected. Smaller errors of that shape pass.
+/// The size, in voxels, of the smallest error around `from` that is detected. The error consists of the
+/// voxels nearest to `from` that have the same state, inside or outside. It is detected as soon as one of
+/// them contradicts the witness when its state in the octree is reversed. Returns the number of all such
+/// voxels within six voxels if none does.
 std::size_t unseen_voxels(const voxel::Octree& octree, const voxel::Octree& digitised, const glm::ivec3& from,
                           const std::vector<glm::ivec3>& steps, const Witness& witness) {
   const bool inside = octree.contains(from);
@@ -60,9 +62,10 @@ bool is_compared(const voxel::Octree& octree, const glm::ivec3& voxel) {
   return has(voxel);
 }
 
-/// Whether the loss of a piece is detected, both in the mesh alone and in both kernels. The piece must hold a
-/// compared voxel's centre at which the mesh fails without the piece, and a sampled voxel's centre at which
-/// both kernels fail. Tries points beneath the piece's triangles, up to two voxels deep.
+/// Whether two losses of a piece of the mesh are detected: by the mesh alone, and by both kernels. The piece
+/// must hold the centre of a compared voxel at which the mesh fails without the piece, and the centre of a
+/// sampled voxel at which both kernels fail without it. Tries points beneath the piece's triangles, up to two
+/// voxels deep. A piece of more than 4096 triangles counts as detected.
 bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const voxel::Octree& octree,
              const Witness& witness) {
   constexpr std::size_t most_faces = 4096, most_tried = 64;
@@ -118,7 +121,7 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
 }
 
 /// The volume of the largest whole piece of the mesh whose loss is not detected. Any other lost or added part
-/// leaves vertices where the witness has none, which step 2 of judge_places() detects.
+/// leaves vertices where the witness has no surface; step 2 of judge_places() detects those.
 double piece_limit_mm3(const brep::Solid& solid, const brep::Triangles& mesh, const voxel::Octree& octree,
                        const Witness& witness) {
   const std::vector<brep::Component>& pieces = solid.components();
@@ -154,7 +157,7 @@ double place_limit_mm3(const voxel::Octree& octree, const voxel::Octree& digitis
 }
 
 /// The smallest tried shift that moves at least one sampled triangle off the surface in each of six
-/// directions. None if even the largest tried shift does not.
+/// directions. None if the largest tried shift, four voxels, does not.
 std::optional<double> shift_limit_mm(const brep::Triangles& mesh, double voxel_mm, const Witness& witness) {
   std::mt19937_64 random(2);
   std::vector<glm::dvec3> points_mm;

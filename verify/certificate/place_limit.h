@@ -11,12 +11,12 @@
 
 namespace octotomy::verify {
 
-/// The smallest size from which the comparison of places detects an error in this object. Errors are injected
-/// at random places and judged by the rules of judge_places(): groups of voxels next to the boundary are
-/// removed and added, pieces of the mesh are removed, and the whole mesh is shifted along three axes, both
-/// ways. `digitised` are the voxels whose centre lies inside the solid; `boundary` belongs to the octree.
-/// Same answer on any thread count. Cost: about ten thousand readings of the witness, and a sort of the
-/// solid's pieces.
+/// The size from which on the comparison of places detects all errors that were injected in this object.
+/// Errors are injected at random places and judged by the rules of judge_places(): groups of voxels next to
+/// the boundary are removed and added, pieces of the mesh are removed, and the whole mesh is shifted along
+/// three axes, both ways. `digitised` are the voxels whose centre lies inside the solid; `boundary` belongs
+/// to the octree. Same answer on any thread count. Cost: about ten thousand readings of the witness, and a
+/// sort of the solid's pieces.
 DetectionLimit place_limit(const voxel::Octree& octree, const voxel::Octree& digitised,
                            const brep::Solid& solid, const std::vector<voxel::VoxelFace>& boundary,
                            const Witness& witness);

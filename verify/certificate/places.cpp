@@ -37,7 +37,7 @@
 namespace octotomy::verify {
 namespace {
 
-/// Clauses of a WorstPlace, by PlaceFault.
+/// WorstPlace::what for each PlaceFault.
 constexpr std::array<const char*, 7> clauses{
     "",
     "the scan has a part there that the voxels lack",
@@ -54,7 +54,7 @@ bool is_lost(const Reading& reading, bool in_voxels, bool in_mesh) {
          reading.mesh.allows(in_mesh);
 }
 
-/// Smaller groups of lost voxels are left to chance.
+/// Lost voxels in a smaller group are left out, because chance decides about them.
 constexpr std::size_t lost_voxels = 8;
 
 struct FailedVoxel {
@@ -62,7 +62,8 @@ struct FailedVoxel {
   PlaceFault fault = PlaceFault::None;
 };
 
-/// The voxels of a set, in the order of its blocks.
+/// Appends the voxels of a block to `voxels`, child by child. The block's side is 4^height voxels; `low` is
+/// its lowest voxel.
 void collect(const voxel::BlockRef& block, int height, const glm::ivec3& low,
              std::vector<glm::ivec3>& voxels) {
   if (block.is_empty()) return;
@@ -93,7 +94,7 @@ void sort_and_unify(std::vector<glm::ivec3>& voxels, int side) {
   for (const glm::ivec3& at : voxels) ++end[static_cast<std::size_t>(at.z) + 1];
   std::partial_sum(end.begin(), end.end(), end.begin());
   std::vector<std::size_t> next(end.begin(), end.end() - 1);
-  // Within a slice, rows of the universe one after the other.
+  // A voxel's place in its slice: rows of the universe one after the other.
   std::vector<std::uint32_t> places(voxels.size());
   for (const glm::ivec3& at : voxels)
     places[next[static_cast<std::size_t>(at.z)]++] = static_cast<std::uint32_t>(at.y * side + at.x);
@@ -152,7 +153,7 @@ std::vector<FailedVoxel> failed_voxels(const voxel::Octree& octree, const voxel:
   return failed;
 }
 
-/// The voxels of a leaf as bits, and a mask of the voxels that step 3 samples.
+/// The voxels of a leaf as bits: those of the octree, and those that step 3 samples.
 constexpr int leaf_side = 4;
 std::uint64_t leaf_word(const voxel::Octree& octree, const glm::ivec3& low) {
   const glm::ivec3 leaf = (low / leaf_side) % leaf_side;
@@ -203,9 +204,9 @@ std::vector<glm::ivec3> blocks_of(const voxel::Octree& octree, const LineReading
   return blocks;
 }
 
-/// Sampled voxels on which both kernels agree and at which the witness's sides for the mesh contradict
-/// them, except the `compared` ones, which are sorted. Empty if the object has no reading along lines,
-/// because that reading bounds the search.
+/// Sampled voxels on which both kernels agree and at which the witness's sides for the mesh contradict them.
+/// Leaves out voxels in `compared`, which is sorted. Empty if the object has no reading along lines, because
+/// that reading bounds the search.
 std::vector<FailedVoxel> failed_inside(const voxel::Octree& octree, const voxel::Octree& digitised,
                                        const std::vector<glm::ivec3>& compared, const Witness& witness,
                                        const voxel::Progress& progress) {
@@ -258,7 +259,7 @@ void add_inside(const std::vector<FailedVoxel>& failed, const voxel::Octree& oct
                             volume_mm3};
 }
 
-/// Whether the voxel shares no face with a voxel of the kernel that lacks it. Neighbours for which the
+/// Whether no voxel of the kernel that lacks this voxel shares a face with it. Neighbours whose side the
 /// witness decides do not count, because a part that is certainly present belongs to another object.
 bool hangs_on_no_face(const glm::ivec3& voxel, const voxel::Octree& octree, const voxel::Octree& digitised,
                       const Witness& witness) {
@@ -276,7 +277,7 @@ bool hangs_on_no_face(const glm::ivec3& voxel, const voxel::Octree& octree, cons
   return true;
 }
 
-/// The place of a group of failed voxels.
+/// The place of a group of failed voxels, described by the group's most frequent fault.
 WorstPlace place_of(const std::vector<FailedVoxel>& group, const voxel::Lattice& lattice) {
   glm::dvec3 middle(0.0);
   std::array<std::size_t, clauses.size()> votes{};
@@ -295,7 +296,8 @@ WorstPlace place_of(const std::vector<FailedVoxel>& group, const voxel::Lattice&
           clauses[static_cast<std::size_t>(fault)], volume_mm3};
 }
 
-/// Moves the lost voxels from `failed`, which are sorted, to `places.lost`.
+/// Removes the lost voxels from `failed`, which is sorted. Adds them to `places.lost` in groups of
+/// lost_voxels or more.
 void take_lost(std::vector<FailedVoxel>& failed, const voxel::Octree& octree, Places& places) {
   std::vector<FailedVoxel> lost, rest;
   for (const FailedVoxel& voxel : failed) (voxel.fault == PlaceFault::Lost ? lost : rest).push_back(voxel);
@@ -317,12 +319,12 @@ void take_lost(std::vector<FailedVoxel>& failed, const voxel::Octree& octree, Pl
   std::sort(places.lost.begin(), places.lost.end(), before);
 }
 
-/// Whether groups that chance explains are left out or kept.
+/// Whether a small group that chance may explain is left out (Allowed) or kept (Excluded).
 enum class Chance : std::uint8_t { Allowed, Excluded };
 
-/// Joins the failed voxels, which are sorted, into groups. Moves parts beyond thin necks to `places.open`, and keeps
-/// the largest remaining group as the worst place. With `Chance::Allowed`, groups that chance explains are left out
-/// before.
+/// Joins the failed voxels, which are sorted, into groups. With `Chance::Allowed`, first leaves out groups
+/// that chance explains. Moves parts beyond thin necks to `places.open`, and keeps the largest remaining
+/// group as the worst place.
 void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Octree& octree,
                 const voxel::Octree& digitised, const Witness& witness, Chance chance, Places& places) {
   const Bridges bridges(octree, digitised, witness);
@@ -389,7 +391,7 @@ void add_stray_triangles(const brep::Triangles& mesh, const Witness& witness, co
   }
 }
 
-/// Steps 1 to 4, without the limit.
+/// Steps 1 to 4 above. The limit stays zero.
 Places contradictions(const voxel::Octree& octree, const voxel::Octree& digitised, const brep::Solid& solid,
                       const std::vector<voxel::VoxelFace>& boundary, const Witness& witness,
                       const voxel::Progress& progress) {
@@ -419,7 +421,8 @@ std::vector<OpenPart> open_parts(const voxel::Octree& octree, const brep::Solid&
   std::vector<FailedVoxel> failed =
       failed_voxels(octree, digitised, compared_voxels(octree, digitised, {}), witness, {});
   take_lost(failed, octree, places);
-  // A part that both kernels keep also stays in objects made from it, where a motion would expose even a small one.
+  // Small groups count, too: they stay in objects that later steps make from this one, and a motion may
+  // expose them there.
   add_groups(failed, octree, digitised, witness, Chance::Excluded, places);
   return std::move(places.open);
 }

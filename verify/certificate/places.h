@@ -13,21 +13,21 @@
 
 namespace octotomy::verify {
 
-/// The comparison of both kernels' answers with the witness, place by place.
+/// Result of the comparison of both kernels' answers with the witness.
 struct Places {
   /// Voxels at which a kernel contradicts the witness, or at which the kernels contradict each other away
   /// from any surface.
   std::uint64_t voxel_count = 0;
   std::uint64_t largest_count = 0;  ///< voxels of the largest group that touch by faces, edges or corners
   double stray_mm2 = 0.0;           ///< area of triangles where the witness has no surface
-  /// The largest such group of voxels; if there is none, the largest such triangle.
+  /// The largest group of such voxels; if there is none, the largest such triangle.
   std::optional<WorstPlace> worst;
   /// Parts that one kernel joins to the object by a thin_neck and the other kernel cuts there, the largest
   /// first. Neither kernel is wrong, because the scan does not show whether the neck is present.
   std::vector<OpenPart> open;
-  /// Voxels of the parts that resampling lost or filled, in the order of before(). There the kernels differ, and the
-  /// witness agrees with the mesh but allows the voxels either answer (`untold`). Only groups of eight voxels or more
-  /// that touch, because chance decides about smaller ones.
+  /// Voxels of the parts that resampling lost or filled, in the order of before(). There the kernels differ,
+  /// and the witness agrees with the mesh but allows the voxels either answer (`untold`). Groups of fewer
+  /// than eight touching voxels are left out, because chance decides about them.
   std::vector<glm::ivec3> lost;
   std::optional<WorstPlace> worst_lost = {};  ///< the largest such group
   DetectionLimit limit;
@@ -44,8 +44,8 @@ Places judge_places(const voxel::Octree& octree, const voxel::Octree& digitised,
 Places contradicted_places(const voxel::Octree& octree, const voxel::Octree& digitised,
                            const brep::Solid& solid, const Witness& witness);
 
-/// The parts that one kernel alone joins to an object by thin necks, the largest first. Cost: digitises the
-/// solid and reads the witness at each voxel where the kernels differ.
+/// Returns the parts that one kernel alone joins to an object by thin necks, the largest first. Cost:
+/// digitises the solid and reads the witness at each voxel where the kernels differ.
 std::vector<OpenPart> open_parts(const voxel::Octree& octree, const brep::Solid& solid,
                                  const Witness& witness);
 

@@ -39,15 +39,16 @@ voxel::Octree on_units(const voxel::Octree& set) {
   return {universe, voxel::Block::share(set.root())};
 }
 
-/// Half of the distance, in units, by which sheets of one set are moved apart: more than the rounding of
+/// Distance, in units, by which each of two touching sheets of one set is moved: more than the rounding of
 /// points, less than the shift of an operand in corefinement.
 double parted_units(int side) {
   return 1e-6 * units * side;
 }
 
-/// Moves apart the sheets of the surface that touch: corners that coincide with other corners, and points
-/// half way along an edge, which lie on an edge of another sheet. Each point moves along the mean normal of
-/// its own sheet, into the solid, or out of it where the solid's other side is as near.
+/// Moves apart the sheets of the surface that touch. It moves corners that coincide with other corners, and
+/// points that are no corners of voxels, because these lie on an edge of another sheet. Each point moves
+/// along the mean normal of its own sheet: inward if the voxel behind the point is in the set, otherwise
+/// outward.
 void part_sheets(const voxel::Octree& set, double by, brep::Triangles& surface) {
   std::vector<std::size_t> order(surface.points_mm.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -80,8 +81,9 @@ void part_sheets(const voxel::Octree& set, double by, brep::Triangles& surface) 
     surface.points_mm[i] += (is_solid ? -by : by) * outward;
   }
   if (brep::health(surface).self_intersections > 0)
-    throw brep::Error(brep::ErrorCode::Geometry,
-                      "voxels of a set meet at an edge or corner where its sheets cannot be parted");
+    throw brep::Error(
+        brep::ErrorCode::Geometry,
+        "voxels of a set touch at an edge or corner where the sheets of its surface cannot be moved apart");
 }
 
 brep::Solid cuberille_of(const voxel::Octree& set, const voxel::Progress& progress) {
@@ -94,9 +96,9 @@ brep::Solid cuberille_of(const voxel::Octree& set, const voxel::Progress& progre
   return brep::trusted_solid(std::move(triangles), brep::Proof::Construction);
 }
 
-/// Rounds coordinates within `near` of whole units to them. The other coordinates belong to points in the
-/// middle of a face or side, and the volume does not depend on those. Also returns the largest distance of a
-/// triangle from the nearest plane between voxels, in units.
+/// Rounds coordinates to integers if they are within `near` of them. The other coordinates belong to points
+/// in the middle of a face or side, on which the volume does not depend. Also returns the largest distance of
+/// a triangle from the nearest plane between voxels. Lengths are in units.
 std::pair<brep::Mesh, double> on_lattice(brep::Mesh mesh, double near) {
   double farthest = 0.0;
   for (const auto face : mesh.faces()) {
@@ -208,7 +210,8 @@ SetsAnswer certified(voxel::Octree octree, const std::string& operation,
 
 SetsAnswer certify_sets(const voxel::Octree& a, brep::Operation operation, const voxel::Octree& b,
                         const voxel::Progress& progress) {
-  if (!(a.universe() == b.universe())) throw voxel::InvalidInput("both sets of voxels need one universe");
+  if (!(a.universe() == b.universe()))
+    throw voxel::InvalidInput("both sets of voxels must have the same universe");
   const auto corefine = [&]() -> Corefined {
     brep::BooleanResult result = brep::boolean(cuberille_of(on_units(a), progress), operation,
                                                cuberille_of(on_units(b), progress), progress.stop);
@@ -225,7 +228,7 @@ SetsAnswer certify_sets(std::string_view expression,
   for (const std::string& name : voxel::names_in(expression)) {
     const auto& [found, added] = sets.emplace(name, set(name));
     if (!(found->second.universe() == sets.begin()->second.universe()))
-      throw voxel::InvalidInput("all sets of voxels need one universe");
+      throw voxel::InvalidInput("all sets of voxels must have the same universe");
   }
   voxel::Names names;
   names.object = [&](std::string_view name) { return voxel::Expression(sets.find(name)->second); };

@@ -18,10 +18,11 @@ namespace octotomy::verify {
 /// touching edges, and the certificate of the answers.
 struct SetsAnswer {
   voxel::Octree octree;
-  /// In LPS millimetres, as corefined. None: the mesh kernel cannot represent it; the certificate has the
-  /// reason.
+  /// The mesh kernel's solid in LPS millimetres, as corefined. None: the mesh kernel cannot represent the
+  /// result, and the certificate states the reason.
   std::optional<brep::Solid> solid;
-  double shift_mm = 0.0;              ///< largest distance of the solid's surface from the sets' surface
+  /// bound of the distance between the solid's surface and the sets' surface
+  double shift_mm = 0.0;
   std::vector<std::string> findings;  ///< of the corefinement
   Certificate certificate;
 };
@@ -37,8 +38,8 @@ SetsAnswer certify_sets(const voxel::Octree& a, brep::Operation operation, const
                         const voxel::Progress& progress = {});
 
 /// As above, for an expression of named sets in the grammar of voxel::parse_expression(). Each kernel parses
-/// the text with its own parser. `set` returns the set of a name. Throws std::invalid_argument also if the
-/// text is no expression; as `set`.
+/// the text with its own parser. `set` returns the set with a given name. Throws std::invalid_argument also
+/// if the text is no expression; as `set`.
 SetsAnswer certify_sets(std::string_view expression,
                         const std::function<voxel::Octree(std::string_view name)>& set,
                         const voxel::Progress& progress = {});

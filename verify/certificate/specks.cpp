@@ -2,9 +2,9 @@
 //
 // 1 Shells. Triangles that share an edge belong to one shell. Its volume is that of the tetrahedra from the
 //   shell's own first point, so that no digits cancel far from the origin.
-// 2 Crossings. Of each small shell, every row of centres along the universe's first axis is crossed with the
-//   triangles. A shell encloses a centre if a centre lies between a row's first and second crossing, or third
-//   and fourth, and so on.
+// 2 Crossings. For each small shell, the rows of centres along the universe's first axis are intersected with
+//   its triangles. The shell encloses a centre if a centre lies between a row's first and second crossing, or
+//   third and fourth, and so on.
 #include "verify/certificate/specks.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::uint32_t no_shell = std::numeric_limits<std::uint32_t>::max();
 
-/// The connected sets of triangles, in the order of their first triangles.
+/// The connected sets of a mesh's triangles, in the order of their first triangles.
 struct Shells {
   std::vector<double> volumes_mm3;  ///< negative for a cavity
   std::vector<std::uint32_t> of_face;
@@ -59,10 +59,11 @@ Shells shells_of(const brep::Linked& linked) {
   return found;
 }
 
-/// Larger shells without a centre would be sheets of thousands of voxels between two layers of centres.
+/// Largest volume of a tested shell, in voxels. A larger shell without a voxel's centre would be a sheet of
+/// thousands of voxels between two layers of centres.
 constexpr double most_voxels = 4096.0;
 
-/// The faces of each small shell; none for the others.
+/// Returns for each shell its faces if it is small, and no faces otherwise.
 std::vector<std::vector<std::uint32_t>> faces_of_small(const Shells& found, double voxel_mm3) {
   std::vector<std::vector<std::uint32_t>> faces(found.volumes_mm3.size());
   const auto is_small = [&](std::uint32_t shell) {
@@ -89,8 +90,9 @@ double twice_area(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c)
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// Adds the rows that cross a triangle, whose corners are in voxels. Rows are moved by a part of a voxel that
-/// no lattice of samples has, so that they meet no corner or edge of a mesh along the lattice.
+/// Adds the crossings of a triangle with rows of voxel centres along x. Corners are in voxels. Rows are moved
+/// by a part of a voxel that no lattice of samples has, so that they meet no corner or edge of a mesh along
+/// the lattice.
 void add_crossings(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
                    std::vector<Crossing>& crossings) {
   constexpr double by_y = 1.37e-7, by_z = 2.71e-7;
@@ -110,8 +112,7 @@ void add_crossings(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c
     }
 }
 
-/// Whether a closed shell encloses no voxel's centre. Returns false in doubt: if rounding lost or doubled a
-/// crossing.
+/// Whether a closed shell encloses no voxel's centre. If rounding lost or doubled a crossing, returns false.
 bool is_between_centres(const brep::Triangles& mesh, const std::vector<std::uint32_t>& faces,
                         const voxel::Lattice& lattice) {
   std::vector<Crossing> crossings;
@@ -129,7 +130,7 @@ bool is_between_centres(const brep::Triangles& mesh, const std::vector<std::uint
   return true;
 }
 
-/// A speck as a place; `faces` are its own.
+/// The place of a speck with these faces.
 WorstPlace place_of(const brep::Triangles& mesh, const std::vector<std::uint32_t>& faces, double volume_mm3) {
   glm::dvec3 low_mm(std::numeric_limits<double>::infinity()), high_mm(-low_mm);
   for (const std::uint32_t face : faces)

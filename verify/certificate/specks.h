@@ -18,11 +18,11 @@ struct Specks {
   double volume_mm3 = 0.0;  ///< sum over parts and cavities, without sign
   /// The speck of largest volume; its size is the longest side of its box.
   std::optional<WorstPlace> largest;
-  /// The solid's other triangles. Empty if there are no specks; the solid's own triangles then serve.
+  /// The solid's other triangles. Empty if there are no specks; then use the solid's own triangles.
   brep::Triangles others;
 };
-/// Triangles that share an edge belong to one shell. Shells of more than 4096 voxels are no specks. Cost:
-/// linear. Parallel in parts; same answer on any thread count.
+/// Finds the specks. Triangles that share an edge belong to one shell. Shells of more than 4096 voxels are no
+/// specks. Cost: linear. Parallel in parts; same answer on any thread count.
 Specks specks_of(const brep::Solid& solid, const voxel::Lattice& lattice);
 
 }  // namespace octotomy::verify

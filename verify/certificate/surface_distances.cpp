@@ -24,9 +24,9 @@ namespace {
 
 /// Spacing of the points on the solid. An isosurface's triangles are smaller and have one point each.
 constexpr double spacing_voxels = 2.0;
-/// Largest number of runs; one point of each is chosen. With 32768 points the estimated 95th percentile lies
-/// between the true percentiles 94.6 and 95.4: three standard deviations, 3 sqrt(0.95 * 0.05 / 32768). The
-/// largest distance is exact.
+/// Largest number of runs of neighbouring points; mean and percentile use one point of each. With 32768
+/// points the estimated 95th percentile lies between the true percentiles 94.6 and 95.4: three standard
+/// deviations, 3 sqrt(0.95 * 0.05 / 32768). The largest distance is exact.
 constexpr std::size_t most_runs = std::size_t{1} << 15;
 
 SurfaceDistances::Points face_centres(const voxel::Octree& octree) {
@@ -48,7 +48,7 @@ SurfaceDistances::Points face_centres(const voxel::Octree& octree) {
 
 struct Farthest {
   double mm = -1.0;
-  std::size_t number = 0;  ///< of equal distances the first
+  std::size_t number = 0;  ///< of the point; the first one of equal distances
 
   static Farthest of(const Farthest& a, const Farthest& b) {
     return a.mm > b.mm || (a.mm == b.mm && a.number < b.number) ? a : b;
@@ -201,8 +201,8 @@ double SurfaceDistances::leave_out_thin() {
     const glm::dvec3 along = glm::abs(samples_.normals[numbers[i]] * axes_mm);
     widths_mm[i] = along.x + along.y + along.z;
   }
-  // Sheets may be stacked, and the far end of a voxel may lie in the next sheet or gap. So the whole distance to that
-  // end is searched.
+  // Sheets may be stacked, so the point at the far end of a voxel may lie in the next sheet or gap. So points
+  // at several shares of that distance are tested.
   std::vector<std::uint8_t> thin(count, 0);
   std::vector<std::size_t> left;
   std::vector<glm::dvec3> within_mm, beyond_mm;

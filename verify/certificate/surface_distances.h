@@ -27,22 +27,23 @@ class SurfaceDistances {
   SurfaceDistances(const voxel::Octree& octree, const brep::Solid& solid, const brep::Triangles& measured,
                    bool sampled);
 
-  /// The larger of both directions' means.
+  /// The larger one of both directions' means.
   double mean_mm() const;
-  /// The smallest distance that at least 95 % of the area does not exceed.
+  /// The smallest distance that at least 95 % of the area does not exceed, in the direction where it is
+  /// larger.
   double percentile95_mm() const;
   double largest_mm() const;
   /// The place of the largest distance, and the kernel that has a part there.
   WorstPlace worst() const;
 
   /// Removes the points of the solid on sheets and gaps thinner than a voxel, because voxels cannot represent
-  /// those. Returns the area in mm2 of such sheets and gaps, estimated if points were sampled. The largest
-  /// distance then covers the points that mean and percentile use.
+  /// those. Returns the area of these sheets and gaps in mm2, estimated if points were sampled. From then on
+  /// the largest distance covers only the points that mean and percentile use.
   double leave_out_thin();
-  /// Removes the points of the solid further than reach_mm from the boundary of `digitised`, the voxels whose
-  /// centres the solid holds, because voxels cannot represent them: rims of thin sheets and thin rods, which
-  /// leave_out_thin() does not find, because they are thick along their own normals. Returns their area as
-  /// leave_out_thin() does.
+  /// Removes the points of the solid farther than reach_mm from the boundary of `digitised`, the voxels whose
+  /// centres lie inside the solid. Voxels cannot represent the surface there: rims of thin sheets, and thin
+  /// rods. leave_out_thin() does not find those, because they are thick along their own normals. Returns
+  /// their area as leave_out_thin() does.
   double leave_out_unheld(const voxel::Octree& digitised, double reach_mm);
   /// Removes from both surfaces the points in or beside these voxels. A surface without remaining points
   /// has the distance 0. Precondition: the voxels are in the order of before().
@@ -53,7 +54,7 @@ class SurfaceDistances {
     std::vector<glm::dvec3> p_mm;
     std::vector<double> areas_mm2;
   };
-  /// Their distances to the other surface.
+  /// The distances of one surface's points from the other surface.
   struct Directed {
     std::vector<double> distances_mm, areas_mm2;  ///< of the points that mean and percentile use
     std::vector<std::uint32_t> numbers;           ///< of the same points
@@ -65,7 +66,8 @@ class SurfaceDistances {
   };
 
  private:
-  /// Removes marked points of from_solid_. Returns their area, estimated if points were sampled.
+  /// Removes the marked points of from_solid_. Returns the area that they represent, estimated if points were
+  /// sampled.
   double leave_out(const std::vector<std::uint8_t>& is_out);
 
   const voxel::Octree& octree_;

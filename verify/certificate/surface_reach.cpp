@@ -29,7 +29,7 @@
 namespace octotomy::verify {
 namespace {
 
-/// A distance of a sample. Infinite: not computed, because the sample is far.
+/// A sample with its distance from the other surface. Infinite: not computed, because the sample is far.
 struct FarSample {
   double distance_mm = -1.0;  ///< below 0: there is no sample
   glm::dvec3 at_mm{0.0};
@@ -49,7 +49,7 @@ double area_of(const brep::Triangles& mesh) {
   return area_mm2;
 }
 
-/// The first triangle at each vertex.
+/// Returns for each vertex the lowest number of a triangle at this vertex.
 std::vector<std::uint32_t> first_faces(const brep::Triangles& mesh) {
   std::vector<std::uint32_t> first(mesh.points_mm.size(), std::numeric_limits<std::uint32_t>::max());
   for (std::uint32_t face = 0; face < mesh.faces.size(); ++face)
@@ -136,16 +136,17 @@ void add_reach(Certificate& certificate, const FarSample& found, double reach_mm
   if (!(found.distance_mm >= 0.0))
     return lower(certificate, Verdict::Warn,
                  std::string("No sample of ") + (is_of_answer ? "the answer" : "the step's right result") +
-                     " lies far enough within the universe to be compared.");
-  add_comparison(certificate,
-                 {.quantity = is_of_answer ? "answer's surface from where it must lie"
-                                           : "where it must lie from the answer's surface",
-                  .unit = "mm",
-                  .difference = found.distance_mm,
-                  .tolerance = reach_mm,
-                  .formula = formula,
-                  .statement = is_of_answer ? "The answer's surface lies up to % from where it must lie"
-                                            : "A place where a surface must lie is % from the answer's"});
+                     " lies far enough within the universe to be compared: take a larger universe.");
+  add_comparison(
+      certificate,
+      {.quantity = is_of_answer ? "answer's surface from where it must lie"
+                                : "where it must lie from the answer's surface",
+       .unit = "mm",
+       .difference = found.distance_mm,
+       .tolerance = reach_mm,
+       .formula = formula,
+       .statement = is_of_answer ? "The answer's surface lies up to % from where it must lie"
+                                 : "A place where a surface must lie is % from the answer's surface"});
   if (certificate.comparisons.back().verdict == Verdict::Pass) return;
   const WorstPlace place{found.at_mm, found.distance_mm,
                          is_of_answer ? "the answer has a surface there that its step must not make"

@@ -9,21 +9,20 @@
 
 namespace octotomy::verify {
 
-/// The allowed distance between an answer and the surface where it must lie, in addition to the surface's
-/// own reach.
+/// The region in which judge_reach() compares surfaces, and how finely it samples them.
 struct ReachOptions {
-  voxel::Box world_mm;      ///< the answer ends there and the surface does not
-  double shift_mm = 0.0;    ///< how far Booleans on the way moved the operand
-  double spacing_mm = 1.0;  ///< of samples on a triangle, above 0
+  voxel::Box world_mm;      ///< box at whose border the answer ends, unlike the expected surface
+  double shift_mm = 0.0;    ///< how far earlier Booleans moved the operand; added to the reach
+  double spacing_mm = 1.0;  ///< largest spacing of samples on a triangle; above 0
 };
 
-/// Adds to the certificate of an answer the largest distance of its surface from the surface where it must
-/// lie, and the other way round: at all vertices, and at points of sides and triangles no farther apart
-/// than the spacing. Each distance fails beyond reach_doubt times the reach. Raises the detection limit to
-/// the volume of a layer of that thickness over the whole surface, because an answer may be off by that
-/// thickness. FAIL if only one of the two is empty. Throws voxel::Stopped. Parallel; same answer on any
-/// thread count. Cost: one search of a grid for each sample; for parts that are missing or added some
-/// hundred longer ones.
+/// Adds two comparisons to the certificate: the largest distance of the answer's surface from the surface
+/// where it must lie, and the reverse. Distances are measured at all vertices, and at points of sides and
+/// triangles no farther apart than the spacing. A distance above reach_doubt times the reach is a FAIL.
+/// Raises the detection limit to the volume of a layer of that thickness over the whole surface, because an
+/// answer may be off by that thickness. FAIL if only one surface is empty, unless the expected one lies only
+/// at the world's border. Throws voxel::Stopped. Parallel; same answer on any thread count. Cost: one search
+/// of a grid for each sample; for missing or added parts some hundred longer searches.
 void judge_reach(Certificate& certificate, const brep::Triangles& answer, const ReshapedSurface& expected,
                  const ReachOptions& options, const voxel::Progress& progress = {});
 

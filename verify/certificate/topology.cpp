@@ -30,7 +30,8 @@ Octree difference(const Octree& a, const Octree& b) {
 Octree cavities_of(const Octree& octree) {
   return difference(voxel::fill_cavities(octree), octree);
 }
-/// Sets the voxels of the middle slice that have all their 26 neighbours. Returns whether there is one.
+/// Sets in `centres` the voxels of the middle slice that are set with all their 26 neighbours. Returns
+/// whether there is one.
 bool set_centres_of_blocks(const std::array<SliceBits, 3>& slices, SliceBits& centres) {
   bool any = false;
   std::vector<std::uint64_t> all(static_cast<std::size_t>(centres.words_per_row) + 2, 0);
@@ -51,7 +52,7 @@ bool set_centres_of_blocks(const std::array<SliceBits, 3>& slices, SliceBits& ce
   return any;
 }
 
-/// The parts that hold a block of three voxels a side.
+/// Returns the parts of an octree that hold a block of three voxels a side.
 Octree with_blocks(const Octree& octree, Neighbours neighbours) {
   Octree large = voxel::components_of_at_least(octree, 27, neighbours);
   if (large.is_empty()) return large;
@@ -86,7 +87,7 @@ Unmatched told(const Octree& of_voxels, const Octree& of_mesh, Neighbours neighb
   return found;
 }
 
-/// The components of `parts` that share no voxel with a set.
+/// Returns the components of `parts` that share no voxel with `set`.
 Octree apart_from(const Octree& parts, const Octree& set, Neighbours neighbours) {
   return parts.is_empty() ? parts : difference(parts, voxel::components_that_meet(parts, set, neighbours));
 }
@@ -99,7 +100,6 @@ Topology topology(const Octree& octree, const Octree& cavities) {
   return found;
 }
 
-/// A set and its cavities.
 struct Hollow {
   const Octree& set;
   Octree cavities;
@@ -138,12 +138,11 @@ void compare_topology(Certificate& certificate, const Octree& octree, const Octr
                        const Unmatched& unmatched, const std::string& of_one_alone) {
     const std::string where =
         unmatched.largest ? ", the largest near " + voxel::rounded(unmatched.largest->at_mm) : "";
-    add_comparison(
-        certificate,
-        {quantity, "", static_cast<double>(in_voxels), static_cast<double>(in_mesh),
-         static_cast<double>(unmatched.count), 0.0,
-         "0: no part of three voxels a side may be without a common voxel with the other kernel's parts",
-         of_one_alone + where + ": %"});
+    add_comparison(certificate,
+                   {quantity, "", static_cast<double>(in_voxels), static_cast<double>(in_mesh),
+                    static_cast<double>(unmatched.count), 0.0,
+                    "0: each part of three voxels a side must share a voxel with a part of the other kernel",
+                    of_one_alone + where + ": %"});
   };
   add("parts", of_voxels.parts, of_mesh.parts, are_equal ? Unmatched() : unmatched_parts(octree, digitised),
       "Parts that one kernel alone has");
@@ -159,8 +158,8 @@ void compare_topology(Certificate& certificate, const Octree& octree, const Octr
 }
 
 // In a cell of the isosurface, inside samples that meet only at edges or corners are separate, and so are
-// outside samples that meet only at the cell's corners. The voxels' Euler number by faces connects two such
-// outside samples by a tunnel, so each of those cells adds one.
+// outside samples that meet only at the cell's corners. In the voxels' Euler number by faces a tunnel
+// connects two such outside samples, so each of those cells adds one.
 void compare_same_topology(Certificate& certificate, const Octree& octree, const brep::Solid& solid) {
   std::int64_t solid_euler = voxel::euler_numbers(octree).by_faces;
   const std::array<std::uint64_t, 256> cells = voxel::cell_counts(octree);

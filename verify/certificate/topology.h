@@ -18,7 +18,7 @@ struct Topology {
 };
 Topology topology(const voxel::Octree& octree);
 
-/// The parts, or cavities, of each set that share no voxel with a part, or cavity, of the other set. A part
+/// The parts (or cavities) of each set that share no voxel with a part (or cavity) of the other set. A part
 /// without a block of three voxels a side does not count, because chance decides which voxels lie inside bone
 /// thinner than a voxel.
 struct Unmatched {
@@ -31,8 +31,8 @@ struct Unmatched {
 Unmatched unmatched_parts(const voxel::Octree& voxels, const voxel::Octree& mesh);
 Unmatched unmatched_cavities(const voxel::Octree& voxels, const voxel::Octree& mesh);
 
-/// Adds comparisons of parts, cavities and tunnels. A part or cavity that counts as unmatched fails; tunnels
-/// are reported without a verdict. `digitised` are the voxels whose centre lies inside the mesh.
+/// Adds comparisons of parts, cavities and tunnels. An unmatched part or cavity is a FAIL; tunnels are
+/// reported without a verdict. `digitised` are the voxels whose centre lies inside the mesh.
 void compare_topology(Certificate& certificate, const voxel::Octree& octree, const voxel::Octree& digitised);
 
 /// Adds comparisons of the Euler numbers and outer shells of an octree and of the isosurface of the same

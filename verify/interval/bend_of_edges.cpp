@@ -12,7 +12,7 @@ inline glm::dvec3 vector_area(const glm::dvec3& a, const glm::dvec3& b, const gl
   return 0.5 * glm::cross(b - a, c - a);
 }
 
-/// The unit vector; zero if the length is zero.
+/// Returns the vector with length 1; zero for a vector of length zero.
 inline glm::dvec3 unit(const glm::dvec3& v, double length) {
   const glm::dvec3 u = v / length;
   const bool is_long = length > 0.0;

@@ -9,12 +9,13 @@
 
 namespace octotomy::verify {
 
-/// A hash table from the number of a lattice cell to a value. Precondition: no cell's number is all ones,
-/// because that marks an empty slot.
+/// A hash table from a lattice cell's number to a value. Precondition: no cell's number is all ones, because
+/// that number marks an empty slot.
 template <typename Value>
 class CellTable {
  public:
-  /// The value of a cell, created if it is new. The reference is valid until the next call.
+  /// Returns the value of a cell. Adds a default value for a new cell. The reference is valid until the next
+  /// call.
   Value& at(std::uint64_t cell) {
     assert(cell != none);
     if (2 * count_ >= slots_.size()) grow();

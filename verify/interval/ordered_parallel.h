@@ -11,10 +11,11 @@
 
 namespace octotomy::verify {
 
-/// Calls take(i, item) for i from 0 in ascending order, so that sums in take() have the same bits on any
-/// number of threads. Before that, calls make(first, end, items) for runs of any length on all threads.
-/// make() runs at the same time as take() for earlier items, so make() must not read data that take() writes.
-/// It must set every item, because an item's memory is reused.
+/// Computes items in parallel and passes them on in order. Calls make(first, end, items) for runs of any
+/// length, on all threads; make() must set every item of its run, because the memory of items is reused.
+/// Calls take(i, item) for i from 0 in ascending order, one call at a time, so that sums in take() have the
+/// same bits on any number of threads. make() runs at the same time as take() for earlier items, so make()
+/// must not read data that take() writes.
 template <typename Item, typename Make, typename Take>
 void ordered_parallel_by_batch(std::size_t count, const Make& make, const Take& take) {
   constexpr std::size_t block = std::size_t{1} << 14, grain = 256;

@@ -27,8 +27,9 @@
 namespace octotomy::verify {
 namespace {
 
-/// The remaining share of a sheet's sum of squares under a blur of this deviation, in samples: the mean
-/// covariogram. The sheet's area is `ratio` times its volume.
+/// The share of a sheet's sum of squares that remains under a blur of this deviation, in samples: the mean
+/// covariogram. The sheet's area is `ratio` times its volume. rod_left() and ball_left() return the same for
+/// rods and balls.
 double sheet_left(double ratio, double deviation) {
   const double thickness = 2.0 / ratio, q = std::numbers::sqrt2 * deviation;
   const double z = thickness / (q * std::numbers::sqrt2);
@@ -48,7 +49,8 @@ double ball_left(double ratio, double deviation) {
   return zeroth - 0.75 / radius * first + third / (16.0 * radius * radius * radius);
 }
 
-/// Area per volume and the blur's deviation, in samples, by fits of sheets, rods and balls.
+/// The area per volume (as a logarithm, with its spread) and the deviation of the blur, in samples. Means of
+/// three fits, of sheets, rods and balls, weighted by their misfit.
 struct Fitted {
   double log_ratio = 0.0, spread = 0.0, deviation = 0.0;
   double misfit = 0.0;  ///< residual of the best fit, in squared logarithms
@@ -77,7 +79,7 @@ Fitted fitted(const PhaseEvidence& found) {
         blurs[shape] = deviation;
       }
     mean.misfit = std::min(mean.misfit, least);
-    // Even the right shape has an error of about one per cent at each blur.
+    // Even for the right shape the model has an error of about one per cent at each blur.
     weights[shape] = 1.0 / ((least + 2e-4) * (least + 2e-4));
   }
   const double all = weights[0] + weights[1] + weights[2];
@@ -91,20 +93,21 @@ Fitted fitted(const PhaseEvidence& found) {
   return mean;
 }
 
-/// Logarithms of an area's likeliest value and bounds.
+/// Logarithms of an area's most likely value and of its bounds.
 struct LogRange {
   double best = 0.0, low = 0.0, high = 0.0;
 };
 
-/// The most likely value; the half-width is the distance to the farther bound.
+/// Converts a range to an interval. The half-width is the distance of the most likely value from the farther
+/// bound.
 Interval interval_of(const LogRange& range, const std::string& name, const std::string& formula) {
   const double value = std::exp(range.best);
   const double half_width = std::max(std::exp(range.high) - value, value - std::exp(range.low));
   return {value, half_width, {{name, formula, half_width}}};
 }
 
-/// Half-width of the noise's interval in standard deviations. 99 of 100 normal errors are within 2.6; the rest allows
-/// for an error in the noise itself.
+/// Half-width of the noise's interval, in standard deviations. 99 of 100 normal errors are within 2.6
+/// deviations; the rest allows for an error of the deviation.
 constexpr double confidence = 2.8;
 
 /// The half level's area at two added blurs, extrapolated to no blur by the variance and by the deviation.
@@ -117,7 +120,8 @@ std::optional<LogRange> by_edges(const PhaseEvidence& found, const Fitted& fit) 
   const double step = std::max(std::log(level[1] / level[2]), 0.0);
   const double least = near * near / (far * far - near * near) * step, most = near / (far - near) * step;
   const double apart = std::min(most - least, 0.6), middle = std::log(level[1]) + least + 0.3 * apart;
-  // If the solid is thin everywhere, teeth and grooves as narrow as the blur may not reach the half level.
+  // If the solid is thin everywhere, projections and grooves as narrow as the blur may not reach the half
+  // level.
   const double lost = found.has_core ? 0.0 : 0.12;
   return LogRange{middle, middle - apart - 0.02, middle + apart + 0.02 + lost};
 }

@@ -22,8 +22,8 @@ SampleDensity densest(std::vector<float>& values) {
   std::size_t narrowest = 0;
   for (std::size_t i = 0; i + quarter < values.size(); ++i)
     if (values[i + quarter] - values[i] < values[narrowest + quarter] - values[narrowest]) narrowest = i;
-  // A quarter of normal values lies within 0.319 deviations of their mean. The narrowest quarter of many is
-  // narrower, hence the factor 1.5.
+  // A quarter of all normal values lies within 0.319 deviations of the mean. Among many quarters the
+  // narrowest one is narrower than that, hence the factor 1.5.
   return {static_cast<double>(values[narrowest + quarter / 2]),
           1.5 / 0.637 * static_cast<double>(values[narrowest + quarter] - values[narrowest])};
 }

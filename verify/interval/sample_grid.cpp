@@ -8,9 +8,10 @@
 namespace octotomy::verify {
 namespace {
 
-/// Filters along each axis in turn. combine(made, count, source) makes `count` adjacent samples, source(k) those
-/// at k - reach samples along the axis, k = 0 .. 2 reach. Samples beyond the border repeat those of the border.
-/// Rows along x are worked on as a whole, or, along y and z, side by side, so that memory is read in order.
+/// Filters along each axis in turn. combine(made, count, source) must compute `count` adjacent samples at
+/// `made`. source(k) points to the same samples shifted by k - reach along the axis, for k = 0 .. 2 reach.
+/// Samples beyond the border repeat those of the border. Along x each call filters a row; along y and z it
+/// filters a row's samples side by side, so that memory is read in order.
 template <typename Values, typename Combine>
 void filter(const SampleGrid& grid, Values& values, std::size_t reach, const Combine& combine) {
   for (int axis = 0; axis < 3; ++axis) {

@@ -6,8 +6,8 @@
 #include <tbb/parallel_for.h>
 #include <vector>
 
-// A scan's samples as an array, x fastest, and filters of the whole array. Parallel; same bits on any thread
-// count. Cost: order n.
+// A scan's samples as an array, x fastest, and filters of the whole array. All are parallel and return the
+// same bits on any thread count. Cost: linear in the samples.
 namespace octotomy::verify {
 
 using SampleValues = std::vector<float>;
@@ -31,7 +31,7 @@ struct SampleGrid {
   }
 };
 
-/// Sums in an order that does not depend on the threads: within planes of z, then over the planes.
+/// Adds up the sums that `per_plane` computes for each plane of z. The order does not depend on the threads.
 template <typename Sum, typename PerPlane>
 Sum by_planes(const SampleGrid& grid, const PerPlane& per_plane) {
   std::vector<Sum> planes(static_cast<std::size_t>(grid.dims.z));
@@ -41,17 +41,17 @@ Sum by_planes(const SampleGrid& grid, const PerPlane& per_plane) {
   return whole;
 }
 
-/// A Gaussian blur with a deviation in samples along each axis. Beyond the border, samples repeat those of
-/// the border.
+/// Blurs by a Gaussian with this deviation, in samples, along each axis. Beyond the border, samples repeat
+/// those of the border.
 SampleValues blurred(const SampleGrid& grid, SampleValues values, double deviation);
 
-/// The lowest, or highest, of the samples within `reach` samples along each axis.
+/// Returns for each sample the lowest, or highest, of the samples within `reach` samples along each axis.
 SampleValues extremes(const SampleGrid& grid, SampleValues values, std::size_t reach, bool highest);
 
-/// Sets all samples within `reach` samples along each axis of one that is set.
+/// Sets all samples that are within `reach` samples, along each axis, of a sample that is set.
 void grow(const SampleGrid& grid, SampleMask& mask, std::size_t reach);
 
-/// The area of the isosurface of `level`, with each cell divided into six tetrahedra around a diagonal.
+/// Returns the area of the isosurface of `level`. Each cell is divided into six tetrahedra around a diagonal.
 double level_mm2(const SampleGrid& grid, const SampleValues& values, float level);
 
 }  // namespace octotomy::verify

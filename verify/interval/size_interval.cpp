@@ -64,16 +64,18 @@ constexpr double chords = 0.2;
 /// An isosurface chamfers edges, so the angle between its triangles is smaller than this.
 constexpr double sharpest_rad = 1.2;
 
-/// Curvature and area of one part.
+/// Curvature and area of one part of the surface.
 struct Part {
   double area_mm2 = 0.0;
   double bent_mm2 = 0.0;       ///< integral of s H
   double bent_mm3 = 0.0;       ///< integral of s^2 H
   glm::dvec3 across_mm2{0.0};  ///< sum of the triangles' vector areas
-  double flat_mm3 = 0.0;       ///< area of triangles along the lattice, each times the spacing across
+  /// area of the triangles along the lattice, each times the spacing along its normal
+  double flat_mm3 = 0.0;
 };
 
-/// The integrals over the surface from which the intervals are computed.
+/// Integrals over the surface, from which the intervals are computed. The letters are those of the text
+/// above.
 struct Shape {
   double area_mm2 = 0.0, volume_mm3 = 0.0;
   double bent_mm3 = 0.0, bent_without_sign_mm3 = 0.0;    ///< B
@@ -81,10 +83,10 @@ struct Shape {
   double sharp_mm2 = 0.0;                                ///< E
   double sharp_mm3 = 0.0, sharp_without_sign_mm3 = 0.0;  ///< F
   double ripple_mm2 = 0.0;                               ///< R
-  double curvature_mm = 0.0;                             ///< integral of H without sign
-  double flat_mm3 = 0.0;  ///< area along the lattice, each part times the spacing across
-  /// Difference between the volume by counting samples and that of the triangles, for the axis with the
-  /// largest difference.
+  double curvature_mm = 0.0;                             ///< the absolute value of the integral of H
+  double flat_mm3 = 0.0;  ///< area along the lattice, each part times the spacing along its normal
+  /// Difference between the volume by counting samples and the volume of the triangles, along the axis where
+  /// it is largest.
   double between_mm3 = 0.0;
 };
 
@@ -97,8 +99,8 @@ class Measuring {
         has_cells_(from.along_lps_mm) {
     const glm::dmat3& edges = from.sample_edges;
     frame_.from_lps = glm::inverse(edges);
-    // Vertices have integer coordinates in samples. The borders of parts lie between those planes, so that
-    // rounding cannot move a vertex to the next part.
+    // Vertices have integer coordinates in samples on two axes. The borders of parts lie off the integers, so
+    // that rounding cannot move a vertex to the next part.
     frame_.origin_mm = from.sample_at_mm + edges * glm::dvec3(0.123, 0.147, 0.161);
     for (int axis = 0; axis < 3; ++axis) {
       frame_.spacing_mm[axis] = glm::length(edges[axis]);
@@ -136,8 +138,8 @@ class Measuring {
   const std::array<std::uint32_t, 3>& corners(std::size_t face) const { return triangles_.faces[face]; }
   const glm::dvec3& point(std::uint32_t number) const { return triangles_.points_mm[number]; }
 
-  /// The key of a lattice cell and of a direction's nearest axis with its sign. Precondition: the cell's
-  /// indices are at least -2^19 and below 2^19.
+  /// Combines the indices of a lattice cell with the axis nearest to a direction, and the direction's sign,
+  /// to a key. Precondition: the indices are at least -2^19 and below 2^19.
   static std::uint64_t numbered(const glm::dvec3& cell, const glm::dvec3& along) {
     int direction = 0;
     for (int axis = 1; axis < 3; ++axis)
@@ -183,8 +185,8 @@ class Measuring {
         });
   }
 
-  /// The size of an area whose normal is along an axis of the lattice, times the spacing along that axis;
-  /// zero for any other area. `along` is the vector area in the lattice's directions.
+  /// Returns the size of an area times the spacing along its normal if the normal is along an axis of the
+  /// lattice, and zero otherwise. `along` is the vector area in the lattice's directions.
   double flat_mm3(double size, const glm::dvec3& along) const {
     for (int axis = 0; axis < 3; ++axis)
       if (std::abs(along[axis]) > flat_cosine * size) return size * frame_.spacing_mm[axis];
@@ -199,8 +201,8 @@ class Measuring {
     std::uint64_t part = 0, cell = 0;
     double mm = 0.0, spacing_mm = 0.0, inverse = 0.0;
   };
-  /// Sets the edges of sides `first` to `end`; empty for the second side of an edge, so that each counts
-  /// once.
+  /// Computes the edges of sides `first` to `end` - 1. The second side of an edge gets an empty BentEdge, so
+  /// that each edge counts once.
   void make_edges(std::size_t first, std::size_t end, BentEdge* made) const {
     EdgeBatch edges;
     std::array<std::size_t, batch> sides;
@@ -268,8 +270,8 @@ class Measuring {
     shape_.curvature_mm = std::abs(shape_.curvature_mm);
   }
 
-  /// Computes `between_mm3`. Counting samples is equal to placing each crossing in the middle of its lattice
-  /// edge, so the difference is the sum of the crossings' distances from the middle.
+  /// Computes `between_mm3`. Counting samples puts each crossing into the middle of its lattice edge, so the
+  /// difference is the sum of the crossings' distances from the middle.
   void find_between() {
     std::vector<glm::dvec3> across(triangles_.points_mm.size(), glm::dvec3(0.0));
     for (const auto& [a, b, c] : triangles_.faces) {
@@ -282,7 +284,8 @@ class Measuring {
     for (std::size_t v = 0; v < across.size(); ++v) {
       const glm::dvec3 q = frame_.from_lps * (triangles_.points_mm[v] - sample_at_mm_);
       const glm::dvec3 off = glm::abs(q - glm::round(q));
-      // Vertices are at least a thousandth of an edge away from samples.
+      // Vertices are at least a thousandth of an edge away from samples, so a vertex on a lattice edge is
+      // farther than this from its ends.
       constexpr double on_line = 2e-4;
       for (int axis = 0; axis < 3; ++axis) {
         if (off[axis] <= on_line || off[(axis + 1) % 3] > on_line || off[(axis + 2) % 3] > on_line) continue;
@@ -294,8 +297,9 @@ class Measuring {
     shape_.between_mm3 = std::max({sum.x, sum.y, sum.z});
   }
 
-  /// Moves every point half-way to the mean of its neighbours; points of cuts stay. Each thread owns a range
-  /// of points and reads all triangles, so that a point's sum is in the order of the triangles.
+  /// Computes the area that one step of smoothing removes (R). The step moves every point half-way to the
+  /// mean of its neighbours; points of cuts stay. Each thread owns a range of points and reads all triangles,
+  /// so that a point's sum is in the order of the triangles.
   void smooth() {
     const std::vector<glm::dvec3>& p = triangles_.points_mm;
     std::vector<glm::dvec3, voxel::LargeAllocator<glm::dvec3>> moved(p.size());
@@ -340,7 +344,7 @@ class Measuring {
   CellTable<Part> parts_;
   CellTable<double> cells_mm_;  ///< the curvature in cells of three samples along the LPS axes
   AreaAndCurvature triangles_as_they_are_;
-  std::vector<std::uint8_t> cut_;  ///< 1 for the ends of edges along a cut
+  std::vector<std::uint8_t> cut_;  ///< 1 for the ends of edges that belong to a cut
   Shape shape_;
 };
 
@@ -348,12 +352,13 @@ double normal_distribution(double z) {
   return 0.5 * std::erfc(-z / std::numbers::sqrt2);
 }
 
-/// Distance beyond the surface at which blur has no effect any more, in samples.
+/// Distance outside the surface beyond which blur has no effect, in samples.
 constexpr double away = 2.5;
 
-/// The mean step across a face over distances of up to one sample on either side. `level` returns the value
-/// at a depth in samples. The ripple of linear interpolation cancels over a whole sample. At a face along the
-/// lattice it would otherwise depend on the position of the face between two samples.
+/// The mean step across a face: the mean difference between depths of up to one sample inside and the same
+/// depths outside. `level` returns the value at a depth in samples. Over a whole sample the ripple of linear
+/// interpolation cancels. At a face along the lattice the step would otherwise depend on the position of the
+/// face between two samples.
 template <typename Level>
 double mean_step(const Level& level) {
   constexpr int parts = 4;
@@ -365,8 +370,9 @@ double mean_step(const Level& level) {
   return sum / parts;
 }
 
-/// The mean step at the face of a sheet blurred by a Gaussian, as a share of the contrast between `depth`
-/// inside and `away` outside the face. `deviation` is the Gaussian's. All lengths are in samples.
+/// The mean step at the face of a sheet that was blurred by a Gaussian, as a share of the difference between
+/// the values at `depth` inside the face and at `away` outside it. `deviation` is that of the Gaussian. All
+/// lengths are in samples.
 double step_share(double deviation, double depth, double thickness) {
   const auto level = [&](double at) {
     return normal_distribution(at / deviation) - normal_distribution((at - thickness) / deviation);

@@ -24,7 +24,7 @@
 namespace octotomy::verify {
 namespace {
 
-/// Largest scan: the copies of its samples take two gigabytes.
+/// Number of samples of the largest scan: the copies of its samples take two gigabytes.
 constexpr std::size_t most_samples = std::size_t{1} << 27;
 
 /// Sums over the samples near the solid and those away from it.
@@ -59,12 +59,12 @@ class Reading {
     grid_.spacing_mm = scan.lattice.spacing_mm();
   }
 
-  /// Returns false if the solid and its surroundings do not have two densities.
+  /// Measures the scan. Returns false if the solid and its surroundings do not have two densities.
   bool run(PhaseEvidence& found) {
     if (scan_.padding || glm::any(glm::lessThan(grid_.dims, glm::ivec3(8))) || is_sheared()) return false;
     if (grid_.size() > most_samples || !look_about()) return false;
-    // Gaps between adjacent walls also have a density of their own. So where the densities differ, two
-    // densities are tried last.
+    // Gaps between adjacent walls also have a density of their own. So where the densities beside the solid
+    // and of most of the scan differ, the attempt with two densities comes last.
     const bool may_be_of_two = is_of_two_;
     const bool is_other = is_beside_ && std::abs(beside_.value - all_.value) > far();
     if (may_be_of_two && !is_other && run_in(all_, found)) return true;
@@ -79,7 +79,7 @@ class Reading {
   }
 
  private:
-  /// As run(), with `level` as the density of the surroundings.
+  /// As run(), for one attempt, with `level` as the density of the surroundings.
   bool run_in(const SampleDensity& level, PhaseEvidence& found) {
     take(level);
     if (!(contrast_ > 0.0) || noise_ > 0.2 * contrast_) return false;
@@ -137,9 +137,9 @@ class Reading {
     found.background = background_;
     found.contrast = contrast_;
     found.least_seen = least_seen_ / contrast_;
-    // Blur lowers walls that are thin everywhere. If samples over the half level are a small part of the sum
-    // although some samples are hardly lowered, the rest probably has a third density. If there is a core, it
-    // certainly has.
+    // Blur lowers the samples of walls that are thin everywhere. If samples over the half level are a small
+    // part of the sum although some samples are hardly lowered, the rest probably has a third density. If
+    // there is a core, the rest certainly has one.
     const bool is_much_more = found.highest > 0.8 && found.sum * sample_mm3() > 1.6 * found.counted_mm3;
     if (is_much_more && found.has_core) return false;
     found.is_ambiguous =
@@ -150,7 +150,7 @@ class Reading {
 
   double sample_mm3() const { return grid_.spacing_mm.x * grid_.spacing_mm.y * grid_.spacing_mm.z; }
 
-  /// Whether the scan's axes are not at right angles, which blurs and areas require.
+  /// Whether the scan's axes are not perpendicular. Blurs and areas require perpendicular axes.
   bool is_sheared() const {
     const glm::dmat3 axes(scan_.lattice.lps_from_voxel);
     const auto cosine = [&](int a, int b) {
@@ -165,12 +165,12 @@ class Reading {
     contrast_ = 2.0 * (low_ - background_);
   }
 
-  /// A sample that differs by more than this from the surroundings has another density.
+  /// A sample that differs from the surroundings by more than this has another density.
   double far() const { return std::max(6.0 * noise_, 0.02 * contrast_); }
 
-  /// Estimates the density of most of the scan below the bound, and that of the solid's surroundings, from
-  /// samples at a distance of three samples from the solid. If too few samples reach the bound, the density
-  /// of the surroundings is the higher of the two most frequent ones. False: too few samples are below the
+  /// Estimates the density of most of the scan below the bound, and that of the solid's surroundings. The
+  /// latter comes from samples at a distance of three samples from the solid or, if too few samples reach the
+  /// bound, is the higher of the two most frequent densities. Returns false if too few samples are below the
   /// bound.
   bool look_about() {
     std::vector<float> below, others, beside;
@@ -192,7 +192,7 @@ class Reading {
     is_beside_ = beside.size() >= 100;
     if (is_beside_) {
       // Blur widens the distribution of the samples beside the solid. If most of the scan has the same
-      // density, its noise is used.
+      // density, the noise of most of the scan is used instead.
       beside_ = densest(beside);
       if (std::abs(beside_.value - all_.value) < 3.0 * beside_.noise)
         beside_.noise = std::min(beside_.noise, all_.noise);
@@ -205,8 +205,8 @@ class Reading {
     return true;
   }
 
-  /// Collects samples over the bound that have a neighbour over it along x, y or z; a single sample is noise.
-  /// Thins them out evenly to 200,000 at most.
+  /// Collects the positions of samples over the bound that have a neighbour over it along x, y or z, because
+  /// a single sample is noise. Keeps at most 200,000 of them, evenly spread.
   template <typename Samples>
   void find_over(const Samples& samples) {
     const auto is_over = [&](std::size_t i) { return static_cast<double>(samples[i]) >= low_; };
@@ -227,8 +227,8 @@ class Reading {
     over_.resize(kept);
   }
 
-  /// Calls `visit(value)` for samples below the bound at a distance of three samples along an axis from one
-  /// over it.
+  /// Calls `visit(value)` for each sample below the bound that is three samples along an axis from a position
+  /// in over_.
   template <typename Visit>
   void each_beside(const Visit& visit) const {
     std::visit(
@@ -246,8 +246,8 @@ class Reading {
         scan_.samples);
   }
 
-  /// Whether the samples beside the solid have the density of the surroundings, apart from the effect of blur
-  /// and of adjacent walls.
+  /// Whether the samples beside the solid have the density of the surroundings, except for a few that blur or
+  /// adjacent walls change.
   bool are_beside() {
     take(beside_);
     std::size_t all = 0, below = 0, lower = 0, higher = 0;
@@ -261,8 +261,8 @@ class Reading {
     return 5 * below <= all && 20 * lower <= all && 7 * higher <= 6 * all;
   }
 
-  /// Replaces samples of a lower density than the surroundings, and their neighbours, by the density of the
-  /// surroundings.
+  /// Replaces samples of a lower density than that of the surroundings, and their neighbours, by the density
+  /// of the surroundings.
   void fill_lower() {
     const auto bound = static_cast<float>(background_ - far());
     for (std::size_t i = 0; i < values_.size(); ++i) filled_[i] = values_[i] < bound ? 1 : 0;
@@ -275,9 +275,9 @@ class Reading {
     fill();
   }
 
-  /// Whether samples between both densities are nearly equal over five samples along each axis. That shows a
-  /// third density, or thin walls close together. After a blur of one sample a single wall or edge has no
-  /// such plateau.
+  /// Whether samples between both densities are nearly equal over five samples along each axis. A third
+  /// density causes this, or thin walls close together. After a blur of one sample a single wall or edge has
+  /// no such plateau.
   bool finds_plateau(const SampleValues& at_one) const {
     const SampleValues lowest = extremes(grid_, at_one, 2, false), highest = extremes(grid_, at_one, 2, true);
     const auto zero = static_cast<float>(background_), unit = static_cast<float>(contrast_);
@@ -307,8 +307,8 @@ class Reading {
       least_seen_ = std::max(5.0 * refined(values, densest(values)).noise, least_seen_);
   }
 
-  /// Marks the samples near the solid. False: no sample rises above noise, or a third density touches the samples
-  /// that do.
+  /// Marks the samples near the solid. Returns false if no sample rises above noise, or if a third density
+  /// touches the samples that do.
   bool find_near(const SampleValues& at_one) {
     near_.resize(at_one.size());
     solid_.resize(at_one.size());
@@ -327,7 +327,7 @@ class Reading {
     beyond_ = near_;
     grow(grid_, beyond_, 2);
     if (!is_of_two_) {
-      // Next to a third density there may be no other surroundings than the samples just beyond the solid.
+      // Beside a third density the only samples of the surroundings may be those just beyond the solid.
       std::size_t away = 0;
       for (std::size_t i = 0; i < near_.size(); ++i) away += beyond_[i] == 0 && filled_[i] == 0 ? 1 : 0;
       if (away < 1000) beyond_ = near_;
@@ -335,8 +335,8 @@ class Reading {
     return risen > 0 && met <= risen / 500 + 2;
   }
 
-  /// Number of samples in the surroundings that differ from their density by more than noise after a blur of
-  /// one sample.
+  /// Number of samples in the surroundings that differ from the density of the surroundings by more than
+  /// noise, after a blur of one sample.
   std::size_t odd_in(const SampleValues& at_one) const {
     std::size_t odd = 0;
     for (std::size_t i = 0; i < at_one.size(); ++i)
@@ -354,8 +354,8 @@ class Reading {
     for (std::uint8_t& one : deep_) one = one == 0 ? 1 : 0;
   }
 
-  /// Whether a solid without a core is too thick for its low samples, so that the window's bound is not its
-  /// half level. The samples above half of the highest share are compared with those of thin walls under a
+  /// Whether a solid without a core is too thick for the low values of its samples. The window's bound is
+  /// then not its half level. Samples above half of the highest share are compared with thin walls under a
   /// blur of up to 1.6 samples: these are at most five samples wide if the highest share is below 0.45, and
   /// seven if it is below 0.7.
   bool has_lower_plateau(const SampleValues& at_one, double highest) {
@@ -367,8 +367,8 @@ class Reading {
     return std::count(thin.begin(), thin.end(), std::uint8_t{0}) > 4;
   }
 
-  /// The sums in sample units, or in shares of the contrast. In `near` a sample deep in the solid counts as
-  /// one.
+  /// Sums over the samples: in sample units, or in shares of the contrast. In `near` a sample deep in the
+  /// solid counts as one.
   Sums summed(const SampleValues& values, bool as_they_are) const {
     const double unit = as_they_are ? 1.0 : contrast_, zero = as_they_are ? 0.0 : background_;
     return by_planes<Sums>(grid_, [&](int z, Sums& sums) {
@@ -411,10 +411,10 @@ class Reading {
   SampleValues values_;
   std::vector<glm::ivec3> over_;  ///< samples over the bound
   SampleMask solid_, near_, beyond_, deep_;
-  SampleMask filled_;           ///< samples of a third density that count as surroundings
-  SampleDensity all_, beside_;  ///< of most of the scan, and of the samples beside the solid
+  SampleMask filled_;           ///< samples of a third density, which count as surroundings
+  SampleDensity all_, beside_;  ///< density of most of the scan, and of the samples beside the solid
   bool is_of_two_ = false;      ///< treat the scan as one of two densities, without a third
-  bool is_beside_ = false;      ///< beside_ was measured, because enough samples reach the bound
+  bool is_beside_ = false;      ///< whether beside_ was measured beside the solid
   double low_ = 0.0, background_ = 0.0, contrast_ = 0.0, noise_ = 0.0, least_seen_ = 0.0, white_ = 0.0;
 };
 

@@ -12,7 +12,7 @@ class Chance {
   /// Uniform in -1/2..1/2.
   double even();
   double between(double low, double high) { return low + (high - low) * (even() + 0.5); }
-  /// Standard normal (Box and Muller).
+  /// A random number from the standard normal distribution (Box and Muller).
   double normal();
 
  private:

@@ -92,7 +92,7 @@ class Drawing {
  public:
   explicit Drawing(Chance& chance) : chance_(chance) {}
 
-  /// A random size with a uniform logarithm, so that small sizes are as likely as large ones.
+  /// A random size whose logarithm is uniform, so that small sizes are as likely as large ones.
   double size(double low, double high) { return low * std::exp(chance_.between(0.0, std::log(high / low))); }
   int count(int low, int high) {
     return std::min(high, low + static_cast<int>(chance_.between(0.0, high - low + 1.0)));
@@ -106,7 +106,7 @@ class Drawing {
             sphere_mm3(outer) - sphere_mm3(inner), sphere_mm2(outer) + sphere_mm2(inner)};
   }
   DrawnSolid fractured_shell() {
-    // The part between two half-planes through the axis.
+    // The part of a spherical shell between two half-planes that end in a common axis.
     const double outer = size(6.0, 20.0), t = size(0.7, 3.0), inner = outer - t;
     const double share = chance_.between(0.25, 0.75), half = pi * share;
     return {"",
@@ -164,7 +164,7 @@ class Drawing {
     return prism(corners, size(2.0, 12.0));
   }
   DrawnSolid stack() {
-    // A stack of plates of one height, each smaller than the one below it.
+    // A stack of square plates of equal height, each smaller than the one below it.
     const int steps = count(2, 6);
     const double height = size(1.0, 4.0), side = size(8.0, 24.0);
     std::vector<double> half;
@@ -283,7 +283,8 @@ class Drawing {
   DrawnSolid ellipsoid() {
     const dvec3 a(size(1.0, 18.0), size(3.0, 18.0), size(3.0, 18.0));
     const double least = std::min({a.x, a.y, a.z});
-    // |dS| on the unit sphere: a.x a.y a.z |n / a| dOmega, by the midpoint rule.
+    // The area of the ellipsoid, as an integral over the unit sphere by the midpoint rule: at direction n the
+    // element is a.x a.y a.z |n / a| dOmega.
     double area = 0.0;
     constexpr int steps = 400;
     for (int i = 0; i < steps; ++i)
@@ -404,13 +405,13 @@ constexpr Maker makers[] = {
     {"csg", true, &Drawing::csg},
 };
 
-/// Number of cells of a voxel along each axis.
+/// Number of cells into which a voxel is divided along each axis.
 glm::ivec3 cells_of(const dvec3& spacing_mm) {
   const double least = std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   return glm::max(glm::ivec3(glm::round(3.0 * spacing_mm / least)), glm::ivec3(3));
 }
 
-/// The filled share of a cell whose centre is `value` from the surface.
+/// The filled share of a cell; `value` is the solid's distance function at the cell's centre.
 double share_of(const DrawnSolid& solid, double value, const dvec3& centre, const dvec3& cell_mm) {
   if (std::abs(value) >= 0.5 * glm::length(cell_mm)) return value < 0.0 ? 1.0 : 0.0;
   // Each of eight points represents an octant, whose filled share follows from the distance to the surface as
@@ -436,8 +437,8 @@ struct Block {
   }
 };
 
-/// Fills cells from `low` to below `high`. If the surface is farther away than the corners, all cells get the
-/// same value; otherwise the block is halved along its longest side.
+/// Fills the cells from `low` to below `high`. If the surface is farther from the middle than the corners,
+/// all cells get the same value; otherwise halves the block along its longest side.
 void fill(const DrawnSolid& solid, const dvec3& cell_mm, const glm::ivec3& low, const glm::ivec3& high,
           Block& cells) {
   const dvec3 centre = 0.5 * (dvec3(low + high) - dvec3(cells.dims)) * cell_mm;
@@ -465,7 +466,8 @@ void fill(const DrawnSolid& solid, const dvec3& cell_mm, const glm::ivec3& low, 
   fill(solid, cell_mm, middle_low, high, cells);
 }
 
-/// Blurs along an axis and averages `parts` cells to one. Beyond the ends, cells repeat the last ones.
+/// Blurs along one axis, and averages every `parts` cells to one. Beyond the ends, cells repeat the last
+/// ones.
 Block averaged(const Block& cells, int axis, int parts, double deviation) {
   const int reach = static_cast<int>(std::ceil(4.0 * deviation)), taps = parts + 2 * reach;
   std::vector<double> weights(static_cast<std::size_t>(taps), 0.0);
@@ -515,7 +517,8 @@ const std::vector<DrawnGroup>& drawn_groups() {
 DrawnSolid drawn_solid(const std::string& group, Chance& chance) {
   const auto* maker =
       std::find_if(std::begin(makers), std::end(makers), [&](const Maker& one) { return group == one.name; });
-  if (maker == std::end(makers)) throw std::invalid_argument("no class of solids is called '" + group + "'");
+  if (maker == std::end(makers))
+    throw std::invalid_argument("no class of drawn solids is called '" + group + "'");
   Drawing drawing(chance);
   DrawnSolid solid = (drawing.*maker->make)();
   solid.group = group;

@@ -32,12 +32,12 @@ enum Tissue { AirTissue, HeadrestTissue, ToothTissue, BoneTissue, SoftTissue, ti
 using TissueCount = std::array<int, tissue_count>;
 
 using Places = HeadBricks::Places;
-// The fields that decide a sample's tissue, in the order of their precedence.
+// The fields that determine a sample's tissue, in the order in which they are tested.
 constexpr std::array scanned{HeadBricks::Skin, HeadBricks::Headrest, HeadBricks::Air, HeadBricks::ToothCore,
                              HeadBricks::Bone};
 
-// The tissue, or none if it depends on an undecided field. There is no loop over the fields because the
-// function runs for every sample.
+// The tissue at a ball, or none if it depends on an undecided field. Fields are tested one by one and not in
+// a loop, because the function runs for every sample.
 inline std::optional<Tissue> tissue(const Places& places) {
   if (places[HeadBricks::Skin] == 0) {
     if (places[HeadBricks::Headrest] < 0) return std::nullopt;
@@ -51,7 +51,6 @@ inline std::optional<Tissue> tissue(const Places& places) {
   return places[HeadBricks::Bone] == 1 ? BoneTissue : SoftTissue;
 }
 
-// Samples the voxels of a lattice.
 class Scanner {
  public:
   explicit Scanner(const voxel::Lattice& lattice) : lattice_(lattice), edges_(lattice.lps_from_voxel) {
@@ -89,7 +88,7 @@ class Scanner {
   static constexpr int samples_per_voxel = 1 << (3 * halvings);
 
  private:
-  // The distance from the centre of a cube to the samples at its corners. `edge` is the cube's edge in
+  // The distance from a cube's centre to the samples nearest its corners. `edge` is the cube's edge in
   // voxels. Samples lie at the centres of cubes with the edge 2^-halvings.
   double reach_mm(double edge) const { return half_diagonal_mm_ * (edge - 1.0 / (1 << halvings)); }
 
@@ -109,7 +108,7 @@ class Scanner {
     halve(centre_mm, 0, places, pruned, count);
   }
 
-  // Prunes undecided fields to a smaller ball until the tissue is known.
+  // Prunes undecided fields to a smaller ball, one after the other, until the tissue is decided.
   static void narrow(const glm::dvec3& centre_mm, double radius_mm, const HeadBricks::Fields& fields,
                      Places& places, HeadBricks::Fields& pruned) {
     for (const HeadBricks::Field field : scanned) {
@@ -119,8 +118,8 @@ class Scanner {
     }
   }
 
-  // Counts the tissues of a part. pruned[level] has the steps for this part. The steps of the next level are
-  // overwritten for each octant.
+  // Counts the tissues of a part of a voxel. pruned[level] has the steps for this part. Overwrites the steps
+  // of the next level for each octant.
   void halve(const glm::dvec3& centre_mm, int level, const Places& places, Halvings& pruned,
              TissueCount& count) const {
     if (const std::optional<Tissue> found = tissue(places)) {
@@ -230,8 +229,8 @@ voxel::FloatSamples scanned_samples(const voxel::Lattice& lattice, const HeadTis
   return samples;
 }
 
-// Gaussian blur along one axis of the lattice, cut off at 5 sigma, where a step of 4000 HU contributes about
-// a thousandth of a Hounsfield unit. Beyond the border the border's sample repeats.
+// Blurs by a Gaussian along one axis of the lattice. The Gaussian is cut off at 5 sigma, where a step of 4000
+// HU contributes about a thousandth of a Hounsfield unit. Beyond the border the border's sample repeats.
 void blur_axis(voxel::FloatSamples& samples, const glm::ivec3& dims, int axis, double sigma_voxels) {
   const int reach = static_cast<int>(std::ceil(5.0 * sigma_voxels));
   const int tap_count = 2 * reach + 1;
@@ -239,7 +238,7 @@ void blur_axis(voxel::FloatSamples& samples, const glm::ivec3& dims, int axis, d
   double sum = 0.0;
   for (int tap = 0; tap < tap_count; ++tap) {
     const int i = tap - reach;
-    // The mean of the Gaussian over the voxel, so that weights are right for a sigma below one voxel.
+    // The mean of the Gaussian over a voxel, so that weights are also right for a sigma below one voxel.
     const auto below = [&](double t) { return std::erf(t / (sigma_voxels * glm::root_two<double>())); };
     const double weight = below(i + 0.5) - below(i - 0.5);
     weights[static_cast<std::size_t>(tap)] = weight;
@@ -274,7 +273,7 @@ std::uint64_t scrambled(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-// Standard normal by Box and Muller's transform.
+// A random number from the standard normal distribution by Box and Muller's transform.
 double normal_deviate(std::uint64_t seed, std::uint64_t index) {
   const std::uint64_t first = scrambled(scrambled(seed) ^ index);
   const std::uint64_t second = scrambled(first);
@@ -287,8 +286,8 @@ double normal_deviate(std::uint64_t seed, std::uint64_t index) {
 }  // namespace
 
 voxel::Box head_bounds() {
-  // The bounds are even and the centre is whole. So scans and universes of 1 and 2 mm have the same voxels,
-  // and planes at whole millimetres lie between voxels.
+  // The bounds are even and the box's middle is whole. So voxels of scans and universes of 1 and 2 mm
+  // coincide, and planes at whole millimetres lie between voxels.
   return {{-100, -122, -136}, {100, 126, 116}};
 }
 
@@ -299,8 +298,8 @@ bool head_contains(HeadPart part, const glm::dvec3& p_mm) {
   if (part == HeadPart::Skin) field = HeadBricks::Skin;
   const HeadBricks::Brick& brick = HeadBricks::instance().at(p_mm);
   if (brick.places[field] >= 0) return brick.places[field] == 1;
-  // Successive points are often neighbours. A point within the ball that the last value decided is on the
-  // same side as the last point.
+  // Successive points are often neighbours. The last value decides a ball around its point; another point
+  // within this ball is on the same side of the surface.
   struct LastAsked {
     glm::dvec3 p_mm{0.0};
     double value = 0.0;

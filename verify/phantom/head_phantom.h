@@ -11,12 +11,12 @@
 namespace octotomy::verify {
 
 /// Hounsfield values of the head phantom. A voxel that is half bone and half soft tissue has exactly 300 HU,
-/// so a window from 300 digitises bone without bias. Soft tissue lines all bone.
+/// so a window from 300 HU digitises bone without bias. All bone is lined by soft tissue.
 struct HeadTissues {
   double air = -1000.0;
   double soft = 40.0;
   double bone = 560.0;
-  double tooth_core = 1800.0;  ///< deeper than two millimetres below a tooth's surface; the rest is `bone`
+  double tooth_core = 1800.0;  ///< more than 2 mm below a tooth's surface; the rest has `bone`
   double headrest = -150.0;
 };
 
@@ -33,20 +33,21 @@ struct HeadOptions {
   HeadTissues tissues;
 };
 
-/// A CT of the head phantom. Each voxel is the mean of the closed forms over its cuboid, by 8^3 sub-samples
-/// near surfaces, exact elsewhere; then blur, noise, rounding to int16. With a gantry tilt the lattice is
-/// sheared: rows lie in the slices, slices follow each other along z. Throws std::invalid_argument that names
-/// the option out of its range; voxel::Stopped. Parallel; same bits on any thread count. Cost: about five
-/// seconds of processor time at 1 mm, proportional to the number of voxels at the surface.
+/// Returns a CT of the head phantom. Each sample is the mean of the closed forms over its voxel, by 8^3
+/// sub-samples near surfaces and exact elsewhere; then follow blur, noise and rounding to int16. With a
+/// gantry tilt the lattice is sheared: rows lie in the slices, and slices follow each other along z. Throws
+/// std::invalid_argument that names the option out of its range; voxel::Stopped. Parallel; same bits on any
+/// thread count. Cost: about five seconds of processor time at 1 mm, proportional to the number of voxels at
+/// the surface.
 voxel::Scene head_phantom(const HeadOptions& options = {}, const voxel::Progress& progress = {});
 
-/// Parts of the head's closed form.
+/// Parts of the head's closed form. Bone is all bone and teeth, with the mandible; Skin is everything inside
+/// the skin's surface.
 enum class HeadPart { Bone, Mandible, Teeth, Skin };
-/// Whether a point, LPS millimetres, is inside the closed form. Bone is all bone and teeth, the mandible's
-/// included; Skin is everything within the skin's surface.
+/// Whether a point, in LPS millimetres, is inside a part of the closed form.
 bool head_contains(HeadPart part, const glm::dvec3& p_mm);
-/// A box that holds the whole head and headrest. Its edges are even millimetres; planes at whole millimetres
-/// lie between the voxels of a 1 mm scan.
+/// A box in LPS millimetres that holds the whole head and headrest. Its sides are at even millimetres; planes
+/// at whole millimetres lie between the voxels of a 1 mm scan.
 voxel::Box head_bounds();
 
 }  // namespace octotomy::verify

@@ -29,7 +29,7 @@ ImplicitSolid vault(double inset_mm) {
   return blended(frontal, parietal, 26.0);
 }
 
-// An orbit is a cone about the line from its apex to the middle of its rim, wider than high.
+// An orbit is a cone about the line from its apex to the middle of its rim. It is wider than high.
 ImplicitSolid orbit_left() {
   const ImplicitSolid cone = tapered_capsule({{13, -33, 12}, 5.0}, {{33.0, -82, 10}, 20.5}, {1.0, 1.0, 0.86});
   const ImplicitSolid opening =
@@ -143,8 +143,8 @@ ImplicitSolid maxilla() {
   const ImplicitSolid body = ellipsoid({22, -60, -20}, {20, 22, 19}, turned({0, 0, 20}));
   const ImplicitSolid alveolus = swept_arch_left(-82.0, -37.5, 6.2, 1.45, 27.5);
   const ImplicitSolid canine_ridge = tapered_capsule({{16, -80, -18}, 3.5}, {{16.5, -69, -42}, 5.5});
-  // Inclined, as in life. If its flat faces lay along a scan's slices, their error would be coherent: up to
-  // half a voxel times their area.
+  // The palate is inclined, as in life. If its flat faces lay along a scan's slices, their error would be
+  // coherent: up to half a voxel times their area.
   const ImplicitSolid palate = rounded_box({0, -57, -33.5}, {24, 24, 2.2}, 2.0, turned({6, 0, 0}));
   const ImplicitSolid pterygoid =
       tapered_capsule({{15, -26, -14}, 5.0}, {{18, -31, -42}, 4.2}, {0.8, 1.3, 1.0});
@@ -186,7 +186,7 @@ ImplicitSolid tooth_row_left(const std::array<ToothShape, 7>& shapes, double fro
   double x_mm = 0.0;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     const ToothShape& shape = shapes[i];
-    // Moves half a tooth along the arch; called before and after the tooth's middle.
+    // Moves half a tooth's width along the arch; called before and after the tooth is added.
     const auto advance = [&] {
       const double slope = 2.0 * x_mm / arch_width_mm;
       x_mm += 0.5 * shape.width_mm / std::sqrt(1.0 + slope * slope);
@@ -345,8 +345,8 @@ HeadSolids build() {
   HeadSolids head;
   head.air = air();
   head.skin = skin();
-  // Bone keeps a distance from the outside and from the airways. The values of forms never exceed the
-  // distance to their surface, so the lining is at least as thick as the growth.
+  // Bone keeps a distance from the outside and from the airways. A form's value never exceeds the distance to
+  // its surface, so the soft tissue between them is at least as thick as the distance passed to `grown`.
   const ImplicitSolid lined = grown(head.skin, -3.0) - grown(head.air, 2.0);
   const ImplicitSolid orbits = both_sides(orbit_left());
   ImplicitSolid face = blended(brow(), both_sides(orbital_rim_left()), 3.0);
@@ -396,7 +396,7 @@ HeadBricks::HeadBricks() {
     const auto brick = static_cast<int>(i);
     const glm::ivec3 at(brick % dims_.x, brick / dims_.x % dims_.y, brick / (dims_.x * dims_.y));
     const dvec3 centre_mm = low_mm_ + (dvec3(at) + 0.5) * edge_mm;
-    // Pruning reserves memory for all steps and keeps few of them, so a copy of the right size is stored.
+    // Pruning reserves memory for all steps and leaves few of them, so a copy of the right size is stored.
     ImplicitSolid::Steps pruned;
     for (std::size_t field = 0; field < field_count; ++field) {
       bricks_[i].places[field] = place(prune(whole_.steps[field], centre_mm, radius_mm, pruned), radius_mm);

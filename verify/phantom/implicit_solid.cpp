@@ -9,9 +9,9 @@
 
 namespace octotomy::verify {
 
-// A primitive is evaluated at q = local_from_lps (p - origin). Distances in a stretched frame are at most
-// |local_from_lps| times those in millimetres. So `scale` is the reciprocal of that norm times the reciprocal
-// of the primitive's own Lipschitz constant, and the value times `scale` has Lipschitz constant 1.
+// A primitive is evaluated at q = local_from_lps (p - origin). In a stretched frame, lengths are at most
+// |local_from_lps| times those in millimetres. `scale` is the reciprocal of that norm and of the primitive's
+// own Lipschitz constant. So the value times `scale` has Lipschitz constant 1.
 struct Primitive {
   enum class Kind { Ball, Capsule, Box, HalfSpace };
   Kind kind = Kind::Ball;
@@ -62,7 +62,8 @@ double combined(const ImplicitSolid::Step& step, double a, double b) {
   return step.kind == ImplicitSolid::Kind::Union ? smooth_min(a, b, step.mm) : -smooth_min(-a, -b, step.mm);
 }
 
-// Largest number of operands on the stack. Unions are left-associative, so it is the depth of nesting.
+// Largest number of operands on the stack. Unions are left-associative, so an expression needs as many as it
+// is deep.
 constexpr std::size_t stack_depth = 32;
 
 glm::dvec3 catmull_rom(const glm::dvec3& before, const glm::dvec3& a, const glm::dvec3& b,
@@ -118,7 +119,8 @@ double prune(const ImplicitSolid::Steps& steps, const glm::dvec3& p_mm, double r
       const Operand b = stack[--top];
       Operand& a = stack[top - 1];
       const double excess = step.kind == ImplicitSolid::Kind::Union ? a.value - b.value : b.value - a.value;
-      // Twice the radius by the Lipschitz constants. A millionth of it in addition covers rounding by far.
+      // Within the ball each operand changes by at most the radius, so the difference changes by at most
+      // twice the radius. An additional millionth covers rounding by far.
       const double decided = 2.000001 * radius_mm + step.mm;
       a.value = combined(step, a.value, b.value);
       if (excess > decided)
@@ -233,7 +235,7 @@ ImplicitSolid tapered_capsule(const Station& from, const Station& to, const glm:
   capsule.extent2 = glm::dot(capsule.extent, capsule.extent);
   capsule.first = from.radius_mm;
   capsule.taper = to.radius_mm - from.radius_mm;
-  // The value's gradient is 1 across the axis and the taper's slope along the axis.
+  // Across the axis the value's derivative is 1; along the axis it is the taper's slope.
   const double slope = capsule.taper / glm::length(capsule.extent);
   capsule.scale = std::min({stretch.x, stretch.y, stretch.z}) / std::sqrt(1.0 + slope * slope);
   return leaf(capsule);

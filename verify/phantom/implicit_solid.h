@@ -7,7 +7,7 @@
 
 namespace octotomy::verify {
 
-/// One primitive solid in a frame of its own; see implicit_solid.cpp.
+/// A ball, capsule, box or half-space in a frame of its own; see implicit_solid.cpp.
 struct Primitive;
 
 /// A solid as a closed form: a function of position in LPS millimetres, negative inside and positive outside,
@@ -16,14 +16,14 @@ struct Primitive;
 class ImplicitSolid {
  public:
   enum class Kind { Leaf, Union, Intersection, Negation, Growth };
-  /// One step of the function in postfix order.
+  /// One operation of the function, in postfix order.
   struct Step {
     Kind kind = Kind::Leaf;
     const Primitive* primitive = nullptr;  ///< of a leaf
     double mm = 0.0;                       ///< blending width of a union or intersection; growth
   };
-  /// The steps that evaluate a solid: all steps, or only the steps that change its value within a ball. Valid
-  /// as long as the solid.
+  /// The steps of a solid: all of them, or only those that affect the value within a ball. The steps are
+  /// valid as long as the solid exists.
   using Steps = std::vector<Step>;
 
   double operator()(const glm::dvec3& p_mm) const;
@@ -35,9 +35,10 @@ class ImplicitSolid {
   /// Union and difference with a rounded edge, where the two values differ by less than `width_mm`.
   friend ImplicitSolid blended(ImplicitSolid a, const ImplicitSolid& b, double width_mm);
   friend ImplicitSolid carved(ImplicitSolid a, const ImplicitSolid& b, double width_mm);
-  /// Contains at least all points within `mm` of the solid. A negative `mm` shrinks it by at least that much.
+  /// A solid that contains at least all points within `mm` of this one. A negative `mm` shrinks the solid by
+  /// at least that much.
   friend ImplicitSolid grown(ImplicitSolid a, double mm);
-  /// The reflection in the plane x = 0.
+  /// The reflection of a solid in the plane x = 0.
   friend ImplicitSolid mirrored(const ImplicitSolid& a);
 
  private:
@@ -54,25 +55,25 @@ struct Station {
   double radius_mm = 1.0;
 };
 
-/// `turn` carries the axes of the ellipsoid or box to LPS.
+/// `turn`: columns are the axes of the ellipsoid or box in LPS.
 ImplicitSolid ellipsoid(const glm::dvec3& centre_mm, const glm::dvec3& radii_mm,
                         const glm::dmat3& turn = glm::dmat3(1));
 ImplicitSolid rounded_box(const glm::dvec3& centre_mm, const glm::dvec3& half_mm, double rounding_mm,
                           const glm::dmat3& turn = glm::dmat3(1));
 /// The points p with normal . p <= offset_mm; the normal is a unit vector.
 ImplicitSolid half_space(const glm::dvec3& normal, double offset_mm);
-/// The sweep of a ball whose radius changes linearly between two stations, then stretched along the axes
-/// about the first station: its cross-section is an ellipse of radius times stretch.
+/// The sweep of a ball whose radius changes linearly from one station to the other. It is then stretched
+/// along the axes about the first station, so that its cross-section is an ellipse of radius times stretch.
 ImplicitSolid tapered_capsule(const Station& from, const Station& to,
                               const glm::dvec3& stretch = glm::dvec3(1));
-/// Tapered capsules along a Catmull-Rom spline through the stations, `pieces` of them a span. Precondition:
-/// two stations at least.
+/// Tapered capsules along a Catmull-Rom spline through the stations; `pieces` of them between two stations.
+/// Precondition: two stations at least.
 ImplicitSolid tube(const std::vector<Station>& stations, const glm::dvec3& stretch = glm::dvec3(1),
                    int pieces = 4);
-/// Turns by degrees about x, then y, then z, right-handed.
+/// Returns the rotation by these angles about x, then y, then z, right-handed.
 glm::dmat3 turned(const glm::dvec3& degrees);
 
-/// Value of steps at a point.
+/// Returns the value of a solid's steps at a point.
 double value(const ImplicitSolid::Steps& steps, const glm::dvec3& p_mm);
 
 /// Writes to `pruned` the steps that decide the value within `radius_mm` of a point, and returns the value at

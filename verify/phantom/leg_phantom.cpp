@@ -21,7 +21,8 @@ namespace {
 constexpr int sub_samples = 4;  ///< along each edge of a voxel near a surface
 const voxel::Box leg_box{{-60, -60, -150}, {60, 60, 150}};
 
-/// The distance from a point to the nearest surface of the leg (a lower bound), and the tissue at the point.
+/// At a point: a lower bound of the distance to the nearest surface of the leg, and the tissue's Hounsfield
+/// value.
 struct LegReading {
   double nearest_mm = 0.0;
   double hounsfield = 0.0;
@@ -65,7 +66,7 @@ class Leg {
   }
 
  private:
-  /// A shaft that widens into the plateau and the ankle.
+  /// The tibia: a shaft that widens into the plateau above and the ankle below.
   static double tibia_at(const glm::dvec3& p_mm) {
     const double shaft = std::max(std::hypot(p_mm.x, p_mm.y) - 13.0, std::abs(p_mm.z) - 130.0);
     return std::min({shaft, ball(p_mm, {-2, 2, 130}, 24.0), ball(p_mm, {-2, 0, -132}, 18.0)});
@@ -99,7 +100,7 @@ voxel::Lattice lattice_of(double voxel_mm) {
   return voxel::axis_aligned_lattice(dims, glm::dvec3(voxel_mm), first_mm);
 }
 
-/// The mean Hounsfield value over a voxel.
+/// The mean Hounsfield value over a voxel; `centre_mm` is the voxel's centre.
 double mean_at(const Leg& leg, const glm::dvec3& centre_mm, double voxel_mm) {
   const LegReading middle = leg.read(centre_mm);
   if (middle.nearest_mm > 0.5 * std::sqrt(3.0) * voxel_mm) return middle.hounsfield;

@@ -18,14 +18,14 @@ using voxel::HalfSpace;
 glm::dmat3 any_turn(Chance& chance) {
   return turned(360.0 * glm::dvec3(chance.even(), chance.even(), chance.even()));
 }
-/// Axes of the lattice in a random, right-handed order.
+/// The axes of the lattice, rotated among each other at random; they stay right-handed.
 glm::dmat3 any_axes(Chance& chance) {
   glm::dmat3 axes(1.0);
   const int first = static_cast<int>(chance.between(0.0, 3.0)) % 3;
   return {axes[first], axes[(first + 1) % 3], axes[(first + 2) % 3]};
 }
 
-/// The pose and size of a solid that is being built.
+/// The pose and size of a solid, and the solid as far as it is built.
 struct Pose {
   SolidPhantom made;
   glm::dmat3 axes{1.0};  ///< columns: the solid's own axes in LPS
@@ -153,7 +153,7 @@ SolidPhantom measured_solid(std::string_view group, std::uint64_t kind, const gl
     return kind % 3 == 0 ? box(pose) : kind % 3 == 1 ? of("cylinder", 0.89) : of("lens", 1.0);
   if (group == "thin") return kind % 2 == 0 ? plate(pose, longest_mm) : shell(pose, longest_mm);
   if (group != "cut across" && group != "cut along")
-    throw std::invalid_argument("no group of solids is called " + std::string(group));
+    throw std::invalid_argument("no group of measured solids is called " + std::string(group));
   const bool along = group == "cut along";
   switch (kind % (along ? 5 : 4)) {
     case 0:

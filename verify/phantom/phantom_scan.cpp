@@ -10,7 +10,7 @@
 namespace octotomy::verify {
 namespace {
 
-constexpr int reach = 3;  ///< of the blur, in voxels
+constexpr int reach = 3;  ///< of the blur to each side, in voxels
 
 /// Samples of a box of voxels, x fastest.
 struct Shares {

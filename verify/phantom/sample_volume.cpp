@@ -27,7 +27,7 @@ SampledVolume sample_volume(const voxel::Box& box, double step_mm,
                             const std::function<bool(const glm::dvec3&)>& inside) {
   const glm::dvec3 extent_mm = box.high_mm - box.low_mm;
   if (!(step_mm > 0.0) || !(extent_mm.x > 0.0) || !(extent_mm.y > 0.0) || !(extent_mm.z > 0.0))
-    throw std::invalid_argument("sampling takes a box with volume and a positive step, not " +
+    throw std::invalid_argument("sampling needs a box with a volume and a step above 0 mm, not " +
                                 std::to_string(step_mm) + " mm");
   const glm::ivec3 dims = glm::max(glm::ivec3(glm::ceil(extent_mm / step_mm - 1e-9)), glm::ivec3(1));
   const glm::dvec3 cell_mm = extent_mm / glm::dvec3(dims);
@@ -41,8 +41,8 @@ SampledVolume sample_volume(const voxel::Box& box, double step_mm,
     return bits;
   };
 
-  // Slabs of a fixed number of planes. Each slab also samples the first plane of its neighbour, to compare
-  // both planes.
+  // Each slab has a fixed number of planes. It also samples the first plane of the next slab, to count the
+  // faces between both.
   constexpr int slab_planes = 16;
   const int slab_count = (dims.z + slab_planes - 1) / slab_planes;
   std::vector<Count> counts(static_cast<std::size_t>(slab_count));

@@ -13,9 +13,9 @@ struct SampledVolume {
   double volume_mm3 = 0.0;
   double standard_error_mm3 = 0.0;
 };
-/// Samples a box at the centres of cells of edge `step_mm`; cells shrink to fit a whole number into the box.
-/// Throws std::invalid_argument if the step or the box has no size. Error: 0.3 step^2 sqrt(S), S the
-/// boundary's area estimated from the same samples. Parallel; same bits on any thread count.
+/// Samples a box at the centres of cubic cells of edge `step_mm`; cells shrink so that a whole number of them
+/// fits the box. Throws std::invalid_argument if the step or the box has no size. Standard error: 0.3 step^2
+/// sqrt(S), S the boundary's area estimated from the same samples. Parallel; same bits on any thread count.
 SampledVolume sample_volume(const voxel::Box& box, double step_mm,
                             const std::function<bool(const glm::dvec3&)>& inside);
 

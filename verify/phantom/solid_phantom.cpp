@@ -16,9 +16,9 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int chequers = 8;  // cells a side: the nodes of level 3 (thesis 3.3.3)
+constexpr int chequers = 8;  // cells along a side: the nodes of level 3 (thesis 3.3.3)
 
-/// Size and position of the solid for a kind's builder.
+/// Size and position of a solid, passed to the function that builds its kind.
 struct SolidFrame {
   double radius_mm;
   glm::dvec3 centre_mm;
@@ -34,7 +34,7 @@ double ball_mm3(double radius_mm) {
 double sphere_mm2(double radius_mm) {
   return 4.0 * pi * radius_mm * radius_mm;
 }
-/// A ball's cap of a height.
+/// The volume and the curved area of a ball's cap of this height.
 double cap_mm3(double radius_mm, double height_mm) {
   return pi * height_mm * height_mm * (radius_mm - height_mm / 3.0);
 }
@@ -146,7 +146,7 @@ SolidPhantom cut_sphere(const SolidFrame& place) {
           place.centre_mm - normal * (cap_centre * cap_mm3(r, height) / volume)};
 }
 
-/// The cells of a chequerboard: those in which an odd number of axes is in an even slab.
+/// The cells of a chequerboard: those for which an odd number of the three indices is even.
 voxel::Octree chequerboard(const voxel::Universe& universe) {
   const voxel::Box bounds = voxel::bounds(universe.lattice());
   const glm::dvec3 cell_mm = (bounds.high_mm - bounds.low_mm) / static_cast<double>(chequers);
@@ -161,13 +161,14 @@ voxel::Octree chequerboard(const voxel::Universe& universe) {
   return voxel::combine(universe, *board);
 }
 
-/// A reflection in any axis swaps the board's cells and maps the ball to itself, so half of the ball's volume
-/// and of the sphere's area belongs to the solid. Of two cells with a common wall exactly one belongs to it,
-/// so all the ball's discs in planes between cells are boundary. Two reflections map the board to itself, so
-/// the centroid is the middle.
+/// A reflection in any axis swaps the board's cells and the remaining ones, and maps the ball to itself. So
+/// half of the ball's volume and of the sphere's area belongs to the solid. Of two cells with a common wall
+/// exactly one belongs to the solid, so every disc of the ball in a plane between cells is boundary. Two
+/// reflections map the board to itself, so the centroid is the middle.
 SolidPhantom chequered_sphere(const SolidFrame& place) {
   if (place.universe.side() < chequers)
-    throw voxel::InvalidInput("a chequered sphere takes at least 8 voxels a side, for its 8 cells");
+    throw voxel::InvalidInput(
+        "a chequered sphere needs at least 8 voxels a side, one for each of the 8 cells along a side");
   SolidPhantom solid = sphere(place);
   solid.shape = solid.shape & chequerboard(place.universe);
   solid.volume_mm3 *= 0.5;
@@ -182,8 +183,8 @@ SolidPhantom chequered_sphere(const SolidFrame& place) {
   return solid;
 }
 
-/// The runs of ones that section 3.2.3 prints for figure 3.1's array of 4 x 4 x 4 voxels. In a larger
-/// universe each voxel of the figure is a cube of voxels.
+/// The runs of ones that section 3.2.3 prints for the array of 4 x 4 x 4 voxels in figure 3.1. In a larger
+/// universe each voxel of the figure becomes a cube of voxels.
 SolidPhantom figure_3_1(const SolidFrame& place) {
   constexpr std::array<int, 13> ones{8, 9, 12, 13, 23, 24, 25, 26, 28, 29, 41, 44, 57};
   const voxel::Box bounds = voxel::bounds(place.universe.lattice());
@@ -216,7 +217,7 @@ SolidPhantom figure_3_1(const SolidFrame& place) {
 struct BuiltKind {
   SolidPhantomKind said;
   Builder build;
-  double reach;  ///< farthest point from the centre, in radii; 0 if the solid always fills its universe
+  double reach;  ///< largest distance from the centre in radii; 0: fills its universe
   bool on_lattice = false;
 };
 
@@ -282,7 +283,7 @@ SolidPhantom solid_phantom(std::string_view kind, const SolidPhantomOptions& opt
   const voxel::Universe universe = universe_of(options);
   const double radius_voxels = options.radius_voxels.value_or(0.25 * options.voxels);
   if (!(radius_voxels > 0.0) || !std::isfinite(radius_voxels))
-    throw voxel::InvalidInput("a radius is a positive number of voxels");
+    throw voxel::InvalidInput("a solid's radius must be a positive number of voxels");
   if (found->on_lattice && (options.centre_mm != glm::dvec3(0.0) || options.lps_from_axes != glm::dmat3(1.0)))
     throw voxel::InvalidInput(std::string(kind) + " is fixed to the lattice: it cannot be turned or moved");
   if (found->reach == 0.0 && options.radius_voxels)

@@ -28,18 +28,18 @@ constexpr double between_rows_mm = -59.2;  ///< z between the rows of teeth
 constexpr double gum_mm = 1.2, crown_mm = 9.0, shown_mm = 11.0, tips_mm = 1.2;
 constexpr double half_width_mm = 36.0, front_mm = -96.0, back_mm = -30.0;
 
-/// The distance of a point from the level between the rows, towards the roots of the row.
+/// The height of a point above the level between the rows; positive towards the roots of the row.
 double height_mm(const glm::dvec3& p_mm, bool is_upper) {
   return is_upper ? p_mm.z - between_rows_mm : between_rows_mm - p_mm.z;
 }
 
-/// The closed form of teeth and gum: negative inside.
+/// A function of position that is negative inside teeth and gum.
 double form_at(const glm::dvec3& p_mm, bool is_upper) {
   const HeadBricks::Brick& brick = HeadBricks::instance().at(p_mm);
   const double teeth = value(brick.steps[HeadBricks::Teeth], p_mm);
   const double gum = std::max(value(brick.steps[HeadBricks::Bone], p_mm) - gum_mm,
                               tips_mm + crown_mm - height_mm(p_mm, is_upper));
-  // Rounded where the gum meets the teeth.
+  // A smooth minimum, which rounds the crease where the gum meets the teeth.
   constexpr double width_mm = 0.8;
   const double apart = std::max(width_mm - std::abs(teeth - gum), 0.0);
   return std::min(teeth, gum) - apart * apart / (4.0 * width_mm);
@@ -56,7 +56,8 @@ glm::dvec3 gradient_at(const glm::dvec3& p_mm, bool is_upper) {
   return gradient;
 }
 
-/// The triangles for which `keeps` all corners is true, with the points that they use.
+/// Returns the triangles whose corners all satisfy `keeps`, with the points that they use. `from` gets the
+/// original number of each point.
 template <typename Keeps>
 brep::Triangles kept(const brep::Triangles& whole, const Keeps& keeps, std::vector<std::uint32_t>& from) {
   constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
@@ -100,7 +101,7 @@ brep::Triangles true_row(bool is_upper, double spacing_mm) {
     for (int round = 0; round < 3; ++round) {
       const glm::dvec3 gradient = gradient_at(p, is_upper);
       const double squared = glm::dot(gradient, gradient);
-      // In a crease the closed form has no gradient to follow.
+      // In a crease the gradient of the closed form gives no direction to the surface.
       if (squared < 0.25) break;
       const double step_mm = form_at(p, is_upper) / std::sqrt(squared);
       p -= std::clamp(step_mm, -0.3 * spacing_mm, 0.3 * spacing_mm) * gradient / std::sqrt(squared);
@@ -119,7 +120,8 @@ brep::Triangles true_row(bool is_upper, double spacing_mm) {
       from);
 }
 
-/// The true row, computed at the first call and kept until the program ends.
+/// Returns the surface of a row without errors. Computes it at the first call and keeps it until the program
+/// ends.
 const brep::Triangles& row_of(bool is_upper, double spacing_mm) {
   static std::mutex mutex;
   static std::map<std::pair<bool, double>, brep::Triangles> rows;
@@ -148,7 +150,7 @@ glm::dmat4 pose_by_chance(Chance& chance) {
   return glm::rotate(glm::translate(glm::dmat4(1.0), shift), chance.between(-3.1, 3.1), glm::normalize(axis));
 }
 
-/// The tip nearest to a place, as seen along z.
+/// The tip of the row that is nearest to a place in x and y.
 glm::dvec3 tip_near(const brep::Triangles& row, const glm::dvec2& at_mm, bool is_upper) {
   double best = std::numeric_limits<double>::infinity();
   glm::dvec3 found(0.0);
@@ -168,7 +170,7 @@ ToothScanPhantom tooth_scan_phantom(const ToothScanPhantomOptions& options) {
   if (!(options.spacing_mm > 0.0))
     throw std::invalid_argument("the spacing of a scan's points must be above 0 mm");
   const brep::Triangles& row = row_of(options.is_upper, options.spacing_mm);
-  // Neighbouring seeds of Chance yield the same stream, shifted by one number, so the seeds are spread.
+  // Neighbouring seeds of Chance yield the same numbers, shifted by one place, so seeds are spread apart.
   Chance chance(options.seed * 1'000'003);
   ToothScanPhantom made;
   made.lps_from_scan = pose_by_chance(chance);

@@ -40,7 +40,8 @@ class Parser {
   ExpressionTree both() { return chain('&', &Parser::minus); }
   ExpressionTree minus() { return chain('-', &Parser::single); }
 
-  /// The operands that one operator joins are parts of one tree node, so that a long chain has little depth.
+  /// Parses operands that are joined by one operator into the parts of a single tree node, so that a long
+  /// chain has little depth.
   ExpressionTree chain(char symbol, ExpressionTree (Parser::*part)()) {
     ExpressionTree first = (this->*part)();
     if (!take(symbol)) return first;
@@ -101,7 +102,7 @@ class Parser {
   int depth_ = 0;
 };
 
-/// An expression with the names of its leaves.
+/// An expression, with the names of its leaves by their numbers.
 struct Named {
   ExpressionTree tree;
   std::vector<std::string> names;
@@ -119,8 +120,8 @@ struct Named {
     if (once) tree = std::move(*once);
     return once.has_value();
   }
-  /// An expression of the same solid, in which each leaf is replaced by its origin, down to solids without an
-  /// origin.
+  /// Returns an expression of the same solid in which each leaf is replaced by its origin, until the leaves
+  /// are solids without an origin.
   Named by_origins(const MeshExpressions::Origin& origin) const {
     Named made;
     made.tree = made.adopted(tree, names, origin);
@@ -132,8 +133,8 @@ struct Named {
   /// far fewer leaves.
   static constexpr std::size_t most_leaves = 64;
 
-  /// Converts a tree with leaves numbered by `its_names` to this expression's numbers, with origins in place
-  /// of leaves.
+  /// Converts a tree whose leaves are numbered by `its_names` to the numbers of this expression. Replaces
+  /// leaves by their origins.
   ExpressionTree adopted(const ExpressionTree& other, const std::vector<std::string>& its_names,
                          const MeshExpressions::Origin& origin) {
     if (other.parts.empty()) {
@@ -198,7 +199,7 @@ std::optional<brep::Solid> MeshExpressions::less_parts(const ExpressionTree& tre
   const std::string &whole = names[0], &part = names[1];
   const std::optional<PartsOf> parts = choice(part);
   if (!parts) return std::nullopt;
-  // The solid from which the parts were chosen must be an intersection with `whole`.
+  // The solid from which the parts were chosen must be an intersection of `whole` with another solid.
   const std::string text = origin(parts->whole);
   if (text.empty()) return std::nullopt;
   const Named cut = Named::of(text);
@@ -248,7 +249,7 @@ MeshExpressions::Signed MeshExpressions::intersection(const Signed& a, const Sig
 
 brep::Solid MeshExpressions::boolean(const brep::Solid& a, brep::Operation operation, const brep::Solid& b) {
   using brep::Operation;
-  // These cases need no geometry. Corefinement requires two distinct surfaces.
+  // These cases need no corefinement, which requires two distinct and non-empty surfaces.
   if (a.is_same(b)) return operation == Operation::Difference ? brep::Solid() : a;
   if (a.empty()) return operation == Operation::Union ? b : a;
   if (b.empty()) return operation == Operation::Intersection ? b : a;
@@ -277,7 +278,7 @@ void MeshExpressions::corefine(brep::Operation operation, Pair& pair) {
     learn(brep::booleans(pair.a, pair.b, {true, true, true, false}, stop_));
     if (pair.answers.contains(operation)) return;
   } catch (const brep::Error& error) {
-    // The answer that cannot be represented may be one that is not needed.
+    // The error may concern only one of the other two answers, so the required answer is now computed alone.
     if (error.code() == brep::ErrorCode::Cancelled) throw;
   }
   learn(brep::booleans(pair.a, pair.b,

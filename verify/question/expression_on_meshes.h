@@ -40,17 +40,17 @@ class MeshExpressions {
   /// computed from an expression.
   using Origin = std::function<std::string(std::string_view name)>;
 
-  /// A choice of connected parts: the name of the solid that they belong to, and its parts that were left
-  /// out.
+  /// A choice of connected parts: the name of the solid that they belong to, and the parts of it that were
+  /// left out.
   struct PartsOf {
     std::string whole;
     brep::Solid others;
   };
-  /// Returns the choice of parts that a solid is; none if it is not a choice.
+  /// Returns for the name of a solid the choice of parts that produced it; none if it is no such choice.
   using Choice = std::function<std::optional<PartsOf>(std::string_view name)>;
 
-  /// The solid of the expression. `origin` and `choice` may be empty. Throws std::invalid_argument with the
-  /// position and the expected symbol if the text is no expression; as `lookup` and brep::boolean().
+  /// Returns the solid of an expression. `origin` and `choice` may be empty. Throws std::invalid_argument
+  /// with the position and the expected symbol if the text is no expression; as `lookup` and brep::boolean().
   brep::Solid evaluate(std::string_view text, const Lookup& lookup, const std::stop_token& stop = {},
                        const Origin& origin = {}, const Choice& choice = {});
 
@@ -64,8 +64,8 @@ class MeshExpressions {
     brep::Solid solid;
     bool complement = false;
   };
-  /// The solid of a - p, where p is some connected parts of w = a & m: the union of a - w and the other parts
-  /// of w, which share the faces of the cut. A direct difference would have coincident surfaces of p and a.
+  /// Computes a - p, where p is some connected parts of w = a & m, as the union of a - w and the other parts
+  /// of w. Those share the faces of the cut. A direct difference would have coincident surfaces of p and a.
   /// None if the expression does not have this form.
   std::optional<brep::Solid> less_parts(const ExpressionTree& tree, const std::vector<std::string>& names,
                                         const Lookup& lookup, const Origin& origin, const Choice& choice);
@@ -75,19 +75,19 @@ class MeshExpressions {
   Signed intersection(const Signed& a, const Signed& b);
 
   brep::Solid world_;
-  /// The answers for a pair of operands. The key in `pairs_` is the addresses of their triangles. Holds the
-  /// operands, so that no address is reused.
+  /// The answers for a pair of operands. `pairs_` finds them by the addresses of the operands' triangles.
+  /// Pair keeps the operands alive, so that no address is reused.
   struct Pair {
     brep::Solid a, b;
     Answers answers;
     double shift_mm = 0.0;
   };
-  /// Adds the answers of a corefinement, among them that of `operation`, to the answers of the pair.
+  /// Corefines a pair, and adds the answer for `operation` and any others to the pair's answers.
   void corefine(brep::Operation operation, Pair& pair);
   std::map<std::pair<const brep::Linked*, const brep::Linked*>, Pair> pairs_;
   double shift_mm_ = 0.0;
   std::vector<std::string> findings_;
-  std::stop_token stop_;  ///< of the evaluate() under way
+  std::stop_token stop_;  ///< of the current call of evaluate()
 };
 
 }  // namespace octotomy::verify

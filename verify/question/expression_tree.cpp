@@ -18,8 +18,8 @@ int strength(const ExpressionTree& tree) {
   return static_cast<int>(weakest_first.find(tree.symbol));
 }
 
-/// The truth table of a function of six leaves. Bit v is its value for a point that is inside leaf i if and
-/// only if bit i of v is set.
+/// The truth table of a Boolean function of six leaves. Bit v is the function's value at a point that is
+/// inside exactly those leaves i for which bit i of v is set.
 using Table = std::uint64_t;
 constexpr std::array<Table, 6> leaf_tables{0xaaaaaaaaaaaaaaaa, 0xcccccccccccccccc, 0xf0f0f0f0f0f0f0f0,
                                            0xff00ff00ff00ff00, 0xffff0000ffff0000, 0xffffffff00000000};
@@ -44,7 +44,7 @@ int largest_leaf(const ExpressionTree& tree) {
   return largest;
 }
 
-/// The function with one leaf fixed inside or outside.
+/// The function in which one leaf is fixed to inside or to outside.
 Table fixed(Table table, std::size_t leaf, bool inside) {
   assert(leaf < leaf_tables.size());
   const int step = 1 << leaf;
@@ -52,7 +52,7 @@ Table fixed(Table table, std::size_t leaf, bool inside) {
   return half | (inside ? half >> step : half << step);
 }
 
-/// A read-once tree of a function.
+/// Returns a read-once tree of a function; none if there is no such tree.
 std::optional<ExpressionTree> decomposed(Table table);
 
 std::optional<ExpressionTree> joined(Table left, char symbol, Table right) {
@@ -73,9 +73,10 @@ std::optional<ExpressionTree> decomposed(Table table) {
     const ExpressionTree leaf{0, static_cast<int>(support[0]), {}};
     return table == leaf_tables[support[0]] ? leaf : ExpressionTree{'~', 0, {leaf}};
   }
-  // Tries every way to divide the leaves in two; those in `part` belong to the left side. As functions of one
-  // side's leaves: `any` is true if some values of the other side's leaves make the function true, `all` if
-  // all values do; `alone` is the function with the other side's leaves outside.
+  // Tries every way to divide the leaves between two sides; the leaves in `part` belong to the left side.
+  // Each side has three functions of its own leaves. `any` is true if some state of the other leaves makes
+  // the whole function true, `all` if every state does. `alone` is the whole function with the other leaves
+  // outside.
   struct Side {
     Table any, all, alone;
     void forget(std::size_t leaf) {

@@ -16,10 +16,10 @@
 namespace octotomy::verify {
 namespace {
 
-/// Noise is limited to this side, because its surface is as large as its volume.
+/// Largest side of random noise, in voxels. The surface of noise grows as its volume does.
 constexpr int largest_noise_side = 16;
 
-/// A tree of exactly `leaves` leaves, at most `depth` deep. Precondition: leaves <= 2^depth.
+/// Returns a tree of exactly `leaves` leaves, at most `depth` deep. Precondition: leaves <= 2^depth.
 ExpressionTree tree_of(Random& random, int leaves, int depth, int names, int& xors) {
   assert(leaves >= 1 && names >= 1 && (depth > 20 || leaves <= 1 << depth));
   ExpressionTree tree;
@@ -38,7 +38,7 @@ ExpressionTree tree_of(Random& random, int leaves, int depth, int names, int& xo
   return tree;
 }
 
-/// The voxels below `side` for whose index `wanted` returns true.
+/// Returns the voxels below `side` along each axis for whose index `wanted` returns true.
 template <typename Wanted>
 voxel::Octree where(const voxel::Universe& universe, int side, const Wanted& wanted) {
   return voxel::octree_of_blocks(universe, [&](const glm::ivec3& block) {
@@ -65,7 +65,8 @@ voxel::Octree noise(Random& random, const voxel::Universe& universe, int side, i
   return where(universe, side, [&](const glm::ivec3& v) { return inside[index_in(v, side)]; });
 }
 
-/// Random values on a coarse lattice, interpolated linearly and cut off: smooth, of any topology.
+/// The places at which random values on a coarse lattice, interpolated linearly, exceed a level: smooth sets
+/// of any topology.
 voxel::Octree blobs(Random& random, const voxel::Universe& universe, int side, double above) {
   constexpr int knots = 6;
   std::array<double, knots * knots * knots> values;
@@ -108,8 +109,8 @@ voxel::Octree solid(Random& random, const voxel::Universe& universe, int side, i
   }
 }
 
-/// The bone of the head phantom's closed form in voxels of six millimetres; a random part of it for a smaller
-/// side.
+/// The bone of the head phantom in voxels of six millimetres; if `side` is smaller than the head, a random
+/// part of it.
 voxel::Octree head(Random& random, const voxel::Universe& universe, int side) {
   constexpr int head_side = largest_random_side;
   static const std::vector<bool> bone = [] {
@@ -124,7 +125,7 @@ voxel::Octree head(Random& random, const voxel::Universe& universe, int side) {
     return inside;
   }();
   const int room = head_side - side;
-  // Braces fix the order of evaluation.
+  // Braces fix the order in which the random numbers are drawn.
   const glm::ivec3 from{random_int(random, 0, room), random_int(random, 0, room),
                         random_int(random, 0, room)};
   return where(universe, side, [&](const glm::ivec3& v) { return bone[index_in(v + from, head_side)]; });

@@ -54,7 +54,7 @@ double volume_mm3(const brep::Triangles& triangles) {
                                  : brep::trusted_solid(triangles, brep::Proof::Connection).size().volume_mm3;
 }
 
-/// The clean answers to one question, and random alterations of them.
+/// The clean answers to one question. Alters them at random.
 class Alterations {
  public:
   explicit Alterations(const Subject& subject)
@@ -79,7 +79,8 @@ class Alterations {
         whole_number(chance, static_cast<int>(triangles_.points_mm.size())))];
   }
 
-  /// A box around a random vertex of the mesh, with sides from one voxel to a sixth of the universe's side.
+  /// Returns a box around a random vertex of the mesh, with sides from one voxel to a sixth of the universe's
+  /// side.
   voxel::Box box_by_chance(Chance& chance) const {
     const glm::dvec3 middle_mm = vertex_by_chance(chance);
     glm::dvec3 half_mm;
@@ -88,7 +89,7 @@ class Alterations {
     return {middle_mm - half_mm, middle_mm + half_mm};
   }
 
-  /// The half of the universe beyond a random vertex of the mesh along a random axis.
+  /// Returns the part of the universe beyond a random vertex of the mesh, along a random axis.
   voxel::Box end_by_chance(Chance& chance) const {
     const voxel::Box world = voxel::bounds(subject_.universe.lattice());
     const glm::dvec3 at_mm = vertex_by_chance(chance);
@@ -155,8 +156,8 @@ class Alterations {
   brep::Triangles triangles_;
 };
 
-/// A random block of a scan that fits into `voxels` voxels a side, with a random box in it and a random
-/// motion.
+/// Returns a subject from a random block of a scan, at most about half as wide as a universe of `voxels`
+/// voxels a side. The box and the motion are random.
 Subject block_subject(const ScanToAlter& from, int voxels, Chance& chance) {
   const voxel::Lattice& lattice = from.scan->lattice;
   const glm::dvec3 spacing_mm = lattice.spacing_mm();
@@ -188,7 +189,8 @@ Subject block_subject(const ScanToAlter& from, int voxels, Chance& chance) {
   return subject;
 }
 
-/// Draws blocks until one has an object that is not only crumbs, and alters its answers.
+/// Draws blocks until one contains an object, and alters the answers for this object. Throws after 50 blocks
+/// without an object.
 std::vector<Alteration> altered_block(const ScanToAlter& from, int voxels, int count, Chance& chance) {
   constexpr int most_tries = 50;
   for (int tries = 0; tries < most_tries; ++tries) {

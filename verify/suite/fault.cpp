@@ -52,15 +52,15 @@ brep::Triangles with_shell_twice(brep::Triangles triangles) {
   }
   return triangles;
 }
-/// A surface mirrored in x about the universe's middle, with outward normals, as a reader with a wrong axis
-/// would return it.
+/// Mirrors a surface in x about the universe's middle and keeps its normals outward. A reader with a wrong
+/// axis would return such a surface.
 brep::Triangles mirrored(brep::Triangles triangles, const voxel::Universe& universe) {
   const double middle_mm = universe.lattice().lps_mm(glm::dvec3(0.5 * (universe.side() - 1))).x;
   for (glm::dvec3& p : triangles.points_mm) p.x = 2.0 * middle_mm - p.x;
   return turned_inside_out(std::move(triangles));
 }
 
-/// The octree's voxels on another lattice, resampled into its own universe.
+/// Resamples the octree's voxels as if they lay on another lattice, into the octree's own universe.
 voxel::Octree on_lattice(const voxel::Octree& octree, const glm::dmat4& index_from_true_index) {
   voxel::Universe other = octree.universe();
   other.lps_from_voxel = other.lps_from_voxel * index_from_true_index;
@@ -94,7 +94,7 @@ constexpr const char* shell_thrice = "shell three times";
 constexpr const char* both_empty = "both kernels empty";
 constexpr const char* lost_by_both = "half lost by both kernels";
 
-/// The clean answers to one question, and the faults that are applied to them.
+/// The clean answers to one question. Applies faults to them.
 class Trials {
  public:
   Trials(const Subject& subject, int voxels) : subject_(subject), voxels_(voxels) {
@@ -171,13 +171,14 @@ class Trials {
   std::vector<FaultTrial> trials_;
 };
 
-/// Trials in tier Exact. The answers have integer coordinates, so a shift is by one refined voxel.
+/// Returns trials in tier Exact. The answers have integer coordinates, so a shifted mesh moves by one refined
+/// voxel.
 std::vector<FaultTrial> exact_trials(int voxels) {
   voxel::Universe universe;
   while ((1 << universe.depth) > voxels) --universe.depth;
   Random random(static_cast<std::uint64_t>(voxels));
-  // Noise is left out, because its surface is as large as its volume. Each set must have voxels of its own
-  // and voxels in common with the other.
+  // Noise is left out, because its surface grows as its volume does. Each set must have voxels that the other
+  // lacks and voxels that the other has, too.
   const auto drawn = [&] {
     RandomSet set = random_set(random, universe, std::min(voxels, largest_random_side));
     while (set.recipe.starts_with("noise") || set.recipe.starts_with("head"))
@@ -237,9 +238,9 @@ const std::vector<Fault>& faults() {
       {flipped_shell, "all triangles of the mesh wind the other way", true},
       {lost_triangle, "one triangle of the mesh is missing", true},
       {duplicated_shell, "the mesh contains its surface twice", true},
-      {half_voxel, "the mesh is moved along x; in the exact tier by one refined voxel", true},
-      {quarter_voxel, "the mesh is moved along y", true},
-      {eighth_voxel, "the mesh is moved along z", true},
+      {half_voxel, "the mesh is moved by half a voxel along x; in tier Exact by one refined voxel", true},
+      {quarter_voxel, "the mesh is moved by a quarter of a voxel along y", true},
+      {eighth_voxel, "the mesh is moved by an eighth of a voxel along z", true},
       {mirrored_axis, "one answer is mirrored in x about the universe's middle", true},
       {swapped_operands, "one kernel computes b - a instead of a - b", true},
       {slice_spacing, "one kernel divides the scan's height by one slice too many", true},
@@ -271,7 +272,7 @@ std::vector<FaultTrial> try_faults(const FaultOptions& options) {
   }
   std::vector<std::vector<FaultTrial>> parts(work.size());
   voxel::SharedProgress work_done(options.progress, work.size());
-  // Large subjects start first, so that the last ones end at about the same time.
+  // Large subjects start first, so that no thread starts a long one at the end.
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, work.size(), 1),
       [&](const tbb::blocked_range<std::size_t>& range) {

@@ -30,7 +30,8 @@ const std::array<SpacingName, 4> spacings{
     {{{1, 1, 1}, "1:1:1"}, {{1, 1, 2}, "2:1:1"}, {{1, 1, 3}, "3:1:1"}, {{1, 1, 5}, "5:1:1"}}};
 constexpr std::array<const char*, 3> samplings{"shares", "blurred, noise", "tilted, noise"};
 
-/// An error relative to the truth, and as a share of the half-width.
+/// The error of an interval's value: relative to the truth, and as a share of the half-width. `width` is the
+/// half-width relative to the truth.
 struct Error {
   double relative = 0.0, share = 0.0, width = 0.0;
 };
@@ -68,7 +69,8 @@ std::function<double(const glm::dvec3&)> sampler_of(const voxel::Scene& scan) {
   };
 }
 
-/// The solid in slices that lean by 5 to 25 degrees in a random direction; its middle stays.
+/// Returns the solid with slices that lean by 5 to 25 degrees in a random direction. The middle of the
+/// lattice does not move.
 SolidPhantom with_tilted_slices(SolidPhantom solid, Chance& chance) {
   voxel::Universe& universe = solid.universe;
   const double lean = std::tan(glm::radians(chance.between(5.0, 25.0))), towards = chance.between(0.0, 6.3);
@@ -146,7 +148,7 @@ SizeIntervals sizes_of(const voxel::Scene& scan, double low) {
   return found;
 }
 
-/// The errors for a random solid.
+/// Returns the errors of the intervals for one random solid.
 Errors drawn_errors_of(std::uint64_t seed, std::size_t number, const MeasureSizes& measure) {
   Errors errors;
   errors.group = number % drawn_groups().size();
@@ -173,7 +175,7 @@ bool is_likely(const IntervalCoverage& row, double least) {
 }
 
 std::vector<IntervalCoverage> drawn_suite(const IntervalSuiteOptions& options) {
-  if (options.solids < 1) throw voxel::InvalidInput("a suite of intervals takes at least one solid");
+  if (options.solids < 1) throw voxel::InvalidInput("a suite of intervals needs at least one solid");
   std::vector<Errors> all(static_cast<std::size_t>(options.solids));
   const MeasureSizes measure = options.measure ? options.measure : sizes_of;
   voxel::SharedProgress done(options.progress, all.size());
@@ -203,7 +205,7 @@ std::vector<IntervalCoverage> drawn_suite(const IntervalSuiteOptions& options) {
 }
 
 std::vector<IntervalCoverage> interval_suite(const IntervalSuiteOptions& options) {
-  if (options.solids < 1) throw voxel::InvalidInput("a suite of intervals takes at least one solid");
+  if (options.solids < 1) throw voxel::InvalidInput("a suite of intervals needs at least one solid");
   std::vector<Errors> all(static_cast<std::size_t>(options.solids));
   voxel::SharedProgress done(options.progress, all.size());
   tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {

@@ -13,27 +13,27 @@
 // Measures how often the intervals hold the truth, and whether they are wider than necessary.
 namespace octotomy::verify {
 
-/// The coverage of the intervals for one group of solids, spacing and sampling. An empty string stands for
-/// all.
+/// The coverage of the intervals for one group of solids, one spacing and one sampling. An empty string
+/// stands for all groups, spacings or samplings.
 struct IntervalCoverage {
   std::string quantity;  ///< "volume" or "area"
   std::string group, spacing, sampling;
   int cases = 0;
   double held = 0.0;  ///< the share of cases whose interval holds the truth
-  /// 99th percentile of |error| / half-width; the width is 1 / p99_share times the necessary width
+  /// 99th percentile of |error| / half-width. The half-width is 1 / p99_share times the necessary one.
   double p99_share = 0.0;
   double bias_percent = 0.0, p99_error_percent = 0.0;  ///< of the recommended value
   double median_width_percent = 0.0;                   ///< of the half-width, in per cent of the truth
 };
 
-/// Measures the object of a scan's window from `low` on.
+/// Returns the intervals of an object: the samples of a scan from `low` on.
 using MeasureSizes = std::function<SizeIntervals(const voxel::Scene& scan, double low)>;
 
 struct IntervalSuiteOptions {
-  int solids = 400;  ///< divided among all groups, spacings and samplings
+  int solids = 400;  ///< number of solids, divided among all groups, spacings and samplings
   std::uint64_t seed = 1;
   voxel::Progress progress = {};
-  /// The measurement that drawn_suite() tests. Empty: the measurement by the surface and by the sum of samples.
+  /// The measurement that drawn_suite() tests. Empty: by the surface and by the sum of samples.
   MeasureSizes measure = {};
 };
 
@@ -50,10 +50,11 @@ std::vector<IntervalCoverage> interval_suite(const IntervalSuiteOptions& options
 /// interval_suite(). Cost: about a second a solid.
 std::vector<IntervalCoverage> drawn_suite(const IntervalSuiteOptions& options = {});
 
-/// Requirements: the least share of cases held overall and in each class, and the least p99_share.
+/// Required of the suites: the least share of cases whose interval holds the truth, overall and in each
+/// class, and the least p99_share.
 inline constexpr double least_held = 0.985, least_held_of_a_class = 0.95, least_p99_share = 1.0 / 3.0;
-/// Whether a row's misses may be due to chance if each interval holds the truth with the probability `least`:
-/// more than one of 100 runs of such intervals would miss as often.
+/// Whether the misses of a row may be due to chance. Assumes that each interval holds the truth with the
+/// probability `least`. Returns false if at most one in 100 runs of such intervals would miss as often.
 bool is_likely(const IntervalCoverage& row, double least);
 
 }  // namespace octotomy::verify

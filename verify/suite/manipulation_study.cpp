@@ -29,7 +29,7 @@ std::uint64_t node_count(const Octree& octree) {
   return nodes;
 }
 
-/// The number of full voxels: the sum of the Full nodes' volumes.
+/// The number of Full voxels: the sum over levels of the Full nodes' volumes.
 std::uint64_t voxel_count(const Octree& octree) {
   const std::vector<LevelCount> levels = level_counts(octree);
   std::uint64_t voxels = 0;
@@ -59,7 +59,7 @@ std::array<std::uint64_t, 3> finest_of(const Octree& octree) {
   return {levels[6].partial, levels[7].full, levels[7].empty};
 }
 
-/// A printed tree of 8 levels: "Partial Full Empty" of each.
+/// A printed tree of 8 levels, with "Partial Full Empty" for each level.
 using PrintedTree = std::array<const char*, 8>;
 
 void push_levels(const char* table, const char* tree, const PrintedTree& printed, const Octree& octree,
@@ -74,13 +74,14 @@ void push_levels(const char* table, const char* tree, const PrintedTree& printed
   }
 }
 
-/// The volume that a region encloses behind a view. The corners are not printed: the thesis's were drawn by hand.
+/// The points of the universe that a view projects into a polygon. The thesis's polygons were drawn by hand
+/// and are not printed.
 Octree cylinder(const voxel::Universe& universe, const char* view,
                 const std::vector<glm::dvec2>& polygon_mm) {
   return combine(universe, voxel::RegionMask{{{voxel::parse_view(view), {polygon_mm}}}});
 }
 
-/// Two cylinders of regions seen from the front and from the left.
+/// Two cylinders behind polygons, one seen from the front and one from the left, and their Booleans.
 void table_7_3(const voxel::Universe& universe, RepresentationStudy& study) {
   const Octree a = cylinder(universe, "anterior", {{-30, -70}, {75, -60}, {70, 55}, {10, 75}, {-45, 20}});
   const Octree b = cylinder(universe, "left", {{-70, -25}, {20, -75}, {65, -10}, {40, 70}, {-55, 60}});
@@ -104,7 +105,7 @@ void table_7_3(const voxel::Universe& universe, RepresentationStudy& study) {
   for (const auto& [name, printed, octree] : trees) push_levels("table 7.3", name, printed, octree, study);
 }
 
-/// The parts of the sphere before and after their translation.
+/// The parts of the sphere, before and after their translation.
 void table_7_7(const std::array<Octree, 4>& trees, RepresentationStudy& study) {
   static constexpr std::array<std::pair<const char*, PrintedTree>, 4> printed{
       {{"intersection",
@@ -133,8 +134,8 @@ RepresentationStudy manipulation_study() {
   RepresentationStudy study;
   const Octree sphere = digitise(solid_phantom("sphere"), voxel::Digitisation::Centre);
   const voxel::Universe& universe = sphere.universe();
-  // A wedge of the sphere, like the part that the thesis cuts out; its faces do not lie on the borders of
-  // blocks.
+  // The box cuts a wedge out of the sphere, like the part that the thesis cuts out. Its faces do not lie on
+  // borders of blocks.
   const Octree mask = combine(universe, voxel::Box{{-17.0, -70.0, -23.0}, {70.0, 11.0, 70.0}});
   const glm::dmat4 moved = glm::translate(glm::dmat4(1.0), glm::dvec3(20.0, 30.0, 40.0));
   const Expression a(sphere), b(mask);
@@ -151,24 +152,25 @@ RepresentationStudy manipulation_study() {
                            sameness(made(voxel::moved(a & b, moved)) == moved_inside)});
   study.entries.push_back({"table 7.6", "difference: created and moved, and Translate_Boolean", "same",
                            sameness(made(voxel::moved(a - b, moved)) == moved_outside)});
-  // A motion by even steps moves blocks of two voxels onto such blocks, so the counts do not change. The
-  // thesis prints 7,660, 30,010 and 31,270 before and after.
+  // A motion by even numbers of voxels maps blocks of two voxels a side onto such blocks, so the counts do
+  // not change. The thesis prints 7,660, 30,010 and 31,270 before and after.
   study.entries.push_back({"table 7.7",
                            "intersection moved by (20, 30, 40): P of level 7, F and E of level 8", "same",
                            sameness(finest_of(inside) == finest_of(moved_inside))});
 
   const auto count = [](std::uint64_t n) { return std::to_string(n); };
   study.beside.push_back({"table 7.2",
-                          "intersection, difference, translation, union: printed s; ours Full voxels",
+                          "intersection, difference, translation, union: printed: seconds; ours: Full voxels",
                           "35 50 280 51",
                           count(voxel_count(inside)) + " " + count(voxel_count(outside)) + " " +
                               count(voxel_count(moved_inside)) + " " + count(voxel_count(merged))});
   study.beside.push_back(
-      {"table 7.4", "display of intersection, difference back to front: printed s; ours visits", "106 103",
-       count(visits_back_to_front(inside)) + " " + count(visits_back_to_front(outside))});
-  study.beside.push_back({"table 7.6", "intersection before, after translation: printed s; ours nodes",
-                          "35 280", count(node_count(inside)) + " " + count(node_count(moved_inside))});
-  study.beside.push_back({"table 7.6", "difference before, after translation: printed s; ours nodes",
+      {"table 7.4", "display of intersection, difference back to front: printed: seconds; ours: visits",
+       "106 103", count(visits_back_to_front(inside)) + " " + count(visits_back_to_front(outside))});
+  study.beside.push_back({"table 7.6",
+                          "intersection before, after translation: printed: seconds; ours: nodes", "35 280",
+                          count(node_count(inside)) + " " + count(node_count(moved_inside))});
+  study.beside.push_back({"table 7.6", "difference before, after translation: printed: seconds; ours: nodes",
                           "55 144", count(node_count(outside)) + " " + count(node_count(moved_outside))});
   table_7_3(universe, study);
   table_7_7({inside, moved_inside, outside, moved_outside}, study);

@@ -68,9 +68,9 @@ double longest(const glm::dvec3& edges_mm) {
   return std::max({edges_mm.x, edges_mm.y, edges_mm.z});
 }
 
-/// A solid in a random position and orientation, with a size that is random within half a voxel. If the
-/// largest spacing is five, the solid is twice as large, so that it is at least six voxels across along that
-/// axis too.
+/// Returns a solid in a random position and orientation. Its size varies at random within half a voxel. At a
+/// largest spacing of five the solid is twice as large, so that it is at least six voxels across along that
+/// axis, too.
 SolidPhantom posed(const Kind& kind, const glm::dvec3& spacing_mm, Chance& chance) {
   const bool coarse = spacing_mm.z > 2.0;
   SolidPhantomOptions options;
@@ -106,13 +106,14 @@ struct SpacingName {
 };
 const std::array<SpacingName, 3> spacings{{{{1, 1, 1}, "1:1:1"}, {{1, 1, 2}, "2:1:1"}, {{1, 1, 5}, "5:1:1"}}};
 
-/// Both kernels' answers to one pose.
+/// The answers of both kernels for one solid.
 struct Answers {
   voxel::Octree octree;
-  std::optional<double> shares_mm3;  // volume by filled shares, if the voxels have them
+  std::optional<double> shares_mm3;  // the volume by filled shares, if the voxels have shares
   brep::Solid solid;
-  double blur_mm2 = 0.0;                          // deviation squared along the coarsest axis
-  std::shared_ptr<const voxel::Scene> scan = {};  // both answers are its window; null: they share no scan
+  double blur_mm2 = 0.0;  // variance of the blur along the coarsest axis
+  // both answers are a window of this scan; null: there is no scan
+  std::shared_ptr<const voxel::Scene> scan = {};
 };
 
 constexpr double half_level = 0.0, highest_sample = 32767.0;
@@ -159,9 +160,9 @@ Certificate bounded_of(const SolidPhantom& solid, const Answers& answers, const 
 }
 
 /// The share of its thickness that a plate loses at the half level of its blurred samples; 1 if no sample
-/// reaches the half level. The thickness t is measured in standard deviations of the blur. Across the plate,
-/// samples are Phi(x + t / 2) - Phi(x - t / 2) with Phi the normal distribution, largest in the middle. Noise
-/// may raise the level.
+/// reaches the half level. `deviations`: the plate's thickness t in standard deviations of the blur. Across
+/// the plate the samples are Phi(x + t / 2) - Phi(x - t / 2), with Phi the normal distribution, and largest
+/// in the middle. Noise may raise the level.
 double lost_by_blur(double deviations) {
   const auto above_half = [&](double x) {
     const auto phi = [](double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); };
@@ -176,7 +177,7 @@ double lost_by_blur(double deviations) {
   return std::clamp(1.0 - 2.0 * inside / deviations, 0.0, 1.0);
 }
 
-/// Compares both answers with the truth. `difference_mm3` is the difference of the voxels.
+/// Compares both answers with the true measures. `difference_mm3` is that of the voxel kernel.
 Certificate closed_form_of(const SolidPhantom& solid, const Answers& answers, const Certificate& bounded,
                            double plate_voxels) {
   const glm::dvec3 spacing_mm = solid.universe.lattice().spacing_mm();
@@ -193,8 +194,8 @@ Certificate closed_form_of(const SolidPhantom& solid, const Answers& answers, co
   certificate.voxel.volume_mm3 = voxel_mm3;
   certificate.difference_mm3 = voxel_mm3 - solid.volume_mm3;
   const double blurred = answers.blur_mm2 * model.curvature_mm;
-  // A sample is a mean over its voxel, which adds s^2 / 12 to the blur's variance; between samples the mesh
-  // interpolates linearly, which adds s^2 / 6 on average.
+  // A sample is a mean over its voxel, which adds s^2 / 12 to the variance of the blur. Between samples the
+  // mesh interpolates linearly, which adds s^2 / 6 on average.
   const auto thin_of = [&](double variance_mm2) {
     return plate_voxels > 0.0 ? lost_by_blur(plate_voxels * s / std::sqrt(variance_mm2)) : 0.0;
   };
@@ -252,12 +253,12 @@ double percentile(std::vector<double> values, double share) {
   return values[low] + (at - static_cast<double>(low)) * (values[high] - values[low]);
 }
 
-/// Runs the suite.
 class Suite {
  public:
   explicit Suite(const PhantomSuiteOptions& options) : options_(options) {
     if (options.poses < 1 || options.poses > 1000)
-      throw voxel::InvalidInput("a suite takes 1 to 1000 poses, not " + std::to_string(options.poses));
+      throw voxel::InvalidInput("the suite's number of poses must be 1 to 1000, not " +
+                                std::to_string(options.poses));
     if (std::none_of(kinds().begin(), kinds().end(), [&](const Kind& kind) { return asked(kind); }))
       throw voxel::InvalidInput("the suite has no solid with the name '" + *options.solid + "': try sphere");
   }
@@ -294,7 +295,8 @@ class Suite {
               boundary_model(answers.solid, {solid.universe.lattice(), spacings[s].mm, solid.centroid_mm});
           const double voxels_mm3 =
               static_cast<double>(answers.octree.voxel_count()) * solid.universe.lattice().voxel_mm3();
-          // Solids along the lattice are left out, because rims add errors that these constants do not model.
+          // Solids along the lattice are left out, because these constants do not model the errors at their
+          // rims.
           if (kinds()[k].turned)
             counts.push_back(std::abs(voxels_mm3 - solid.volume_mm3) / std::sqrt(model.count_mm6));
           if (kinds()[k].turned)
@@ -328,9 +330,10 @@ class Suite {
         suite_.tightness.push_back({spacings[s].name, samplings[m].name, static_cast<int>(shares.size()),
                                     percentile(shares, 1.0), percentile(shares, 0.99)});
         const Tightness& tight = suite_.tightness.back();
-        suite_.checks.push_back({"bounded tolerance at most three times the observed 99th percentile, " +
-                                     tight.spacing + ", " + tight.sampling,
-                                 1.0 / tight.p99_share, 3.0, tight.p99_share >= 1.0 / 3.0});
+        suite_.checks.push_back(
+            {"the bounded tolerance is at most three times the observed 99th percentile, " + tight.spacing +
+                 ", " + tight.sampling,
+             1.0 / tight.p99_share, 3.0, tight.p99_share >= 1.0 / 3.0});
       }
   }
 
@@ -357,7 +360,7 @@ class Suite {
     suite_.cases.push_back(std::move(one));
   }
 
-  /// Errors for one solid in a random pose, in per cent.
+  /// Errors of one solid's measures in one random pose, in per cent of the truth.
   struct Errors {
     double voxels = 0.0, shares = 0.0, surface = 0.0, area = 0.0;
   };

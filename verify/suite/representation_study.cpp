@@ -31,7 +31,7 @@ using voxel::Octree;
 
 constexpr int depth = 8;
 constexpr voxel::Window16 bone{20, 63};  // the upper 44 of 64 levels
-/// The thesis divides all visits per pixel by the pixels of the finest picture, so the study does too.
+/// The thesis divides the visits at each level by the pixels of the finest picture. The study does the same.
 constexpr double pixels = 256.0 * 256.0;
 
 std::string with_decimals(double value, int decimals) {
@@ -55,7 +55,7 @@ std::uint64_t sum(const std::vector<voxel::LevelCount>& levels) {
   return nodes;
 }
 
-/// The head phantom in the thesis's coding of its skull: 4096 densities in 64 levels, one density a voxel.
+/// The head phantom, coded as the thesis codes its skull: 4096 densities in 64 levels, one density a voxel.
 voxel::GreyOctree grey_head() {
   voxel::Scene scene = head_phantom();
   for (std::int16_t& sample : std::get<voxel::Int16Samples>(scene.samples))
@@ -77,7 +77,7 @@ voxel::Visits drawn(const voxel::DrawnObject& object, voxel::Algorithm algorithm
   return *render({object}, options).visits;
 }
 
-/// The faces towards an observer in front: the patient's front is y-.
+/// The visible faces: the observer is in front, and the patient's front is y-.
 constexpr voxel::FaceSet front = voxel::face_bit(Direction::MinusY);
 
 // --------------------------------------------------------------------------------- what holds for any object
@@ -100,7 +100,8 @@ std::vector<ThesisEntry> face_codes() {
   return entries;
 }
 
-/// The node of figure 3.6: Full voxels beside it cover z- and z+ and, behind a Partial node, y+.
+/// The face code of the node in figure 3.6. Beside the node, Full voxels cover z- and z+ and, behind a
+/// Partial node, y+.
 std::vector<ThesisEntry> figure_3_6() {
   voxel::Universe universe;
   universe.depth = 3;
@@ -110,7 +111,7 @@ std::vector<ThesisEntry> figure_3_6() {
   const Octree object = combine(universe, box({2, 2, 2}, {3, 3, 3}) | box({2, 4, 2}, {3, 4, 3}) |
                                               box({2, 2, 4}, {3, 3, 4}) | box({2, 2, 0}, {3, 3, 1}));
   const voxel::MaskedOctree masked = masked_octree(object);
-  // The number of node 07 of level 2: the last child of the root's first child.
+  // The index in `nodes` of octal code 07 at level 2: the last child of the root's first child.
   std::size_t node = 2;
   for (int k = 0; k < 7; ++k) node += masked.nodes[node].size;
   const voxel::FaceSet code = masked.nodes[node].covered;
@@ -119,12 +120,12 @@ std::vector<ThesisEntry> figure_3_6() {
            voxel::face_text(static_cast<voxel::FaceSet>(~code & voxel::view_code(5)))}};
 }
 
-/// The accesses that find the neighbour along x of every voxel, except the last one of a row.
+/// Counts the accesses needed to find the neighbour along x of each voxel in a row but the last.
 std::vector<ThesisEntry> theorem_3_1() {
   double from_pivot = 0.0, down_and_up = 0.0;
   const int side = 1 << depth;
   for (int i = 0; i + 1 < side; ++i) {
-    const int levels = std::bit_width(static_cast<unsigned>(i ^ (i + 1)));  // between the voxel and the pivot
+    const int levels = std::bit_width(static_cast<unsigned>(i ^ (i + 1)));  // from a voxel up to the pivot
     from_pivot += levels;
     down_and_up += 2.0 * levels;
   }
@@ -137,7 +138,7 @@ std::vector<ThesisEntry> theorem_3_1() {
       {"theorem 3.1", "accesses by walking down and up, level 8", "below 4", below(down_and_up, 4.0)}};
 }
 
-/// The names, sorted by falling cost.
+/// The names in order of falling cost, joined by ">".
 std::string order(std::vector<std::pair<double, std::string>> costs) {
   std::stable_sort(costs.begin(), costs.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
@@ -169,7 +170,7 @@ void tables_3_1_and_3_2(const voxel::GreyOctree& grey, const Octree& skull, Repr
   }
 }
 
-/// A row that is not in the text from which the printed values were taken.
+/// Stands for a row that the available text of the thesis leaves out.
 constexpr const char* left_out = "not in the text at hand";
 
 constexpr std::array<const char*, depth> visits_to_skull{
@@ -209,7 +210,8 @@ void spheres_of_3_1_and_a_1(RepresentationStudy& study) {
   }
 }
 
-/// The columns are: unmasked, masked, front to back, node tracing with direct visits, and with all visits.
+/// The columns are: back to front unmasked, back to front masked, front to back, node tracing with direct
+/// visits, node tracing with all visits.
 void table_a_2(const Octree& skull, RepresentationStudy& study) {
   struct Row {
     const char *visits, *unvisited, *per_pixel;
@@ -222,8 +224,8 @@ void table_a_2(const Octree& skull, RepresentationStudy& study) {
        {"1.00 0.81 0.26 0.22 0.36", "0.00 0.19 0.74 0.81 0.78", "2.44733 1.87321 0.62960 0.53852 0.88955"},
        {"1.00 0.75 0.21 0.19 0.29", "0.00 0.25 0.79 0.84 0.82", "8.17665 6.11504 1.81234 1.52448 2.39753"}}};
   for (int level = 3; level <= depth; ++level) {
-    // The printed total of level 3 is that of the whole tree cut at this level (table 3.1), so a node that
-    // contains a Full voxel becomes Full.
+    // The printed total of level 3 is that of the whole tree cut off at this level (table 3.1). So a node
+    // that contains a Full voxel becomes Full.
     const Octree object = reduced(skull, depth - level, {voxel::Reduction::Of::Children, 0.0});
     const voxel::DrawnObject head{"skull", object};
     const voxel::MaskedDrawing masked = draw_back_to_front(masked_octree(object), front);
@@ -257,7 +259,7 @@ void table_a_2(const Octree& skull, RepresentationStudy& study) {
                                     with_decimals(traced.unvisited_fraction().value_or(0.0), 2)})});
     study.beside.push_back({"table A.2", item + "visits per pixel: BTFU BTFM FTB trace direct, all",
                             row.per_pixel, joined(per_pixel)});
-    if (level < 5) continue;  // there masks hide next to nothing
+    if (level < 5) continue;  // masks hide almost nothing at these levels
     study.entries.push_back(
         {"table A.2", item + "algorithms by visits per node", "BTFU > BTFM > FTB > trace",
          order({{visits[0], "BTFU"}, {visits[1], "BTFM"}, {visits[2], "FTB"}, {visits[3], "trace"}})});
@@ -312,19 +314,20 @@ void tables_4_2_and_a_3(const voxel::GreyOctree& grey, const Octree& skull, Repr
        order({{by_mask, "binary masked"}, {unmasked, "binary unmasked"}, {all_grey, "grey"}})});
 }
 
-/// The walk through two masked trees at once that makes or draws their intersection (7.2, 7.3.1).
+/// Walks through two masked trees at once, as for making or drawing their intersection (7.2, 7.3.1), and
+/// counts visits.
 class PairWalk {
  public:
-  /// Draws what an observer sees of `seen`; without it, makes the intersection.
+  /// `seen`: the faces towards an observer, for drawing; none: for making.
   PairWalk(const voxel::MaskedOctree& a, const voxel::MaskedOctree& b, std::optional<voxel::FaceSet> seen)
       : a_(a), b_(b), seen_(seen) {
     visit(place(a, 0), place(b, 0));
   }
-  /// Visits to pairs of nodes of levels 1..n.
+  /// The number of visits to pairs of nodes of levels 1..n.
   std::uint64_t visits() const { return visits_; }
 
  private:
-  /// A node, or a part of a homogeneous one.
+  /// A node, or a part of a Full or Empty node.
   struct Place {
     voxel::Status status;
     voxel::FaceSet covered;
@@ -343,7 +346,7 @@ class PairWalk {
         node += tree.nodes[node].size;
         continue;
       }
-      // The faces inside a Full node are covered by its own voxels.
+      // The faces between parts of a Full node are covered by the node's own voxels.
       inner[i] = {outer.status,
                   static_cast<voxel::FaceSet>(outer.covered | voxel::view_code(7 - static_cast<int>(i))),
                   outer.node};
@@ -367,7 +370,7 @@ class PairWalk {
   std::uint64_t visits_ = 0;
 };
 
-/// The skull cut by a cylinder seen from the left, as the thesis cuts by volumes of interest.
+/// The skull cut by a box, in place of the thesis's volume of interest.
 void table_7_5(const Octree& skull, RepresentationStudy& study) {
   const voxel::Universe& universe = skull.universe();
   const voxel::FaceSet seen = voxel::view_code(0);
@@ -398,12 +401,12 @@ void table_7_5(const Octree& skull, RepresentationStudy& study) {
 
 // ---------------------------------------------------------------------------------------------- chapter 5
 
-/// The slopes that a filter of depths can represent: their number, the steepest slope, and the largest angle
-/// between neighbouring slopes.
+/// The slopes that a filter of whole depths can represent: their number, the steepest slope, and the largest
+/// angle between neighbouring slopes.
 void figure_5_8(RepresentationStudy& study) {
   struct Curve {
     const char* name;
-    double width, highest, step;  // of the filter in pixels, of the depths and their step in voxels
+    double width, highest, step;  // width in pixels; largest depth and step of depths in voxels
   };
   static constexpr std::array<Curve, 4> curves{
       {{"a: filter of 3 x 3 pixels, depths to 10 voxels", 3, 10, 1},
@@ -428,7 +431,7 @@ void figure_5_8(RepresentationStudy& study) {
                            "a > d", order({{widest[0].first, "a"}, {widest[3].first, "d"}})});
 }
 
-/// Depth images of the sphere of table 3.1. The true depth of its front is known.
+/// The mean depth errors of two depth images of the sphere of table 3.1, whose true depth is known.
 void figures_5_9_and_5_10(RepresentationStudy& study) {
   const SolidPhantom sphere = solid_phantom("sphere");
   const voxel::PartialOctree shares = digitise_partial(sphere);
@@ -448,7 +451,7 @@ void figures_5_9_and_5_10(RepresentationStudy& study) {
     for (int y = 0; y < 256; ++y)
       for (int x = 0; x < 256; ++x) {
         const auto p = picture.point_mm({x, y});
-        // Steeper parts belong to the silhouette, where the depth of a voxel means little.
+        // Steeper parts belong to the silhouette, where a voxel's depth does not measure the surface's.
         if (!p || std::hypot(p->x, p->z) > 32.0) continue;
         total += std::abs(p->y + std::sqrt(64.0 * 64.0 - p->x * p->x - p->z * p->z));
         ++count;

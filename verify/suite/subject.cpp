@@ -41,7 +41,7 @@ brep::Solid solid_of(const voxel::Box& box) {
       {0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {{{a.x, a.z}, {b.x, a.z}, {b.x, b.z}, {a.x, b.z}}}, a.y, b.y});
 }
 
-/// A scan of a solid: each sample is the share of its voxel inside the solid, scaled to -1000 to 1000.
+/// Scans a solid: each sample is the share of its voxel that lies inside the solid, scaled to -1000 to 1000.
 voxel::Scene scan_of(const voxel::Universe& universe, const voxel::Expression& solid) {
   const voxel::PartialOctree partial = voxel::digitise_partial(universe, solid);
   const int side = universe.side();

@@ -12,18 +12,18 @@
 #include "voxel/space/scene.h"
 #include "voxel/tree/octree.h"
 
-// A question for both kernels, (window of a scan - box) under a rigid motion, with their answers and the
+// A question for both kernels: (window of a scan - box) under a rigid motion, with both answers and their
 // certificate. Faults and alterations change such answers.
 namespace octotomy::verify {
 
-/// The parameters with which one kernel answers the question.
+/// The parameters of one kernel's answer. A fault changes them for one kernel only.
 struct Making {
-  double low = 0.0;           ///< of the window
-  double slices_apart = 1.0;  ///< slice distance, as a multiple of the true distance
-  bool swapped = false;       ///< box - window instead of window - box
+  double low = 0.0;           ///< lower bound of the window
+  double slices_apart = 1.0;  ///< distance of the slices, as a multiple of the true one
+  bool swapped = false;       ///< computes box - window instead of window - box
   glm::dvec3 box_shift_mm{0.0};
-  bool pivot_forgotten = false;  ///< rotated about the origin instead of the pivot
-  bool not_moved = false;        ///< the motion is left out
+  bool pivot_forgotten = false;  ///< rotates about the origin instead of the pivot
+  bool not_moved = false;        ///< leaves the motion out
 };
 
 struct Subject {
@@ -33,30 +33,30 @@ struct Subject {
   voxel::Box box;
   voxel::Motion motion;
   double low = 0.0;       ///< half way between outside and inside
-  double contrast = 1.0;  ///< inside minus outside
+  double contrast = 1.0;  ///< density inside minus density outside
 };
 
-/// Edge of the universe's voxels.
+/// The edge of the voxels of the subject's universe, in mm.
 double edge_mm(const Subject& subject);
 
 voxel::Octree voxel_answer(const Subject& subject, const Making& making);
 brep::Triangles mesh_answer(const Subject& subject, const Making& making);
 Witness witness_of(const Subject& subject, const Making& making);
-/// The certificate of two answers. `fault` names the fault that was injected, or is empty.
+/// Certifies two answers. `fault` names the fault that was injected, or is empty.
 Certificate certified(const Subject& subject, const std::string& fault, const voxel::Octree& octree,
                       const brep::Triangles& triangles, const Witness& witness);
 
-/// An answer with a box added or removed.
+/// Returns the answer with a box added (Union) or removed (Difference).
 voxel::Octree changed(const voxel::Octree& octree, const voxel::Box& box, brep::Operation operation);
 brep::Triangles changed(const brep::Triangles& triangles, const voxel::Box& box, brep::Operation operation);
 brep::Triangles shifted(brep::Triangles triangles, const glm::dvec3& by_mm);
-/// The triangles and a second surface, joined into one list.
+/// Returns one list of the triangles and of those of a second surface.
 brep::Triangles with_shell_again(brep::Triangles triangles, const brep::Triangles& again);
 
-/// Subjects without symmetry: off centre, oblique and cut. A symmetry would hide a mirrored axis or swapped
-/// operands. `name` is that of the ellipsoid or the ring.
+/// Returns the ellipsoid or the ring, by `name`: off centre, oblique and cut. They have no symmetry, because
+/// a symmetry would hide a mirrored axis or swapped operands.
 Subject shape_subject(const std::string& name, int voxels);
-/// Bone of the head phantom, in a universe of `voxels` voxels a side.
+/// Returns the bone of the head phantom in a universe of `voxels` voxels a side.
 Subject head_subject(int voxels);
 
 }  // namespace octotomy::verify

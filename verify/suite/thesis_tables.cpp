@@ -86,8 +86,8 @@ std::vector<ThesisEntry> table_3_1() {
   return entries;
 }
 
-/// The node 734 of a world of 16 voxels a side, and its ancestors. The origin is in the world's middle, as in
-/// the thesis.
+/// The octal code of node 734 in a world of 16 voxels a side, and the nodes above it. The origin is in the
+/// world's middle, as in the thesis.
 std::vector<ThesisEntry> figure_4_6() {
   const voxel::OctalCode node(3, 0734);
   struct Row {
@@ -114,8 +114,9 @@ std::vector<ThesisEntry> figure_4_6() {
   return entries;
 }
 
-/// Pairs of an octree's children that project onto one child of the quadtree, the front one first, as the node tracer
-/// draws them. The quadtree's children may be in any order, so the pairs stand in the order of their front ones.
+/// The pairs of an octree's children that project onto one child of the quadtree. The front child of a pair
+/// comes first, in the order of the node tracer. The quadtree's children may be in any order, so pairs are
+/// sorted by their front child.
 std::vector<ThesisEntry> table_4_3() {
   struct Column {
     const char *view, *printed, *note;
@@ -145,7 +146,7 @@ std::vector<ThesisEntry> table_4_3() {
     options.centre_mm = glm::dvec2(0.0);
     options.algorithm = voxel::Algorithm::NodeTrace;
     options.antialias = false;
-    // The pixel, and thus the child of the quadtree, that an object covers; its number in the picture.
+    // Returns the pixel that an object covers: the number of a child of the quadtree.
     const auto covered = [&](const Octree& object) {
       const voxel::Picture picture = voxel::render({{"child", object}}, options);
       const auto lit =
@@ -166,8 +167,9 @@ std::vector<ThesisEntry> table_4_3() {
   return entries;
 }
 
-/// The motion of marked points (8.3): three points and their ends, marked with errors, and two points, of which the
-/// third is their common normal. Lengths in mm and angles in degrees by which the definitions are missed.
+/// The motion of marked points (8.3), by how far its definitions are missed, in mm or degrees: first for
+/// three points whose ends are marked with errors, then for two points with their common normal in place of a
+/// third.
 std::vector<ThesisEntry> equations_of_8_3() {
   using glm::dvec3;
   const auto moved_by = [](const std::array<dvec3, 3>& from, const std::array<dvec3, 3>& to) {
@@ -202,7 +204,7 @@ std::vector<ThesisEntry> equations_of_8_3() {
          off(angle(glm::cross(at[1] - at[0], at[2] - at[0]), glm::cross(to[1] - to[0], to[2] - to[0])))});
     return motion;
   };
-  // The ends are marked a few millimetres off a rigid motion, so that only the definitions decide.
+  // The ends are marked a few millimetres off a rigid motion, so that the motion depends on the definitions.
   const std::array<dvec3, 3> from{dvec3(1.0, -62.0, -30.0), dvec3(31.0, -8.0, -41.0),
                                   dvec3(-29.0, -11.0, -37.0)};
   const std::array<dvec3, 3> to{dvec3(2.0, -69.0, -26.0), dvec3(30.0, -14.0, -45.0),
@@ -216,11 +218,11 @@ std::vector<ThesisEntry> equations_of_8_3() {
   return entries;
 }
 
-/// The shading case of each of the 16 states of four neighbours. The cases are the slopes 1, 1/2, 0, -1/2 and
-/// -1.
+/// The shading case for each of the 16 states of four neighbours. The cases stand for the slopes 1, 1/2, 0,
+/// -1/2 and -1.
 std::vector<ThesisEntry> table_5_1() {
   struct Row {
-    const char* state;  // DE, D, UE, U; x: either
+    const char* state;  // neighbours DE, D, UE, U, each F or E; x: either
     int multiplicity, number;
   };
   static constexpr std::array<Row, 9> rows{{{"EEFx", 2, 1},
@@ -245,7 +247,8 @@ std::vector<ThesisEntry> table_5_1() {
     int multiplicity = 0;
     for (unsigned state = 0; state < 16; ++state) {
       bool meant = true;
-      // The object consists of the voxel and its neighbours on the surface to the south and north.
+      // The object consists of the voxel, its neighbours on the surface to the south and north, and the Full
+      // ones of the four neighbours.
       Expression object = Expression(at({3, 3, 3})) | at({3, 2, 3}) | at({3, 4, 3});
       for (std::size_t i = 0; i < 4; ++i) {
         const bool full = (state >> i) & 1;
@@ -265,8 +268,8 @@ std::vector<ThesisEntry> table_5_1() {
   return entries;
 }
 
-/// The possible statuses of a Boolean of two trees, from pairs of trees that are complementary, disjoint,
-/// equal or crossing.
+/// The possible statuses of a Boolean of two trees, found with pairs of trees that are complementary,
+/// disjoint, equal or crossing.
 std::vector<ThesisEntry> table_7_1() {
   voxel::Universe universe;
   universe.depth = 5;
@@ -321,9 +324,10 @@ std::vector<ThesisEntry> thesis_tables() {
 }
 
 const std::vector<ThesisGap>& thesis_gaps() {
-  static const std::vector<ThesisGap> gaps{{"tables 4.2 and 7.2 to 7.6, seconds",
-                                            "the seconds were measured on a Norsk Data ND540 and a Sun 3/60 "
-                                            "of 1989 and are not recomputed; visits, nodes and voxels are"}};
+  static const std::vector<ThesisGap> gaps{
+      {"tables 4.2 and 7.2 to 7.6, seconds",
+       "the thesis measured seconds on a Norsk Data ND540 and a Sun 3/60 "
+       "of 1989, which are not recomputed; visits, nodes and voxels are"}};
   return gaps;
 }
 

@@ -5,7 +5,8 @@
 
 namespace octotomy::verify {
 
-/// An affine map. Skips the products with the constant fourth row of a 4 x 4 matrix.
+/// An affine map of points. Faster than a 4 x 4 matrix, because it skips the products with the constant
+/// fourth row.
 struct Affine {
   glm::dvec3 x, y, z, at;
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A brush slides along a piece that starts at a and extends by the vector d. At the position t of the piece it covers
-// a point p if n.(p - a) - t n.d <= h for each of its faces. Each face limits t on one side, so the brush covers the
-// point if an interval is left. For points of a line, each limit is a half-plane over the position on the line and t.
-// These half-planes leave a polygon, whose extent along the first coordinate is the covered part of the line.
+// A brush slides along a piece that starts at a and extends by the vector d. At the position t of the piece
+// it covers a point p if n.(p - a) - t n.d <= h for each face of the brush. Each face limits t on one side,
+// so the brush covers the point if an interval of t is left. For points of a line, each limit is a half-plane
+// over the position on the line and t. These half-planes leave a polygon, whose extent along the first
+// coordinate is the covered part of the line.
 #include "verify/witness/brush_witness.h"
 
 #include <algorithm>
@@ -18,16 +19,17 @@
 namespace octotomy::verify {
 namespace {
 
-/// Rounding of a vertex, relative to its coordinates; the same as for other shapes of a plan.
+/// Rounding of a vertex, relative to its coordinates. Other shapes of a plan have the same bound.
 constexpr double on_hull = 1e-8;
 
-/// Faces of a brush about the origin: normal . p <= reach_mm.
+/// A face of a brush whose centre is the origin: the points with normal . p <= reach_mm are inside.
 struct Face {
   glm::dvec3 normal;
   double reach_mm;
 };
 
-/// The directions of an icosahedron's corners, and those of the middles of its faces.
+/// Returns 32 faces: their normals are the directions of an icosahedron's corners and of the middles of its
+/// faces.
 std::vector<Face> faces_of_ball(double radius_mm) {
   constexpr double of_ball = 0.9675583399663303;
   std::vector<glm::dvec3> corners;
@@ -40,7 +42,7 @@ std::vector<Face> faces_of_ball(double radius_mm) {
     }
   std::vector<Face> faces;
   for (const glm::dvec3& corner : corners) faces.push_back({corner, of_ball * radius_mm});
-  // Corners of one face are 63.4 degrees apart, others at least 116.6.
+  // Corners of one face are 63.4 degrees apart; other pairs of corners at least 116.6.
   const auto are_beside = [&](std::size_t i, std::size_t j) {
     return glm::dot(corners[i], corners[j]) > 0.0;
   };
@@ -71,7 +73,7 @@ class Piece {
       : faces_(std::move(faces)), from_mm_(from_mm), by_mm_(to_mm - from_mm) {
     double reach_mm = 0.0;
     for (const Face& face : *faces_) reach_mm = std::max(reach_mm, face.reach_mm);
-    // No corner of either brush is farther from the centre than 1.5 times its farthest face.
+    // The corners of both brushes are within 1.5 times the distance of the farthest face from the centre.
     box_ = {glm::min(from_mm, to_mm) - 1.5 * reach_mm, glm::max(from_mm, to_mm) + 1.5 * reach_mm};
   }
 
@@ -83,7 +85,8 @@ class Piece {
     return true;
   }
 
-  /// Whether the brush, grown by `by_mm` at each face, covers the point somewhere on the piece.
+  /// Whether the brush covers the point at some position on the piece. The brush is grown by `by_mm` at each
+  /// face.
   bool covers(const glm::dvec3& p_mm, double by_mm) const {
     double first = 0.0, last = 1.0;
     for (const Face& face : *faces_) {
@@ -99,9 +102,10 @@ class Piece {
     return first <= last;
   }
 
-  /// Number of the hull's faces within `near_mm` of a point on its surface.
+  /// Returns the number of the hull's faces within `near_mm` of a point on the hull's surface.
   int faces_near(const glm::dvec3& p_mm, double near_mm) const {
-    // The position at which the point is deepest: bisection by the slope of the outermost face.
+    // Finds the position on the piece at which the brush holds the point deepest: bisection by the slope of
+    // the outermost face.
     double low = 0.0, high = 1.0;
     for (int step = 0; step < 60; ++step) {
       const double middle = 0.5 * (low + high);
@@ -122,11 +126,11 @@ class Piece {
         ahead = ahead || glm::dot(face.normal, by_mm_) > 0.0;
         behind = behind || glm::dot(face.normal, by_mm_) < 0.0;
       }
-    // Beside the piece, one face of the hull represents two faces of the brush.
+    // Beside the piece, one face of the hull stands for two faces of the brush.
     return std::max(1, is_within && ahead && behind ? count - 1 : count);
   }
 
-  /// The part of a line that the piece covers; none if it is shorter than rounding.
+  /// Returns the part of a line that the piece covers; none if that part is shorter than rounding.
   Span span_on(const Line& line, const Span& within) const {
     using Corner = glm::dvec2;  // position on the line in mm, position on the piece
     std::vector<Corner> polygon{
@@ -165,14 +169,14 @@ class Piece {
 std::vector<Piece> pieces_of(const std::vector<DrawnBrush>& ways) {
   std::vector<Piece> pieces;
   for (const DrawnBrush& way : ways) {
-    if (way.way_mm.empty()) throw voxel::InvalidInput("a path of the brush has no point");
+    if (way.way_mm.empty()) throw voxel::InvalidInput("a path of the brush needs at least one point");
     const auto faces = std::make_shared<const std::vector<Face>>(
         way.disc ? faces_of_disc(*way.disc, way.radius_mm) : faces_of_ball(way.radius_mm));
     if (way.way_mm.size() == 1) pieces.emplace_back(faces, way.way_mm.front(), way.way_mm.front());
     for (std::size_t i = 0; i + 1 < way.way_mm.size(); ++i)
       pieces.emplace_back(faces, way.way_mm[i], way.way_mm[i + 1]);
   }
-  if (pieces.empty()) throw voxel::InvalidInput("the brush has no path");
+  if (pieces.empty()) throw voxel::InvalidInput("the brush needs at least one path");
   return pieces;
 }
 
@@ -182,7 +186,8 @@ bool are_apart(const voxel::Box& a, const voxel::Box& b) {
   return false;
 }
 
-/// The positions on a line between a box's planes; empty, as an inverted span, if it misses the box.
+/// Returns the positions between which a line is inside a box. If the line misses the box, the span is
+/// inverted.
 Span in_box(const Line& line, const voxel::Box& box) {
   Span span{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (int axis = 0; axis < 3; ++axis) {
@@ -204,7 +209,7 @@ LineReading lines_of(const std::shared_ptr<const std::vector<Piece>>& pieces) {
   const auto inside = [pieces](const Line& line, const Spans& within) {
     Spans found;
     for (const Piece& piece : *pieces) {
-      // The box also bounds an unlimited line.
+      // The piece's box also limits a line without ends.
       const Span boxed = in_box(line, piece.box());
       for (const Span& part : within) {
         const Span asked{std::max(part.low_mm, boxed.low_mm), std::min(part.high_mm, boxed.high_mm)};
@@ -227,7 +232,7 @@ LineReading lines_of(const std::shared_ptr<const std::vector<Piece>>& pieces) {
     return std::any_of(pieces->begin(), pieces->end(),
                        [&](const Piece& piece) { return !are_apart(piece.box(), part); });
   };
-  // The tests of their boxes exclude most pieces.
+  // Testing boxes excludes most pieces.
   return {inside, may_meet, box, static_cast<double>(pieces->size())};
 }
 

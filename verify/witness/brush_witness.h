@@ -9,22 +9,22 @@
 
 namespace octotomy::verify {
 
-/// The way of a brush along straight pieces. The brush is a polyhedron of 32 faces with the volume of a ball, or a
-/// prism of 16 sides with the volume of a disc; see witness_of_brush().
+/// The path of a brush, in straight pieces. The brush is a polyhedron of 32 faces with the volume of a ball,
+/// or a prism of 16 sides with the volume of a disc; see witness_of_brush().
 struct DrawnBrush {
   struct Disc {
     glm::dvec3 normal{0.0, 0.0, 1.0};  ///< unit, LPS
-    glm::dvec3 across{1.0, 0.0, 0.0};  ///< unit, at a right angle to `normal`, through a corner of the prism
-    double thickness_mm = 1.0;         ///< half on either side of the way
+    glm::dvec3 across{1.0, 0.0, 0.0};  ///< unit, perpendicular to `normal`, through an edge of the prism
+    double thickness_mm = 1.0;         ///< of the prism, half on either side of the path
   };
-  std::vector<glm::dvec3> way_mm;  ///< LPS; at least one point
+  std::vector<glm::dvec3> way_mm;  ///< points of the path, LPS; at least one
   double radius_mm = 1.0;
   std::optional<Disc> disc = std::nullopt;
 };
 
-/// The points that the brush covers somewhere on one of the ways. Each straight piece is decided by the
-/// interval of positions at which the brush covers the point, so no hull is computed. Throws
-/// std::invalid_argument if there is no way or a way has no point. Cost of a point: 50 ns for each piece
+/// A witness of the points that the brush covers somewhere on one of the paths. For each straight piece it
+/// computes the interval of positions at which the brush covers the point, so it needs no hull. Throws
+/// std::invalid_argument if there is no path or a path has no point. Cost of a point: 50 ns for each piece
 /// whose box holds it.
 Witness witness_of_brush(const std::vector<DrawnBrush>& ways);
 

@@ -16,9 +16,9 @@ double slope(const Cubic& cubic, double at) {
   return (3.0 * cubic[3] * at + 2.0 * cubic[2]) * at + cubic[1];
 }
 
-/// Where the cubic has the value `level`, by Newton's method in a stretch that shrinks around the crossing. A step
-/// that leaves the stretch goes to its middle instead. Precondition: the values at the stretch's ends lie on
-/// different sides of `level`.
+/// Returns the position at which the cubic has the value `level`: Newton's method in a stretch that shrinks
+/// around the crossing. A step that would leave the stretch goes to its middle instead. Precondition: the
+/// values at the ends of the stretch lie on different sides of `level`.
 double crossing(const Cubic& cubic, double level, Share stretch) {
   constexpr int most_steps = 200;
   constexpr double close = 1e-15;
@@ -64,7 +64,8 @@ Cubic cubic_along(const CellCorners& corners, const glm::dvec3& from, const glm:
 }
 
 Shares shares_within(const Cubic& cubic, double low, double high) {
-  // The slope is cubic[1] + 2 h s + a s^2. Neither root loses digits by cancellation.
+  // The slope of the cubic is cubic[1] + 2 h s + a s^2. The formula of its roots loses no digits by
+  // cancellation.
   std::array<double, 4> ends{0.0};
   std::size_t last = 0;
   const double h = cubic[2], a = 3.0 * cubic[3];

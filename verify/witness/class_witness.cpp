@@ -13,7 +13,7 @@
 namespace octotomy::verify {
 namespace {
 
-/// The class of each sample of a scan, computed on request.
+/// Computes the class of single samples of a scan, each time that it is read.
 class Classed {
  public:
   Classed(std::shared_ptr<const voxel::Scene> scan, ClassedBy by)
@@ -22,7 +22,7 @@ class Classed {
         dims_(scan_->lattice.dims),
         voxel_from_lps_(glm::inverse(scan_->lattice.lps_from_voxel)) {
     if (by_.meant >= by_.centres.size())
-      throw voxel::InvalidInput("the described class's number is beyond the last class");
+      throw voxel::InvalidInput("the number of the described class is larger than that of the last class");
   }
 
   AllowedSides allowed(const glm::dvec3& p_mm) const {
@@ -46,7 +46,7 @@ class Classed {
       return {false, true};
     const double density = value(sample);
     if (is_padding(density) || std::isnan(density)) return {false, true};
-    // The slope along the three edges of the voxel determines the gradient in millimetres.
+    // The sample's slopes along the three edges of a voxel determine its gradient in millimetres.
     glm::dvec3 rise(0.0);
     for (int axis = 0; axis < 3; ++axis) {
       glm::ivec3 one(0);

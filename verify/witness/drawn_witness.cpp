@@ -19,11 +19,11 @@
 namespace octotomy::verify {
 namespace {
 
-/// Largest distance of a vertex from its plane of the plan after several Booleans and motions, relative to
+/// Largest distance of a vertex from its plane in the plan, after several Booleans and motions, relative to
 /// its coordinates.
 constexpr double on_plane = 1e-8;
 
-/// Right and up of a view's picture, from its name or its two angles.
+/// Returns the directions right and up in the picture of a view. The view is a name or two angles.
 std::array<glm::dvec3, 2> picture_axes(const std::string& view) {
   const glm::dvec3 left(1, 0, 0), back(0, 1, 0), head(0, 0, 1);
   if (view == "anterior") return {left, head};
@@ -38,13 +38,13 @@ std::array<glm::dvec3, 2> picture_axes(const std::string& view) {
     throw std::invalid_argument("no view '" + view + "'");
   azimuth *= std::numbers::pi / 180.0;
   elevation *= std::numbers::pi / 180.0;
-  // The directions right and up for an observer on the unit sphere who looks towards the centre.
+  // Right and up for an observer on the unit sphere who looks towards the centre.
   const glm::dvec3 level = std::sin(azimuth) * left - std::cos(azimuth) * back;
   const glm::dvec3 right = std::cos(azimuth) * left + std::sin(azimuth) * back;
   return {right, std::cos(elevation) * head - std::sin(elevation) * level};
 }
 
-/// The polygons of one region, with their edges sorted into rows of the picture.
+/// One region: its polygons, with their edges sorted into rows of the picture.
 class RegionWitness {
  public:
   explicit RegionWitness(const DrawnRegion& region) : axes_(picture_axes(region.view)) {
@@ -56,7 +56,7 @@ class RegionWitness {
       high_ = std::max({high_, a.y, b.y});
       reach_mm_ = std::max({reach_mm_, glm::length(a), glm::length(b)});
     }
-    // Rows much lower than the slack would all hold the same edges.
+    // Rows much lower than most_slack_mm would all hold the same edges.
     const double most_rows = high_ > low_ ? 4.0 * (high_ - low_) / most_slack_mm : 0.0;
     rows_.resize(std::max<std::size_t>(
         1, static_cast<std::size_t>(std::min(static_cast<double>(edges_.size()), most_rows))));
@@ -79,7 +79,8 @@ class RegionWitness {
       const double squared = glm::dot(along, along);
       const double part = squared > 0.0 ? std::clamp(glm::dot(to, along) / squared, 0.0, 1.0) : 0.0;
       if (glm::distance(to, part * along) <= near) ++sides;
-      // The edge crosses the ray towards growing x; its ends count once.
+      // Tests whether the edge crosses the ray towards growing x. A vertex on the ray belongs to one of its
+      // two edges.
       if ((a.y <= p.y) == (b.y <= p.y)) continue;
       const double side = along.x * to.y - along.y * to.x;
       if ((side > 0.0) == (b.y > a.y)) inside = !inside;
@@ -89,7 +90,7 @@ class RegionWitness {
   }
 
  private:
-  /// An edge is stored in all rows within this distance.
+  /// An edge is stored in all rows within this distance of it. No slack may be larger.
   static constexpr double most_slack_mm = 0.25;
 
   double near_mm(double p_mm) const { return on_plane * (reach_mm_ + p_mm); }
@@ -104,12 +105,12 @@ class RegionWitness {
   double low_ = std::numeric_limits<double>::infinity(), high_ = -low_, reach_mm_ = 0.0;
 };
 
-/// A straight piece of a blade. `ends` are the planes at which the blade ends, `joints` those at which the
-/// next piece begins.
+/// A straight piece of a blade. At the planes in `ends` the blade ends; at those in `joints` the next piece
+/// begins.
 struct BladePiece {
   std::vector<HalfSpace> ends, joints;
 
-  /// The largest distance beyond one of the planes, in millimetres; negative inside all of them.
+  /// The largest distance, in millimetres, of a point beyond one of the planes; negative inside all of them.
   static double beyond_mm(const std::vector<HalfSpace>& planes, const glm::dvec3& p_mm) {
     double most = -std::numeric_limits<double>::infinity();
     for (const HalfSpace& plane : planes)
@@ -128,7 +129,8 @@ std::vector<BladePiece> pieces_of(const DrawnBlade& blade) {
     if (line.empty() || glm::distance(flat, line.back()) > 0.0) line.push_back(flat);
   }
   if (line.size() < 2)
-    throw voxel::InvalidInput("a blade's line needs two points apart, seen along its direction");
+    throw voxel::InvalidInput(
+        "a blade's line needs two points that are apart when seen along the blade's direction");
   std::vector<glm::dvec3> along;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) along.push_back(glm::normalize(line[i + 1] - line[i]));
   std::vector<BladePiece> pieces(along.size());

@@ -20,18 +20,18 @@ namespace {
 
 constexpr std::uint8_t may_belong = 1, surely_belongs = 2;
 
-/// The samples of a scan, with the set of reached samples.
+/// The samples of a scan, each with two marks: it surely belongs to the region, and it may belong to it.
 class Grown {
  public:
   Grown(const voxel::Scene& scan, const GrownFrom& from)
       : dims_(scan.lattice.dims), voxel_from_lps_(glm::inverse(scan.lattice.lps_from_voxel)) {
-    if (from.seeds_mm.empty()) throw voxel::InvalidInput("nothing grows without a seed");
+    if (from.seeds_mm.empty()) throw voxel::InvalidInput("growing a region needs at least one seed");
     if (from.neighbours != 6 && from.neighbours != 18 && from.neighbours != 26)
-      throw voxel::InvalidInput("neighbours are 6, 18 or 26");
+      throw voxel::InvalidInput("the number of neighbours must be 6, 18 or 26");
     std::vector<glm::ivec3> seeds;
     for (const glm::dvec3& p_mm : from.seeds_mm) {
       const glm::ivec3 seed(glm::floor(place_of(p_mm) + 0.5));
-      if (!has(seed)) throw voxel::InvalidInput("a seed lies beyond the scan");
+      if (!has(seed)) throw voxel::InvalidInput("a seed of the region lies outside the scan");
       seeds.push_back(seed);
     }
     std::visit([&](const auto& samples) { grow(samples, scan, from, seeds); }, scan.samples);
@@ -82,7 +82,8 @@ class Grown {
     flood(seeds, from.neighbours, surely_belongs, [&](std::size_t i) { return belongs(i, -from.rounding); });
   }
 
-  /// Every round compares all neighbours of the region with its mean, also those that an earlier one refused.
+  /// Grows in rounds. Each round compares all neighbours of the region with its mean, also those that an
+  /// earlier round refused.
   template <typename Samples>
   void grow_by_mean(const Samples& samples, const voxel::Scene& scan, const GrownFrom& from,
                     const std::vector<glm::ivec3>& seeds) {

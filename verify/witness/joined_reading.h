@@ -3,14 +3,14 @@
 
 #include "verify/witness/reading.h"
 
-// Combines the readings of several operands into the reading of a Boolean.
+// Computes the reading of a Boolean from the readings of its operands.
 namespace octotomy::verify {
 
 inline AllowedSides negated(const AllowedSides& a) {
   return {a.out, a.in, a.near, a.chosen};
 }
 
-/// Whether only choices of parts leave the side open: every open operand is open by a choice.
+/// Whether the result is open only by choices of parts: a choice opens every operand that is open.
 inline bool by_choice(const AllowedSides& a, const AllowedSides& b) {
   return (a.chosen || b.chosen) && (a.chosen || !a.is_open()) && (b.chosen || !b.is_open());
 }
@@ -20,7 +20,7 @@ inline AllowedSides conjunction(const AllowedSides& a, const AllowedSides& b) {
   return {in, out, in && out && ((a.near && b.in) || (b.near && a.in)), in && out && by_choice(a, b)};
 }
 
-/// Has a surface wherever one of the operands has one.
+/// The sides of an exclusive or. It has a surface wherever one of the operands has one.
 inline AllowedSides exclusive(const AllowedSides& a, const AllowedSides& b) {
   return {(a.in && b.out) || (a.out && b.in), (a.in && b.in) || (a.out && b.out), a.near || b.near,
           by_choice(a, b)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The weights come from elimination with a choice of pivots, because neither kernel solves them like that.
+// The weights are computed by elimination with a choice of pivots. Neither kernel solves the system in this way.
 #include "verify/witness/landmark_motion.h"
 
 #include <array>
@@ -17,7 +17,8 @@ double weight_at_distance(double distance_mm, double reach_mm) {
   return left > 0.0 ? left * left * left * left * (5.0 - 4.0 * left) : 0.0;
 }
 
-/// Solves rows of a square matrix, each followed by its right side. Throws std::invalid_argument if it has no inverse.
+/// Solves a system of linear equations by elimination. `right` has the right side of each row. Throws
+/// std::invalid_argument if the matrix has no inverse.
 std::vector<glm::dvec3> solved(std::vector<std::vector<double>> rows, std::vector<glm::dvec3> right) {
   const std::size_t count = rows.size();
   for (std::size_t pivot = 0; pivot < count; ++pivot) {
@@ -45,7 +46,7 @@ LandmarkMotion::LandmarkMotion(std::vector<glm::dvec3> landmarks_mm, std::vector
                                double reach_mm)
     : landmarks_mm_(std::move(landmarks_mm)), reach_mm_(reach_mm) {
   if (landmarks_mm_.empty() || displacement_mm.size() != landmarks_mm_.size())
-    throw std::invalid_argument("a motion of landmarks needs one displacement for each, not " +
+    throw std::invalid_argument("a motion of landmarks needs one displacement for each landmark, not " +
                                 std::to_string(displacement_mm.size()) + " of " +
                                 std::to_string(landmarks_mm_.size()));
   std::vector<std::vector<double>> rows;
@@ -70,7 +71,7 @@ std::optional<glm::dvec3> LandmarkMotion::origin_mm(const glm::dvec3& p_mm,
 }
 
 ReshapedSurface surface_warped(const brep::Triangles& still, const LandmarkMotion& motion) {
-  // Weights of near landmarks are large and of opposite signs: their sum loses up to four digits.
+  // Landmarks near each other have large weights of opposite signs, whose sum loses up to four digits.
   return surface_moved(still, motion, 64e4, "64e4 eps |p|: the same displacements by other code");
 }
 

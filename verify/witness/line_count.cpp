@@ -14,9 +14,9 @@ namespace {
 
 constexpr std::size_t directions = 12;
 
-/// Directions spread evenly over a hemisphere by the golden angle, then turned at random.
+/// Returns directions that are spread evenly over a hemisphere by the golden angle, then turned at random.
 std::array<glm::dvec3, directions> spread_directions(Chance& chance) {
-  // A turn by a random unit quaternion (Shoemake 1992).
+  // The turn is a random unit quaternion (Shoemake 1992).
   const double s = chance.between(0.0, 1.0), a = 2.0 * std::numbers::pi * chance.between(0.0, 1.0),
                b = 2.0 * std::numbers::pi * chance.between(0.0, 1.0);
   const double x = std::sqrt(1.0 - s) * std::sin(a), y = std::sqrt(1.0 - s) * std::cos(a),
@@ -34,7 +34,7 @@ std::array<glm::dvec3, directions> spread_directions(Chance& chance) {
   return made;
 }
 
-/// The projection of a box along a direction, and the lines through it.
+/// Parallel lines through a box: its projection along their direction.
 struct Bundle {
   glm::dvec3 along, right, up;
   glm::dvec3 low{0.0};  ///< in coordinates right, up, along
@@ -72,7 +72,7 @@ Bundle bundle_of(const voxel::Box& box, const glm::dvec3& along, double lines, C
   return made;
 }
 
-/// Length inside the object and number of crossings of one line.
+/// The length of one line inside the object, and the number of its crossings of the surface.
 struct Reached {
   double length_mm = 0.0;
   std::uint64_t crossings = 0;

@@ -29,8 +29,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const voxel::Box everywhere{glm::dvec3(-infinity), glm::dvec3(infinity)};
 
-/// Appends a span, or extends the last span if both touch. Precondition: it begins no sooner than the last
-/// span.
+/// Appends a span, or extends the last span if the two touch. Precondition: the new span begins no sooner
+/// than the last one.
 void append(Spans& spans, double low_mm, double high_mm) {
   if (!(high_mm > low_mm)) return;
   constexpr double touching_mm = 1e-9;
@@ -40,7 +40,7 @@ void append(Spans& spans, double low_mm, double high_mm) {
     spans.push_back({low_mm, high_mm});
 }
 
-/// The parts of `within` between two positions on the line.
+/// Returns the parts of `within` between two positions on the line.
 Spans clipped(const Spans& within, double low_mm, double high_mm) {
   Spans made;
   for (const Span& span : within)
@@ -72,7 +72,8 @@ Spans joined(const Spans& a, const Spans& b) {
   return made;
 }
 
-/// Start and end of the part of a line on the inner side of all planes. Start exceeds end if there is none.
+/// Returns start and end of the part of a line on the inner side of all planes. Start exceeds end if there is
+/// no such part.
 template <typename Sides>
 std::pair<double, double> between(const Line& line, const Sides& sides) {
   double low_mm = -infinity, high_mm = infinity;
@@ -118,7 +119,7 @@ voxel::Box moved_box(const voxel::Box& box, const glm::dmat4& by) {
   return made;
 }
 
-/// Computes the parts of lines inside the window of a scan.
+/// Computes the parts of lines on which a scan's interpolant lies in a window.
 template <typename Sample>
 class WindowAlong {
  public:
@@ -175,7 +176,7 @@ class WindowAlong {
                 static_cast<std::size_t>(dims_.y) * static_cast<std::size_t>(z));
   }
 
-  /// The range of a brick's samples, including the first samples of the next bricks.
+  /// The range of the samples of a brick, with the first samples of the bricks after it.
   struct Range {
     Sample least = std::numeric_limits<Sample>::max(), most = std::numeric_limits<Sample>::lowest();
     bool is_finite = true;
@@ -187,7 +188,7 @@ class WindowAlong {
     }
   };
 
-  /// Sets the states of one layer of bricks.
+  /// Computes the states of one layer of bricks.
   void set_states(int z) {
     std::vector<Range> layer(static_cast<std::size_t>(bricks_.x) * static_cast<std::size_t>(bricks_.y));
     for (int slice = z * brick; slice <= std::min((z + 1) * brick, dims_.z - 1); ++slice)
@@ -230,23 +231,23 @@ class WindowAlong {
     return b;
   }
 
-  /// A line in samples: u0 + at_mm * du.
+  /// A line in units of samples: u0 + at_mm * du.
   struct Course {
     glm::dvec3 u0, du;
     Span ends_mm;  ///< the part of the line that is read: up to half a sample beyond the outermost samples
 
-    /// The position at which the line crosses a plane across an axis.
+    /// The position at which the line crosses a plane of samples perpendicular to an axis.
     double crosses_mm(int axis, int plane) const { return (plane - u0[axis]) / du[axis]; }
   };
 
-  /// The number of the cell along an axis at a position, -1 before the first sample and dims - 1 behind the last.
-  /// A plane between two cells belongs to the cell that the line enters there.
+  /// The number, along an axis, of the cell at a position: -1 before the first sample, and dims - 1 behind
+  /// the last one. A plane between two cells belongs to the cell that the line enters there.
   int cell_at(const Course& course, int axis, double at_mm) const {
     const int most = dims_[axis] - 1;
     const double u = std::clamp(course.u0[axis] + at_mm * course.du[axis], -1.0, most + 0.5);
     int cell = static_cast<int>(std::floor(u));
-    // The position above is rounded differently from the crossings of planes, which decide in which cell it
-    // lies.
+    // `u` is rounded differently from the crossings of planes, so the cell is corrected until it agrees with
+    // them.
     if (course.du[axis] > 0.0) {
       while (cell < most && course.crosses_mm(axis, cell + 1) <= at_mm) ++cell;
       while (cell >= 0 && course.crosses_mm(axis, cell) > at_mm) --cell;
@@ -257,8 +258,8 @@ class WindowAlong {
     return cell;
   }
 
-  /// Where the line enters and leaves the layer of cells that have this number along an axis. The first and the last
-  /// layer extend beyond the samples without end.
+  /// Returns the positions at which the line enters and leaves the layer of cells with this number along an
+  /// axis. The first and the last layer extend beyond the samples without end.
   Span passes_mm(const Course& course, int axis, int cell) const {
     if (course.du[axis] == 0.0) return {-infinity, infinity};
     Span passed{cell < 0 ? -infinity : course.crosses_mm(axis, cell),
@@ -286,7 +287,8 @@ class WindowAlong {
 
   bool is_padding(double value) const { return scan_->padding && value == *scan_->padding; }
 
-  /// A line's way through a cell: its ends on the line, and in shares of the cell's edges.
+  /// A line's way through a cell: the positions of its ends on the line, and its end points in shares of the
+  /// cell's edges.
   struct Way {
     Span ends_mm;
     glm::dvec3 from, to;
@@ -299,7 +301,7 @@ class WindowAlong {
     }
   };
 
-  /// Beside padding there is no interpolation, and the nearest sample's value counts; padding is outside.
+  /// In a cell with padding there is no interpolation. The nearest sample's value counts; padding is outside.
   void add_nearest(const CellCorners& corners, const Way& way, const Span& part, Spans& inside) const {
     std::array<double, 5> ends{0.0, 1.0, 1.0, 1.0, 1.0};
     for (int axis = 0; axis < 3; ++axis) {
@@ -315,7 +317,8 @@ class WindowAlong {
     }
   }
 
-  /// Adds to `inside` where a line, within a cell and `part`, reads values in the window.
+  /// Adds to `inside` the stretch of a line, within a cell and within `part`, on which values are in the
+  /// window.
   void add_cell(const Course& course, const glm::ivec3& cell, const Span& ends_mm, const Span& part,
                 Spans& inside) const {
     const glm::ivec3 first = glm::clamp(cell, glm::ivec3(0), glm::max(dims_ - 2, 0)),
@@ -341,7 +344,7 @@ class WindowAlong {
         return;
       }
     }
-    // Beyond the outermost samples the clamped values go on.
+    // Beyond the outermost samples the interpolant has the value at the nearest point within them.
     const glm::dvec3 origin(first);
     const Way way{ends_mm, glm::clamp(course.u0 + ends_mm.low_mm * course.du - origin, 0.0, 1.0),
                   glm::clamp(course.u0 + ends_mm.high_mm * course.du - origin, 0.0, 1.0)};
@@ -350,7 +353,7 @@ class WindowAlong {
       way.add(share, part, inside);
   }
 
-  /// Reads a part of a line that lies in one brick, cell by cell.
+  /// Reads, cell by cell, a part of a line that lies in one brick.
   void follow_cells(const Course& course, glm::ivec3 cell, const Span& part, Spans& inside) const {
     std::array<Span, 3> passed;
     for (int axis = 0; axis < 3; ++axis)
@@ -400,12 +403,12 @@ LineReading window_reading(std::shared_ptr<const voxel::Scene> scan, double low,
           [window](const voxel::Box& part) { return window->may_meet(part); }, box, 100.0};
 }
 
-/// The cost of two hundred windows. An expression that costs more has no reading, for instance one whose size a
-/// plan's steps double repeatedly. A line would take seconds, and the recursion would be as deep as the number of
-/// operands.
+/// The cost of two hundred windows. An expression that costs more has no reading, for instance if steps of
+/// the plan double its size repeatedly. Reading a line would take seconds, and the recursion would be as deep
+/// as the number of operands.
 constexpr double most_cost = 2e4;
 
-/// The more expensive operand is read last, and only where the answer still depends on it.
+/// Reads the cheaper operand first, and the other one only where the answer still depends on it.
 LineReading intersection(LineReading a, LineReading b) {
   if (!a || !b) return {};
   if (b.cost < a.cost) std::swap(a, b);
@@ -459,8 +462,8 @@ LineReading lines_in_region(const glm::dvec3& right, const glm::dvec3& up,
   const auto inside = [right, up, edges](const Line& line, const Spans& within) {
     const glm::dvec2 from(glm::dot(line.from_mm, right), glm::dot(line.from_mm, up));
     const glm::dvec2 along(glm::dot(line.along, right), glm::dot(line.along, up));
-    // Positions at which the projected line crosses edges, also behind its start. By the even-odd rule each
-    // pair of successive crossings bounds an inside part.
+    // The positions at which the projected line crosses edges, also before the line's start. By the even-odd
+    // rule the part between the first and the second crossing is inside, and so on.
     const glm::dvec2 across(-along.y, along.x);
     std::vector<double> at_mm;
     bool is_point = glm::dot(along, along) < 1e-24, holds_point = false;

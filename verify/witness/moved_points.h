@@ -17,7 +17,8 @@
 #include "verify/witness/reading.h"
 #include "verify/witness/reshaped_witness.h"
 
-// Surfaces and witnesses under a motion of points that has displacement_mm() and origin_mm().
+// Surfaces and witnesses of objects whose points move. The type `Motion` must have displacement_mm() and
+// origin_mm().
 //
 // Flat triangles. Along a triangle's side the field bends where the side passes from one element to the next, or
 // everywhere if the field is smooth. If it bends at one place, one of the points at a quarter, a half and three quarters
@@ -25,7 +26,8 @@
 // near its middle. Twice the distance at these points is allowed, for sides that pass through several elements.
 namespace octotomy::verify {
 
-/// The origin x of a point p under displacements u: x = p - u(x), repeated until x rests. None if that does not converge.
+/// The point that displacements u move to p: x = p - u(x), repeated until x no longer changes. None if the
+/// iteration does not converge.
 template <typename Motion>
 std::optional<glm::dvec3> origin_under(const Motion& motion, const glm::dvec3& p_mm,
                                        const glm::dvec3& guess_mm) {
@@ -40,8 +42,8 @@ std::optional<glm::dvec3> origin_under(const Motion& motion, const glm::dvec3& p
   return std::nullopt;
 }
 
-/// The largest error of triangles that stay flat between moved points, measured after moving their points
-/// back.
+/// The largest distance between triangles that stay flat between moved points and the moved surface. It is
+/// measured at points that are moved back.
 template <typename Motion>
 double bent_mm(const brep::Triangles& still, const Motion& motion) {
   constexpr double bends = 2.0;
@@ -73,7 +75,8 @@ double bent_mm(const brep::Triangles& still, const Motion& motion) {
   return off_mm.empty() ? 0.0 : bends * *std::max_element(off_mm.begin(), off_mm.end());
 }
 
-/// A surface whose points move. `roundings` of a point's coordinates may differ between two correct programs.
+/// The expected surface of an object whose points move. `roundings`: number of roundings by which the
+/// coordinates of two correct programs may differ.
 template <typename Motion>
 ReshapedSurface surface_moved(const brep::Triangles& still, const Motion& motion, double roundings,
                               const std::string& formula) {
@@ -86,8 +89,8 @@ ReshapedSurface surface_moved(const brep::Triangles& still, const Motion& motion
           formula};
 }
 
-/// At a point, the still object's witness at the origin of that point, loosened by bent_mm(). Any answer is allowed where
-/// a point has no origin. Precondition: `still` is not empty.
+/// A witness of a moved object: at a point, the still object's witness at the origin of the point, loosened
+/// by bent_mm(). Any answer is allowed where a point has no origin. Precondition: `still` is not empty.
 template <typename Motion>
 Witness witness_of_moved_points(Witness still, const brep::Triangles& still_surface,
                                 std::shared_ptr<const Motion> motion) {

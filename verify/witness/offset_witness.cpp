@@ -22,9 +22,10 @@
 //           place, so no surface is farther from both kinds of places than allowed. There the mesh kernel must
 //           have the wall, and the voxel kernel, which resampled it away, may answer either.
 // On the mean over the surface (offset_allowance_mm):
-//   voxels  On a plane a point is within D / sqrt(12) of a point that is measured to, on the mean of squares
-//           within a third of that squared: D^2 / 36. That lengthens d by D^2 / 72 (1 / d + 1 / r), r the
-//           radius with which the operand bends; three voxels at least, below which nothing is resolved.
+//   voxels  On a plane, the nearest point to which the kernel measures is at most D / sqrt(12) away. The mean
+//           of the squared distance is a third of that squared: D^2 / 36. That lengthens d by
+//           D^2 / 72 (1 / d + 1 / r), r the operand's radius of curvature. r is three voxels at least, because
+//           voxels do not resolve smaller radii.
 //           If only whole voxels are known, an offset follows those that stick out farthest, up to h / 2.
 //   mesh    Chords: a third of the kernel's tolerance, c^2 / (4 b), and the two shares of c above.
 //   edges   Across an operand's edge with an exterior angle t the offset is a sector of a ball. A cell cuts
@@ -64,7 +65,7 @@ constexpr double mesh_error = 1.0 + 0.02 + 0.001;  ///< of a cell
 constexpr double sharp_rad = 0.5;
 constexpr int steps_a_voxel = 8;
 
-constexpr double thin_share = 5.0 / 6.0;  ///< of the witness's own error
+constexpr double thin_share = 5.0 / 6.0;  ///< of own_error_mm()
 
 double diagonal_of(const voxel::Universe& universe) {
   return glm::length(universe.lattice().spacing_mm());
@@ -74,7 +75,7 @@ double longest_edge_of(const voxel::Universe& universe) {
   return std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
 }
 
-/// How far a point of the surface is from the nearest place at a voxel's face.
+/// Largest distance of a point of the surface from the nearest place at a voxel's face.
 double own_error_mm(const voxel::Universe& universe) {
   return cut_corner * diagonal_of(universe) + longest_edge_of(universe) / (2 * steps_a_voxel);
 }
@@ -83,7 +84,7 @@ double whole_voxels_mm(const OffsetOperand& operand) {
   return operand.is_whole_voxels ? 0.5 * longest_edge_of(operand.voxels.universe()) : 0.0;
 }
 
-/// Points in the cells of a grid.
+/// Points, sorted into the cells of a grid.
 class PointGrid {
  public:
   PointGrid(std::vector<glm::dvec3> points_mm, double cell_mm) : cell_mm_(cell_mm) {
@@ -93,7 +94,7 @@ class PointGrid {
       low_ = glm::min(low_, p);
       high = glm::max(high, p);
     }
-    // The edge is doubled until there are not many more cells than points, which bounds memory.
+    // The edge of the cells is doubled until there are not many more cells than points, which bounds memory.
     const auto cells_at = [&](double edge_mm) {
       const glm::dvec3 cells = glm::floor((high - low_) / edge_mm) + 1.0;
       return cells.x * cells.y * cells.z;
@@ -142,8 +143,8 @@ class PointGrid {
   std::vector<glm::dvec3> points_;
 };
 
-/// Possible positions of the operand's surface: on each edge one place inside, one outside, and those
-/// between.
+/// Possible positions of the operand's surface: for each edge between voxel centres a place certainly inside,
+/// a place certainly outside, and the places between them.
 struct SurfacePlaces {
   std::vector<glm::dvec3> in_mm, out_mm, between_mm;
 
@@ -154,13 +155,14 @@ struct SurfacePlaces {
   }
 };
 
-/// The answers that both kernels may have for the operand at a point.
+/// The sides that at least one kernel may have for the operand at a point.
 AllowedSides common_sides(const Reading& reading) {
   return {reading.voxel.in || reading.mesh.in, reading.voxel.out || reading.mesh.out,
           reading.voxel.near || reading.mesh.near};
 }
 
-/// The place of the surface between the two voxels of a face, and up to a voxel farther on either side.
+/// Returns the places of the surface on the edge between the two voxels of a face, and up to a voxel farther
+/// on either side.
 SurfacePlaces places_at(const voxel::VoxelFace& face, const OffsetOperand& operand,
                         const voxel::Octree& digitised) {
   const voxel::Lattice lattice = operand.voxels.universe().lattice();
@@ -187,7 +189,7 @@ SurfacePlaces places_at(const voxel::VoxelFace& face, const OffsetOperand& opera
 
 std::vector<voxel::VoxelFace> faces_of(const OffsetOperand& operand, const voxel::Octree& digitised) {
   std::vector<voxel::VoxelFace> faces = voxel::voxel_boundary(operand.voxels);
-  // The mesh's faces count where the voxels have none.
+  // Faces of the digitised mesh count where the voxels have no face.
   for (const voxel::VoxelFace& face : voxel::voxel_boundary(digitised)) {
     glm::ivec3 beyond = face.voxel;
     beyond[face.axis] += face.side;
@@ -210,8 +212,8 @@ SurfacePlaces places_of(const OffsetOperand& operand) {
   return all;
 }
 
-/// Calls `take` with the centroids of equal parts of a triangle, whose edges are at most `edge_mm`. A search of the
-/// surface starts at each.
+/// Divides a triangle into equal parts whose edges are at most `edge_mm`, and calls `take` with the centroid
+/// of each. A search for the surface starts there.
 template <typename Take>
 void for_parts(const std::array<glm::dvec3, 3>& corners_mm, double edge_mm, const Take& take) {
   const auto& [p, q, r] = corners_mm;
@@ -225,8 +227,8 @@ void for_parts(const std::array<glm::dvec3, 3>& corners_mm, double edge_mm, cons
       }
 }
 
-/// The positions at which the operand's witness has the surface, near a point of the operand's mesh, along
-/// its outward normal.
+/// Searches the surface of the operand's witness along the outward normal of the operand's mesh, near a point
+/// of the mesh. Returns the positions of the surface; empty if there is none within a voxel.
 SurfacePlaces places_near(const glm::dvec3& p_mm, const glm::dvec3& normal, double step_mm,
                           const Witness& witness) {
   const auto at = [&](int step) { return p_mm + step * step_mm * normal; };
@@ -234,7 +236,7 @@ SurfacePlaces places_near(const glm::dvec3& p_mm, const glm::dvec3& normal, doub
   int in = 0, out = 0;
   while (in > -steps_a_voxel && allowed(in).in && allowed(in).out) --in;
   while (out < steps_a_voxel && allowed(out).in && allowed(out).out) ++out;
-  // If a point is certainly on one side, the surface lies on its other side.
+  // If the point is certainly outside, the surface lies inward of it; if it is certainly inside, outward.
   if (allowed(0) == certainly_out)
     while (in > -steps_a_voxel && allowed(in).out) --in;
   if (allowed(0) == certainly_in)
@@ -250,7 +252,8 @@ SurfacePlaces places_near(const glm::dvec3& p_mm, const glm::dvec3& normal, doub
   return places;
 }
 
-/// The walls and gaps that pass between the voxels' centres, away from the places at voxels' faces.
+/// Returns the places of walls and gaps that pass between the voxels' centres and are not near places at
+/// voxels' faces.
 SurfacePlaces thin_places_of(const OffsetOperand& operand, const std::vector<glm::dvec3>& between_mm) {
   const voxel::Universe& universe = operand.voxels.universe();
   const voxel::Box world = voxel::bounds(universe.lattice());
@@ -266,7 +269,8 @@ SurfacePlaces thin_places_of(const OffsetOperand& operand, const std::vector<glm
       const glm::dvec3 across = glm::cross(corners_mm[1] - corners_mm[0], corners_mm[2] - corners_mm[0]);
       const double length = glm::length(across);
       if (!(length > 0.0)) continue;
-      // Each point of a part lies within 2/3 of the part's longest edge of the part's centroid.
+      // Each point of a part is within 2/3 of the part's longest edge of the part's centroid. So the parts
+      // reach all points within the remaining share of the error.
       for_parts(corners_mm, 1.5 * (1.0 - thin_share) * error_mm, [&](const glm::dvec3& p_mm) {
         const bool is_here =
             glm::all(glm::greaterThan(p_mm, world.low_mm)) && glm::all(glm::lessThan(p_mm, world.high_mm));
@@ -321,8 +325,7 @@ class OffsetWitness {
     return (is_centre ? cut_corner : cut_corner + 0.5) * diagonal_mm_ + whole_voxels_mm_;
   }
 
-  /// The allowed sides by the places at voxels' faces. None: the surface of no such place is moved to this
-  /// point.
+  /// The sides allowed by the places at voxels' faces. None: no such place moves the surface to this point.
   std::optional<AllowedSides> allowed(const AllowedSides& own, const glm::dvec3& p_mm,
                                       double error_mm) const {
     const AllowedSides beyond = by_mm_ > 0.0 ? certainly_in : certainly_out;
@@ -336,7 +339,7 @@ class OffsetWitness {
     return thin_between_.has_within(p_mm, std::abs(by_mm_) + error_mm + thin_error_mm_);
   }
 
-  /// If a wall or gap passes between voxels' centres, the voxel kernel cannot have its offset.
+  /// If a wall or gap passes between voxels' centres, the voxel kernel cannot compute its offset.
   AllowedSides voxel_sides(const AllowedSides& own, const glm::dvec3& p_mm, double error_mm) const {
     if (const std::optional<AllowedSides> known = allowed(own, p_mm, error_mm)) return *known;
     return is_near_thin(p_mm, error_mm) ? either_side : own;
@@ -356,7 +359,7 @@ class OffsetWitness {
   PointGrid in_, out_, between_, thin_in_, thin_out_, thin_between_;
 };
 
-/// Half the sum of length times exterior angle over the sharp edges.
+/// Half the sum of length times exterior angle over the mesh's sharp edges.
 double sharp_half_sum_mm(const brep::Triangles& mesh) {
   struct Side {
     std::uint64_t key;
@@ -389,7 +392,7 @@ double sharp_half_sum_mm(const brep::Triangles& mesh) {
   return sum_mm;
 }
 
-/// Area of the operand's mesh that passes between voxels' centres.
+/// Area of those triangles of the operand's mesh that pass between voxels' centres.
 double thin_mm2(const OffsetOperand& operand) {
   const double diagonal_mm = diagonal_of(operand.voxels.universe());
   const voxel::Lattice lattice = operand.voxels.universe().lattice();

@@ -7,8 +7,8 @@
 
 namespace octotomy::verify {
 
-/// Names and operators of an expression in postfix order. Operators are | ^ & - ~, listed from the weakest
-/// binding. Throws std::invalid_argument for any other text.
+/// Returns the names and operators of an expression in postfix order. Operators are | ^ & - ~, listed from
+/// the weakest binding. Throws std::invalid_argument if the text is no expression.
 std::vector<std::string> postfix(std::string_view text);
 
 }  // namespace octotomy::verify

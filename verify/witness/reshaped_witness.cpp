@@ -38,7 +38,8 @@ std::vector<std::vector<std::uint32_t>> neighbours_of(const brep::Triangles& tri
   return neighbours;
 }
 
-/// Copies share the computed surface. If a box cuts the object, `cut` reads its points.
+/// Computes the surface at the first use; copies share it. If a box cuts the object, `cut` reads the box's
+/// points.
 class ReshapedReader {
  public:
   explicit ReshapedReader(std::function<Reshaped()> make) : state_(std::make_shared<State>()) {
@@ -49,8 +50,8 @@ class ReshapedReader {
 
   const Reshaped& made() const {
     std::call_once(state_->once, [this] {
-      // While this thread waits for its own tasks it must not run another one, which might wait here as
-      // well.
+      // Isolated: while this thread waits for its own tasks it must not run another task, which might wait
+      // here as well.
       tbb::this_task_arena::isolate([this] { state_->made.emplace(state_->make()); });
       state_->make = nullptr;
     });
@@ -61,8 +62,7 @@ class ReshapedReader {
     if (cut_) return cut_(p_mm, slack_mm, asked);
     const Reshaped& by = made();
     if (by.sides) {
-      // The voxels were digitised from these triangles, so the mesh's inside/outside result holds for both
-      // kernels.
+      // The voxels were digitised from these triangles, so the mesh's side is also that of the voxels.
       Reading reading =
           by.sides(p_mm, slack_mm, needs_surfaces(asked) ? ReadingNeeds::MeshOnly : ReadingNeeds::MeshSides);
       reading.voxel = reading.mesh;

@@ -6,10 +6,10 @@
 
 #include "verify/witness/reading.h"
 
-// Sides of a point by the sides of the samples about it. Private to this room.
+// Computes the sides of a point from the sides of the samples around it. Private to this room.
 namespace octotomy::verify {
 
-/// A point this near a sample, in samples, counts as that sample: the rounding of coordinates.
+/// A point within this distance of a sample, in samples, counts as that sample: the rounding of coordinates.
 constexpr double same_place = 1e-6;
 
 /// Whether a sample is certainly inside or certainly outside.
@@ -18,16 +18,16 @@ struct SampleSide {
   bool is_out = false;  ///< surely outside
 };
 
-/// Returns the sample's side at a sample. Elsewhere returns the side on which all surrounding samples agree,
-/// or either_side if they do not. Points beyond the scan's voxels are outside. `side` is called for indices
-/// that may lie outside of the scan by one.
+/// Returns the side of the sample if the point is at a sample. Elsewhere returns the side on which all
+/// surrounding samples agree, or either_side if they do not agree. Points beyond the scan's voxels are
+/// outside. `side` is called for indices that may lie outside of the scan by one.
 template <typename Side>
 AllowedSides sides_by_samples(const glm::dvec3& place, const glm::ivec3& dims, const Side& side) {
   const glm::dvec3 nearest = glm::floor(place + 0.5);
   if (glm::any(glm::greaterThan(glm::abs(place - glm::dvec3(dims - 1) * 0.5),
                                 glm::dvec3(dims) * 0.5 + same_place)))
     return certainly_out;
-  // Along an axis on which the point lies at a sample, only that sample counts.
+  // Along an axis on which the point is at a sample, only that sample counts.
   glm::ivec3 low(glm::floor(place)), high = low + 1;
   for (int axis = 0; axis < 3; ++axis)
     if (std::abs(place[axis] - nearest[axis]) <= same_place)

@@ -26,8 +26,8 @@
 namespace octotomy::verify {
 namespace {
 
-/// The share of the full solid angle under which points see a surface, positive from behind. Triangles in cubes far from
-/// the point count by the sum of their areas, as vectors.
+/// Computes the share of the full solid angle under which a point sees a surface; positive from behind. For
+/// triangles in cubes far from the point, the vector sum of their areas is used.
 class SeenShare {
  public:
   explicit SeenShare(const brep::Triangles& surface) {
@@ -81,7 +81,8 @@ class SeenShare {
     return cluster;
   }
 
-  /// The solid angle under which the origin sees a triangle, by the tangent of half of the angle (Euler, 1781).
+  /// The solid angle under which the origin sees a triangle, from the tangent of half that angle (Euler,
+  /// 1781).
   static double solid_angle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
     return 2.0 * std::atan2(glm::dot(a, glm::cross(b, c)),
@@ -114,7 +115,8 @@ class ScanBlendReader {
     if (least > asked_.blend_mm + slack) return {of_scan, of_scan, of_scan.near ? 2 : 0};
     const Reading object = of_object(p_mm, slack);
     if (object.mesh == of_scan) return object;
-    // Mixed distances lie between those of the scan and the object: no surface is near where both have the same side.
+    // The blended distance lies between those of the scan and of the object. So no surface is near where both
+    // have the same side.
     return {on_surface, on_surface, 2};
   }
 
@@ -127,8 +129,8 @@ class ScanBlendReader {
     return through(asked_.scan.faces[foot.face], foot.weights, values);
   }
 
-  /// Computes the normals at the points: sums, weighted by area, over all triangles that share a corner with
-  /// a triangle at the point. So small triangles that noise reversed do not count.
+  /// Computes the normals at the scan's points: sums, weighted by area, over all triangles that share a
+  /// corner with a triangle at the point. So small triangles that noise reversed have little effect.
   void find_normals() {
     const std::vector<glm::dvec3>& points = asked_.scan.points_mm;
     std::vector<glm::dvec3> own(points.size(), glm::dvec3(0.0));
@@ -143,7 +145,7 @@ class ScanBlendReader {
     add(normals_, [&](const auto& face) { return own[face[0]] + own[face[1]] + own[face[2]]; });
   }
 
-  /// Collects the edges that only one triangle has.
+  /// Collects the edges that belong to one triangle only.
   void find_border() {
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> count;
     for (const auto& face : asked_.scan.faces)
@@ -160,7 +162,7 @@ class ScanBlendReader {
     border_ = BoxGrid(boxes, asked_.blend_mm);
   }
 
-  /// The distance to the scan's border, at most twice `blend_mm`.
+  /// The distance of a point from the scan's border; at most twice `blend_mm`.
   double border_distance_mm(const glm::dvec3& p_mm) const {
     const double most = 2.0 * asked_.blend_mm;
     double least = most;
@@ -222,13 +224,13 @@ class ScanBlendReader {
   WitnessedScan asked_;
   TriangleGrid grid_;
   SeenShare seen_;
-  std::vector<glm::dvec3> normals_;  ///< at points
+  std::vector<glm::dvec3> normals_;  ///< by point of the scan
   std::vector<bool> is_border_;
   std::vector<std::pair<glm::dvec3, glm::dvec3>> edges_;
   BoxGrid border_;
 };
 
-/// Witnesses are copied; the scan is shared.
+/// Copies of a witness share the scan.
 struct SharedReader {
   std::shared_ptr<const ScanBlendReader> reader;
 

@@ -20,13 +20,14 @@
 namespace octotomy::verify {
 namespace {
 
-/// Readers of contours count centres within a millionth of a millimetre of a contour as on it.
+/// Width of a contour: programs that read contours count a centre within a millionth of a millimetre as on
+/// the contour.
 constexpr double contour_width_mm = 2e-6;
-/// Rounding of coordinates, as a share of them.
+/// Bound of the rounding of coordinates, relative to them.
 constexpr double rounded_share = 1e-8;
 constexpr double far_outside_mm = std::numeric_limits<double>::infinity();
 
-/// The outline of one slice.
+/// The polygons of one slice.
 class Outline {
  public:
   explicit Outline(const std::vector<std::vector<glm::dvec2>>& polygons_mm) {
@@ -48,7 +49,7 @@ class Outline {
   const glm::dvec2& low_mm() const { return low_; }
   const glm::dvec2& high_mm() const { return high_; }
 
-  /// Distance to the outline, negative inside; infinite if the slice is empty.
+  /// The distance of a point from the outline; negative inside, infinite if the slice is empty.
   double signed_distance_mm(const glm::dvec2& p) const {
     double square = far_outside_mm;
     bool is_inside = false;
@@ -61,7 +62,7 @@ class Outline {
       for (std::size_t i = run * run_length; i < end; ++i) {
         const Side& side = sides_[i];
         if (may_be_nearer) square = std::min(square, square_to(side, p));
-        // For an edge that crosses the height of p: the position of the crossing at that height.
+        // If an edge crosses the height of p, compares p with the position of that crossing.
         if ((side.from.y > p.y) != (side.to.y > p.y) &&
             p.x < side.from.x + (p.y - side.from.y) / (side.to.y - side.from.y) * (side.to.x - side.from.x))
           is_inside = !is_inside;
@@ -75,7 +76,7 @@ class Outline {
   struct Side {
     glm::dvec2 from, to;
   };
-  /// Successive sides with their box. Most points are far from most boxes.
+  /// Successive edges with their box, because most points are far from most boxes.
   struct Run {
     glm::dvec2 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
   };
@@ -102,10 +103,10 @@ class SliceWitness {
         right_(stack.right),
         is_interpolated_(stack.is_interpolated),
         mesh_within_mm_(stack.mesh_within_mm) {
-    if (stack.slices.size() < 2) throw voxel::InvalidInput("a stack of contours needs two slices or more");
+    if (stack.slices.size() < 2) throw voxel::InvalidInput("a stack of contours needs at least two slices");
     for (const DrawnStack::Slice& slice : stack.slices) {
       if (!at_mm_.empty() && !(slice.position_mm > at_mm_.back()))
-        throw voxel::InvalidInput("the slices of a stack of contours do not ascend");
+        throw voxel::InvalidInput("the slices of a stack of contours must be in ascending order of position");
       at_mm_.push_back(slice.position_mm);
       outlines_.emplace_back(slice.polygons_mm);
       if (outlines_.back().empty()) continue;
@@ -122,7 +123,7 @@ class SliceWitness {
     const glm::dvec2 p(glm::dot(p_mm, right_), glm::dot(p_mm, up_));
     const double at_mm = glm::dot(p_mm, look_);
     const double most_mm = near_mm + mesh_within_mm_;
-    // Between two slices the interpolated outline lies within the box of both outlines.
+    // Between two slices the interpolated outline lies within the box around both outlines.
     if (glm::any(glm::lessThan(p, low_ - most_mm)) || glm::any(glm::greaterThan(p, high_ + most_mm)) ||
         at_mm < begin_mm_ - most_mm || at_mm > end_mm_ + most_mm)
       return {certainly_out, certainly_out, 0};
@@ -135,7 +136,7 @@ class SliceWitness {
  private:
   AllowedSides sides(const glm::dvec2& p, double at_mm, double near_mm) const {
     bool is_in = false, is_out = false;
-    // Half way, too: a slice may lie between.
+    // Half of near_mm is also tried, because a slice may lie between the other places.
     for (const double share : {0.0, -1.0, 1.0, -0.5, 0.5}) {
       const double value_mm = value(p, at_mm + share * near_mm);
       (value_mm <= 0.0 ? is_in : is_out) = true;

@@ -19,7 +19,7 @@ Corners corners_of(const brep::Triangles& triangles, std::size_t face) {
   return {triangles.points_mm[a], triangles.points_mm[b], triangles.points_mm[c]};
 }
 
-/// Weights of the corners for the point of a segment that is nearest to p.
+/// Weights of a segment's ends at the point of the segment that is nearest to p.
 glm::dvec2 on_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
   const glm::dvec3 along = b - a;
   const double square = glm::dot(along, along);
@@ -27,8 +27,8 @@ glm::dvec2 on_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3
   return {1.0 - share, share};
 }
 
-/// Weights of the point of a triangle that is nearest to p. The foot of the perpendicular counts if it lies
-/// inside; otherwise the nearest point of the three sides.
+/// Weights of a triangle's corners at the point of the triangle that is nearest to p: the foot of the
+/// perpendicular if it lies inside, otherwise the nearest point of the three sides.
 glm::dvec3 weights_at(const glm::dvec3& p, const Corners& t) {
   const glm::dvec3 normal = glm::cross(t.b - t.a, t.c - t.a);
   const double square = glm::dot(normal, normal);
@@ -54,17 +54,17 @@ double distance_at(const glm::dvec3& weights, const glm::dvec3& p, const Corners
   return glm::distance(weights.x * t.a + weights.y * t.b + weights.z * t.c, p);
 }
 
-/// Whether a side, in the plane of y and z, crosses the height of p beyond it. Both ends are put in one order
-/// first, so that the two triangles of a side get the same answer.
+/// Whether a ray from p along z crosses a side, in the plane of y and z. The ends of the side are put in one
+/// order first, so that both triangles at the side get the same answer.
 bool crosses(const glm::dvec3& p, glm::dvec3 a, glm::dvec3 b) {
   if ((a.y > p.y) == (b.y > p.y)) return false;
   if (a.y > b.y) std::swap(a, b);
   return p.z < a.z + (p.y - a.y) / (b.y - a.y) * (b.z - a.z);
 }
 
-/// A box of triangles at this distance or more has no triangle whose computed distance is within `mm`. Coordinates
-/// and numbers computed from them are accurate to about 2^-50 of the largest; boxes lie within a cell's length of the
-/// point's distance to them.
+/// Returns a distance. If a box of triangles is at this distance or farther, none of its triangles has a
+/// computed distance within `mm`. Coordinates, and numbers computed from them, are accurate to about 2^-50 of
+/// the largest; boxes lie within a cell's length of the point's distance to them.
 double surely_beyond_mm(double mm, const glm::dvec3& p_mm) {
   return mm + 0x1p-40 * (mm + 1.0 + std::abs(p_mm.x) + std::abs(p_mm.y) + std::abs(p_mm.z));
 }
@@ -83,7 +83,7 @@ std::vector<BoxGrid::Box> boxes_of(const brep::Triangles& triangles) {
   return boxes;
 }
 
-/// The boxes' projections along x, as boxes without an extent along x.
+/// Projects boxes along x: the results have no extent along x.
 std::vector<BoxGrid::Box> projected(std::vector<BoxGrid::Box> boxes) {
   for (BoxGrid::Box& box : boxes) box.low_mm.x = box.high_mm.x = 0.0;
   return boxes;
@@ -111,7 +111,7 @@ BoxGrid::BoxGrid(const std::vector<Box>& boxes, double cell_mm) {
   constexpr double most_a_side = 1024.0;
   cell_mm_ = std::max(cell_mm, longest_mm / most_a_side);
   if (!(cell_mm_ > 0.0)) cell_mm_ = 1.0;
-  // Cells are widened until there are few for each box, and a box is in few cells.
+  // Doubles the cells' edge until there are few cells for each box, and each box lies in few cells.
   const double most_cells = 16.0 * static_cast<double>(boxes.size()) + 4096.0;
   for (;; cell_mm_ *= 2.0) {
     const glm::dvec3 all = glm::floor((high_mm - low_mm_) / cell_mm_) + 1.0;
@@ -140,7 +140,7 @@ BoxGrid::BoxGrid(const std::vector<Box>& boxes, double cell_mm) {
 }
 
 glm::ivec3 BoxGrid::cell_of(const glm::dvec3& p_mm) const {
-  constexpr double far = 1e6;  // cells; points may lie anywhere
+  constexpr double far = 1e6;  // in cells; points may lie anywhere
   return glm::ivec3(glm::clamp(glm::floor((p_mm - low_mm_) / cell_mm_), glm::dvec3(-far), glm::dvec3(far)));
 }
 
@@ -168,13 +168,13 @@ TriangleGrid::TriangleGrid(brep::Triangles triangles) : triangles_(std::move(tri
   rows_ = BoxGrid(projected(boxes), mean_extent_mm(boxes));
 }
 
-// Cells are read in shells about the point's own. A triangle outside the first n shells is at least n cells
-// away. Cells and triangles' boxes beyond the least distance so far are skipped.
+// Reads cells in shells around the point's cell. A triangle outside the first n shells is at least n cells
+// away. Cells and boxes of triangles farther than the least distance so far are skipped.
 std::optional<TriangleGrid::Foot> TriangleGrid::nearest(const glm::dvec3& p_mm, double most_mm,
                                                         double enough_mm) const {
   if (cells_.empty() || !(most_mm >= 0.0)) return std::nullopt;
   const glm::ivec3 at = cells_.cell_of(p_mm), dims = cells_.dims();
-  // The first shell that meets the grid, and the last one.
+  // The numbers of the first and the last shell that meet the grid.
   const glm::ivec3 before = glm::max(-at, at - (dims - 1)), beyond = glm::max(at, dims - 1 - at);
   const int first = std::max({before.x, before.y, before.z, 0});
   const int last = std::max({beyond.x, beyond.y, beyond.z});

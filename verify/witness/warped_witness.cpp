@@ -14,7 +14,8 @@
 namespace octotomy::verify {
 namespace {
 
-/// The faces that only one element has. Their corners are in any order, because only places on them matter.
+/// The faces that belong to one element only. Their corners are in any order, because distances to a face do
+/// not depend on the order.
 brep::Triangles skin_of(const convert::Tetrahedra& elements) {
   using Face = std::array<std::uint32_t, 3>;
   std::vector<Face> faces;
@@ -35,7 +36,7 @@ brep::Triangles skin_of(const convert::Tetrahedra& elements) {
   return skin;
 }
 
-/// Shares of an element's corners in a point, which add up to 1; below 0 beyond a face.
+/// The weights of an element's corners at a point. They add up to 1; a weight below 0 means beyond a face.
 glm::dvec4 shares_of(const glm::dvec3& p, const std::array<glm::dvec3, 4>& corners) {
   const glm::dmat3 sides(corners[1] - corners[0], corners[2] - corners[0], corners[3] - corners[0]);
   const glm::dvec3 shares = glm::inverse(sides) * (p - corners[0]);
@@ -52,7 +53,7 @@ NodeMotion::NodeMotion(const convert::Tetrahedra& elements, std::vector<glm::dve
       low_mm_(std::numeric_limits<double>::infinity()),
       high_mm_(-low_mm_),
       tets_(elements.tets) {
-  if (tets_.empty()) throw std::invalid_argument("a motion of nodes needs elements");
+  if (tets_.empty()) throw std::invalid_argument("a motion of nodes needs at least one element");
   if (displacement_mm_.size() != nodes_mm_.size())
     throw std::invalid_argument("a motion of nodes needs one displacement for each node, not " +
                                 std::to_string(displacement_mm_.size()) + " of " +
@@ -77,7 +78,7 @@ NodeMotion::NodeMotion(const convert::Tetrahedra& elements, std::vector<glm::dve
 }
 
 glm::dvec3 NodeMotion::displacement_mm(const glm::dvec3& p_mm) const {
-  // A point on a face that two elements share lies in one of them in spite of rounding.
+  // A point on a face that two elements share is inside one of them in spite of rounding.
   constexpr double slack = 1e-9;
   std::optional<glm::dvec3> found;
   if (const glm::ivec3 cell = cells_.cell_of(p_mm); cells_.has(cell))
@@ -92,7 +93,8 @@ glm::dvec3 NodeMotion::displacement_mm(const glm::dvec3& p_mm) const {
       return true;
     });
   if (found) return *found;
-  // Among equally near points, as the field's definition says.
+  // Shifts the point as the definition of the field states, so that one of several equally near points is
+  // chosen.
   const auto foot =
       surface_->nearest(p_mm + 1e-6 * glm::dvec3(1.0, 0.618, 0.382), std::numeric_limits<double>::infinity());
   const auto& [a, b, c] = surface_->triangles().faces[foot->face];
@@ -122,7 +124,7 @@ std::optional<glm::dvec3> NodeMotion::origin_mm(const glm::dvec3& p_mm, const gl
 }
 
 ReshapedSurface surface_warped(const brep::Triangles& still, const NodeMotion& motion) {
-  // The error of a corner's share is some roundings of coordinates, divided by the element's height.
+  // The error of a corner's weight is some roundings of coordinates, divided by the element's height.
   constexpr double shares_of_flat_elements = 1e4;
   return surface_moved(still, motion, shares_of_flat_elements * 64.0,
                        "64e4 eps |p|: the same displacements by other code");

@@ -35,15 +35,17 @@
 namespace octotomy::verify {
 namespace {
 
-/// Bound of rounding errors in values and in sums of a few values, relative to the largest magnitude.
+/// Bound of the rounding of values and of sums of a few values, relative to the largest magnitude.
 constexpr double rounding = 1e-9;
 
-/// The vertices of an isosurface keep a thousandth of an edge from its ends (convert/surface/isosurface.h).
+/// The vertices of an isosurface are at least a thousandth of an edge away from the edge's ends
+/// (convert/surface/isosurface.h).
 constexpr double kept_from_samples = 1e-3;
-/// A point this near to a face of a cell, in samples, lies on it.
+/// A point within this distance of a face of a cell, in samples, counts as on the face.
 constexpr double on_face = 1e-6;
 
-/// How far f may lie above a bound where the mesh is outside, and below the bound where the mesh is inside.
+/// How far f may exceed a bound where the mesh is outside, and fall below it where the mesh is inside; see
+/// above.
 struct Stray {
   double above = 0.0, below = 0.0;
 };
@@ -84,7 +86,7 @@ class WindowWitness {
   }
 
  private:
-  /// The eight samples around a position, and the position between them in shares of the cell.
+  /// The eight samples around a position, and the position in shares of the cell's edges.
   struct Cell {
     std::array<double, 8> v{};
     std::array<double, 3> t{};
@@ -98,7 +100,7 @@ class WindowWitness {
     }
   };
 
-  /// Positions beyond the outermost samples are clamped to them.
+  /// Returns the cell at a position. A position beyond the outermost samples is clamped to them.
   Cell cell(const glm::dvec3& u) const {
     Cell made;
     const Sample* corner = samples_;
@@ -140,7 +142,7 @@ class WindowWitness {
     stray_of_two(v[0] - v[2] - v[4] + v[6], t[1], t[2]);
     stray(-v[0] + v[1] + v[2] - v[3] + v[4] - v[5] - v[6] + v[7], t[0] * t[1] * t[2],
           std::min({t[0], t[1], t[2]}), std::max(0.0, t[0] + t[1] + t[2] - 2.0));
-    // Two crossings on one edge keep the distance from each other, too.
+    // Two crossings on one edge are also kept apart by this share.
     const double kept = spans_window(at) ? 2.0 * kept_from_samples : kept_from_samples;
     const double moved = kept * (at.high - at.low) + rounding * std::max(std::abs(at.low), std::abs(at.high));
     found.above += moved;
@@ -148,23 +150,24 @@ class WindowWitness {
     return found;
   }
 
-  /// Whether a cell has samples both below and above the window.
+  /// Whether a cell has samples below the window and samples above it.
   bool spans_window(const Cell& at) const { return at.low < low_ && at.high > high_; }
-  /// Whether the surfaces of two bounds may end in the plane of the outermost samples or in a face of padding.
+  /// Whether the surfaces of the window's two bounds may end in the plane of the outermost samples or in a
+  /// face of a cell with padding.
   bool may_end_in_face(double highest) const { return low_ > -infinite && highest > high_; }
 
-  /// Sides for the value f at a point. If f is more than `above` over the lower bound, the answer must be
-  /// inside; if it is more than `below` under it, outside. The upper bound is treated in the same way with
-  /// the opposite sign. NaN allows both answers.
+  /// The allowed sides for the value f at a point. An answer must be inside if f exceeds the lower bound by
+  /// more than `above`, and outside if f is more than `below` under it. The upper bound is treated in the
+  /// same way with the opposite sign. NaN allows both sides.
   AllowedSides allowed(double value, double above, double below) const {
     const bool surely_in = value >= low_ + above && value <= high_ - below;
     const bool surely_out = value < low_ - below || value > high_ + above;
     return surely_in ? certainly_in : surely_out ? certainly_out : on_surface;
   }
 
-  /// Sides of a cell whose samples are so far from the window's bounds that the stray cannot matter. Of
-  /// the four terms of stray_of(), three are at most half the samples' range each, the last at most 1.6 times
-  /// it.
+  /// The side of a cell whose samples are so far from the window's bounds that the stray cannot matter; none
+  /// for any other cell. Three of the four terms of stray_of() are at most half the samples' range each, the
+  /// last one at most 1.6 times the range.
   std::optional<AllowedSides> clear_sides(const Cell& at, double slack) const {
     const double reach =
         (3.2 + 3.0 * slack) * (at.high - at.low) + rounding * std::max(std::abs(at.low), std::abs(at.high));
@@ -173,7 +176,7 @@ class WindowWitness {
     return std::nullopt;
   }
 
-  /// How far a position lies beyond the outermost samples, in samples. Negative: within them.
+  /// How far a position lies beyond the outermost samples, in samples; negative within them.
   double beyond(const glm::dvec3& u) const {
     double most = -infinite;
     for (int axis = 0; axis < 3; ++axis)
@@ -203,15 +206,15 @@ class WindowWitness {
     return any_out || past > 0.5 - near ? on_surface : certainly_in;
   }
 
-  /// The samples of the cell that holds a position beyond the outermost samples, and those of the
-  /// neighbouring cells within `slack` of the position. A sample may occur several times.
+  /// The samples of the cell that holds a position beyond the outermost samples, and those of neighbouring
+  /// cells within `slack` of the position. A sample may occur several times.
   std::vector<double> own_corners(const glm::dvec3& u, double slack) const {
     const double by = std::max(slack, 1e-6);
     const Cell low = cell(u - by), high = cell(u + by);
     std::vector<double> samples;
     for (const Cell* at : {&low, &high})
       for (std::size_t i = 0; i < 8; ++i) {
-        // A corner without weight belongs to the cell on the other side of the position.
+        // A corner without weight belongs to a cell on the other side of the position.
         double weight = 1.0;
         for (std::size_t axis = 0; axis < 3; ++axis) {
           const double t = at->t[axis];
@@ -222,8 +225,9 @@ class WindowWitness {
     return samples;
   }
 
-  /// Padding is outside. The surface closes half way between an inside sample and padding, so both answers
-  /// are allowed in a cell that has both, and within `slack` of such a cell. None: no padding is near.
+  /// The sides at a cell with padding, or within `slack` of such a cell; none elsewhere. Padding is outside.
+  /// The surface closes half way between an inside sample and padding, so both sides are allowed if the cell
+  /// has both.
   std::optional<AllowedSides> sides_at_padding(const Cell& at, const glm::dvec3& u, double slack) const {
     const double by = std::max(slack, may_end_in_face(at.high) ? on_face : 0.0);
     if (by == 0.0 && at.low != padding_) return std::nullopt;
@@ -242,7 +246,7 @@ class WindowWitness {
     return any_in || (any_measured && may_end_in_face(highest)) ? on_surface : certainly_out;
   }
 
-  /// The mesh's sides; sides_beyond() computes them beyond the outermost samples.
+  /// Returns the mesh's sides, beyond the outermost samples by sides_beyond().
   AllowedSides mesh_sides(const glm::dvec3& u, double slack) const {
     const double past = beyond(u);
     if (past >= 1.0) return certainly_out;
@@ -253,10 +257,10 @@ class WindowWitness {
       if (const std::optional<AllowedSides> allowed = sides_at_padding(at, u, slack)) return *allowed;
     if (const std::optional<AllowedSides> clear = clear_sides(at, slack)) return *clear;
     const Stray stray = stray_of(at);
-    // Within a cell f changes by at most the samples' range per sample along each axis.
+    // Within a cell, f changes along each axis by at most the samples' range per sample.
     const double moved = 3.0 * slack * (at.high - at.low);
     const AllowedSides answer = allowed(at.value(), stray.above + moved, stray.below + moved);
-    // Cells beside those with padding may have the surface of such cells.
+    // A cell beside one with padding may share the surface of that cell.
     if (answer == certainly_in && scan_->padding && spans_window(at) && is_beside_padding(u))
       return on_surface;
     return answer;
@@ -277,9 +281,9 @@ class WindowWitness {
     return whole >= 2 ? 2 : 1;
   }
 
-  /// The voxel kernel's sides, at a voxel's centre from the voxel's own sample. Elsewhere it is interpolated
-  /// from the scan's samples around the position. Samples that were not measured are left out of the mean,
-  /// provided that the nearest sample was measured.
+  /// The voxel kernel's sides. At a voxel's centre they follow from the voxel's own sample, elsewhere from
+  /// values interpolated between the samples around the position. Samples that were not measured are left out
+  /// of the mean, provided that the nearest sample was measured.
   AllowedSides voxel_sides(const glm::dvec3& q, const glm::dvec3& u) const {
     const glm::dvec3 nearest = glm::round(q), off = glm::abs(q - nearest);
     if (std::max({off.x, off.y, off.z}) < 1e-7) {
@@ -306,7 +310,7 @@ class WindowWitness {
     return allowed(value / weights, rounded_, rounded_);
   }
 
-  /// A measured sample of the scan. None beyond the scan and for padding.
+  /// Returns a sample of the scan. None beyond the scan and for padding.
   std::optional<double> sample_at(const glm::dvec3& index) const {
     if (glm::any(glm::lessThan(index, glm::dvec3(0.0))) ||
         glm::any(glm::greaterThanEqual(index, glm::dvec3(dims_))))
@@ -318,8 +322,8 @@ class WindowWitness {
     return sample == padding_ ? std::nullopt : std::optional(sample);
   }
 
-  /// The sample of a voxel. None if the scan has no sample for the voxel. `sure` is false if rounding
-  /// decides which.
+  /// The sample of a voxel. `value` is none if the scan has no sample for the voxel. `sure` is false if
+  /// rounding decides between the two.
   struct Measured {
     std::optional<double> value;
     bool sure = true;
@@ -329,7 +333,7 @@ class WindowWitness {
         glm::any(glm::greaterThanEqual(voxel, glm::dvec3(side_))))
       return {};
     const glm::dvec3 u = scan_from_universe_(voxel);
-    // A scan's voxels reach half a sample beyond their centres.
+    // The voxels of a scan end half a sample beyond the outermost samples.
     const double past = beyond(u);
     if (past > 0.5 + 1e-6) return {};
     const Cell made = cell(u);
@@ -342,8 +346,8 @@ class WindowWitness {
   const Sample* samples_;
   glm::ivec3 dims_;
   double low_, high_;
-  double rounded_;  ///< error of a voxel's sample and of the window's bound, which are rounded to a step
-  double padding_;  ///< below every measured sample; NaN without padding
+  double rounded_;  ///< rounding error of a voxel's sample and of the window's bound
+  double padding_;  ///< value of padding, below every measured sample; NaN: no padding
   std::array<std::size_t, 3> strides_{};
   Affine scan_from_lps_, universe_from_lps_, scan_from_universe_;
   int side_;

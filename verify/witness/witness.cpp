@@ -16,7 +16,7 @@
 namespace octotomy::verify {
 namespace {
 
-/// Cost of reading a witness. Cheap operands are read first, because one that decides alone makes the others
+/// Cost of reading a witness. Cheap operands are read first, because one that decides makes the others
 /// unnecessary.
 double cost_of(const Witness& witness) {
   constexpr double of_a_window = 100.0;
@@ -29,7 +29,7 @@ bool decides(const Reading& a, ReadingNeeds asked) {
          (!needs_voxels(asked) || a.voxel == certainly_out);
 }
 
-/// The intersection of operands, some of them as their complements.
+/// An operand of an intersection, or its complement.
 struct Operand {
   Witness witness;
   bool is_complement = false;
@@ -48,10 +48,10 @@ Witness intersection(Operand a, Operand b) {
   };
 }
 
-/// The factor by which a map may lengthen a distance; 1 for a motion or reflection. For other maps an upper
-/// bound: the Frobenius norm, which is at most the root of 3 times the largest singular value.
+/// The factor by which a map may lengthen a distance: 1 for a motion or a reflection. For other maps an upper
+/// bound, the Frobenius norm, which is at most the root of 3 times the largest singular value.
 double stretch_of(const glm::dmat4& map) {
-  constexpr double rounding = 1e-5;  // typed matrices have six decimals
+  constexpr double rounding = 1e-5;  // matrices in plans are written with six decimals
   const glm::dmat3 off = glm::transpose(glm::dmat3(map)) * glm::dmat3(map) - glm::dmat3(1.0);
   double squares = 0.0, worst = 0.0;
   for (int column = 0; column < 3; ++column)
@@ -74,7 +74,7 @@ std::vector<PartChoice> choices_of(const std::vector<Witness>& operands) {
   return all;
 }
 
-/// Reads an expression. The operands have the numbers of the tree's leaves.
+/// Reads an expression. Operand i is leaf i of the tree.
 class ReadExpression {
  public:
   ReadExpression(const ExpressionTree& tree, std::vector<Witness> leaves)
@@ -95,7 +95,7 @@ class ReadExpression {
   }
 
  private:
-  /// A leaf, or an intersection or exclusive or of parts; complemented if `is_complement`.
+  /// A leaf, or an intersection or exclusive or of parts. The result is complemented if `is_complement`.
   struct Joint {
     bool is_complement = false, is_exclusive = false;
     std::size_t leaf = 0;
@@ -127,8 +127,7 @@ class ReadExpression {
     return made;
   }
 
-  /// The recursion depth is that of the text's parentheses. It does not grow with the number of operands in a
-  /// row.
+  /// The recursion is as deep as the text's parentheses. Operands in a row do not deepen it.
   template <typename ReadLeaf>
   static Reading read(const Joint& joint, const ReadLeaf& leaf, ReadingNeeds asked) {
     if (joint.parts.empty()) return joint.is_complement ? negated(leaf(joint.leaf)) : leaf(joint.leaf);
