@@ -255,7 +255,7 @@ void PolygonSplitter::add(std::span<const long long> given) {
   for (const std::uint32_t corner : corners) places.push_back(points[corner]);
   const glm::dvec3 normal = area_vector(places);
   const double length = glm::length(normal);
-  if (!std::isfinite(length)) return add_fan(corners);  // its points are refused later
+  if (!std::isfinite(length)) return add_fan(corners);  // read_mesh() refuses its points later
   const std::vector<glm::dvec2> flat = projected(places, normal);
   const bool fits_fan = corners.size() == 3 || is_fan(flat);
   const bool crosses = !fits_fan && crosses_itself(flat);
