@@ -45,9 +45,9 @@ class SurfaceTree {
  public:
   explicit SurfaceTree(const Mesh& mesh) : SurfaceTree(triangles_of(mesh)) {}
   explicit SurfaceTree(const Triangles& triangles);
-  /// Hasty: built in linear time along a curve, for few queries. Distances are the same up to rounding; among
-  /// equally near faces, feet() may return a different one. ForSegments: like Searched, but also for
-  /// meets_any(); about 45 bytes per triangle more.
+  /// Searched: built by halving, n log n. Hasty: built in linear time along a curve, for few queries. Its
+  /// distances are the same up to rounding; among equally near faces, feet() may return a different one.
+  /// ForSegments: as Searched, but also for meets_any(); about 45 bytes per triangle more.
   enum class Build { Searched, Hasty, ForSegments };
   SurfaceTree(const Triangles& triangles, Build build);
   ~SurfaceTree();
