@@ -7,7 +7,7 @@
 namespace octotomy::brep {
 
 struct OffsetOptions {
-  double by_mm = 1.0;  ///< above 0 outward, below 0 inward
+  double by_mm = 1.0;  ///< length of the offset: above 0 outward, below 0 inward
   /// Approximate edge length of the smallest triangles on parts that the offset rounds; above 0. Sharp edges
   /// get triangles of a quarter of this length, flat and gently curved parts larger triangles.
   double cell_mm = 1.0;
