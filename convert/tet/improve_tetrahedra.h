@@ -15,7 +15,7 @@ struct ImproveOptions {
   /// nodes of straight edges stay on their lines, and corners do not move.
   std::vector<double> surface_play_mm{};
   bool keeps_flat = true;  ///< nodes of flat faces and straight edges stay in and on them
-  int rounds = 10;         ///< over all elements below the goal, at least 1
+  int rounds = 10;         ///< largest number of rounds over all elements below the goal, at least 1
   /// Stops after a round if the remaining rounds cannot mend every element, assuming that a round mends at
   /// most half of the remaining elements, or the last round's share if that is larger. Not allowed with
   /// `surface_play_mm`, which counts from the nodes' positions at the beginning of a call.
