@@ -33,8 +33,8 @@ constexpr double least_small_ratio() {
 constexpr double least_lead() {
   return 0.12;
 }
-/// A match of less than this share of the surface is no evidence, however little other motions match: bumps
-/// of a rounded body match a fifth of the body by chance.
+/// A match of less than this share of the surface is no evidence, even if other motions match less: bumps of
+/// a rounded body match a fifth of the body by chance.
 constexpr double least_share() {
   return 0.2;
 }

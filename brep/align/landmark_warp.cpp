@@ -70,7 +70,7 @@ glm::dvec3 LandmarkWarp::at(const glm::dvec3& p_mm) const {
   return by_mm;
 }
 
-/// The Frobenius norm of the field's derivative, which is at least its largest stretch.
+/// The Frobenius norm of the field's derivative, an upper bound of the field's largest stretch.
 double LandmarkWarp::change_at(const glm::dvec3& p_mm) const {
   glm::dmat3 change(0.0);
   for (std::size_t i = 0; i < points_mm_.size(); ++i) {

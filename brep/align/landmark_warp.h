@@ -20,7 +20,7 @@ class LandmarkWarp {
   LandmarkWarp(std::vector<glm::dvec3> points_mm, const std::vector<glm::dvec3>& displacement_mm,
                double reach_mm);
 
-  /// Cost: linear in the landmarks.
+  /// The displacement at a point, mm. Cost: linear in the landmarks.
   glm::dvec3 at(const glm::dvec3& p_mm) const;
 
   /// An upper bound of the field's rate of change, in mm per mm. Below 1 the field does not fold space: no

@@ -27,10 +27,10 @@ std::vector<Kernel::Point_3> points_of(const Mesh& mesh) {
   return points;
 }
 
-/// If the hull has more points, the search uses those that lie furthest in `most_points / 2` directions and
-/// in the opposite ones. Every direction is within about 2 degrees of one of these directions. The box is
-/// measured again over all points, so it holds all of them; on a rounded body its edges exceed the shortest
-/// possible ones by less than 0.1 %.
+/// If the hull has more points than this, the search uses those that lie furthest in `most_points / 2`
+/// directions and in the opposite ones. Every direction is within about 2 degrees of one of these directions.
+/// The box is measured again over all points, so it holds all of them; on a rounded body its edges exceed the
+/// shortest possible ones by less than 0.1 %.
 constexpr std::size_t most_points = 4000;
 
 glm::dvec3 as_vector(const Kernel::Point_3& p) {

@@ -290,7 +290,7 @@ class Refinement {
     return doubt;
   }
 
-  /// Stores the best motion so far. Returns whether it has not improved for cycle_rounds.
+  /// Stores the best motion so far. Returns whether none of the last cycle_rounds rounds has improved it.
   static bool is_cycling(Fit& fit, const std::vector<Meeting>& meetings,
                          const std::vector<std::size_t>& chosen) {
     double squares = 0.0;
@@ -391,7 +391,7 @@ Searched search(const Cloud& cloud, const Cloud& fixed, const OrientedSurface& s
   return searched;
 }
 
-/// Refines the search's results with a smaller overlap. Returns the one that matches most first.
+/// Refines the search's results with a smaller overlap. Returns the motions, the one that matches most first.
 std::vector<glm::dmat4> narrowed(const Cloud& cloud, const Searched& searched, const OrientedSurface& surface,
                                  double noise_mm, const SurfaceFitOptions& options) {
   const std::vector<double> ladder_mm = trust_ladder_mm(cloud.spread_mm, noise_mm);

@@ -62,7 +62,7 @@ struct FitTrust {
   std::size_t starts = 0;           ///< starts of the search; 0 if a start was given
   std::size_t agreeing_starts = 0;  ///< starts that ended at this fit
   std::vector<glm::dmat4> equals;   ///< other motions that match as much: the shape is symmetric
-  std::string reason;               ///< figures behind a verdict that is not Right
+  std::string reason;               ///< figures that led to a verdict other than Right
 };
 
 struct SurfaceFit {

@@ -162,8 +162,8 @@ struct Question {
 };
 
 /// The union of pieces that share whole triangles with opposite winding, such as both differences and the
-/// intersection of two solids. Unlike corefinement, this has a union also where sheets touch along edges.
-/// None if the remaining triangles are not closed.
+/// intersection of two solids. Unlike corefinement, this works also where sheets touch along edges. None if
+/// the remaining triangles are not closed.
 std::optional<Triangles> union_of_pieces(const std::array<const Triangles*, 3>& pieces) {
   Triangles all;
   PointNumbers numbers(all.points_mm);

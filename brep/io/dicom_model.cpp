@@ -186,9 +186,12 @@ MeshContent read_dicom_model(std::string_view bytes) {
   if (const std::string unit = word_of_unit(code); !unit.empty())
     made.says.add_unit(unit, "the measurement unit '" + code + "' of the DICOM header");
   else
-    made.says.warn("unit", code.empty() ? "the DICOM header states no measurement unit, which is required"
-                                        : "the measurement unit '" + code.substr(0, 16) +
-                                              "' of the DICOM header is not a unit of length");
+    made.says.warn(
+        "unit",
+        code.empty()
+            ? "the DICOM header states no measurement unit, which is required: export the model with its unit"
+            : "the measurement unit '" + code.substr(0, 16) +
+                  "' of the DICOM header is not a unit of length");
   if (!text(0x00200052).empty()) made.says.add_frame("LPS", "DICOM's frame of reference");
   made.says.tell("file", std::string(is_stl ? "STL" : "OBJ") + " in DICOM, of the patient '" +
                              std::string(text(0x00100020).substr(0, 64)) + "', frame of reference '" +

@@ -63,8 +63,8 @@ bool is_fan(const std::vector<glm::dvec2>& p) {
     const glm::dvec2 a = p[i] - p[0], b = p[i + 1] - p[0];
     angle += std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
   }
-  // Two triangles always turn by less than a full circle. If more triangles turn by nearly one, ears are cut
-  // instead.
+  // A fan of two triangles turns by less than a full circle. If more triangles turn by nearly one, ears are
+  // cut instead.
   return p.size() == 4 || angle < 2.0 * std::numbers::pi - 1e-6;
 }
 

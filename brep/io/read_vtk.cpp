@@ -85,8 +85,8 @@ struct VtkReader {
     skip_metadata();
   }
 
-  /// A string of an array: a line of text or, in a binary file, a length and its bytes. The first two bits of
-  /// the length state its size: 3 one byte, 2 two, 1 four, 0 eight.
+  /// A string of an array: a line of text or, in a binary file, a length and its bytes. The two highest bits
+  /// of the length's first byte state how long the length is: 3 one byte, 2 two, 1 four, 0 eight.
   std::string text() {
     if (!binary) return std::string(scanner.line());
     const auto first = scanner.binary<std::uint8_t>(std::endian::big);

@@ -18,7 +18,7 @@
 namespace octotomy::brep {
 namespace {
 
-/// A tag and the text up to the next one.
+/// A tag and the text up to the next tag.
 struct XmlElement {
   std::string_view name;
   std::map<std::string_view, std::string_view> attributes;

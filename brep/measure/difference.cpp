@@ -26,8 +26,8 @@ namespace {
 constexpr double samples_wanted = 200'000.0;
 
 /// A sample represents a triangle, whose area is at most half the square of the spacing. So this spacing
-/// yields at least the wanted number of samples if triangles are large. Each small triangle has at least one
-/// sample.
+/// yields at least the wanted number of samples if triangles are large. Small triangles add their corners as
+/// samples.
 double spacing_mm(double area_mm2, const Triangles& a, const Triangles& b) {
   const double even_mm = std::sqrt(2.0 * area_mm2 / samples_wanted);
   return std::max(widened_spacing_mm(a, even_mm, 8.0 * samples_wanted),

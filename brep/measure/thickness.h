@@ -40,7 +40,7 @@ struct ThicknessOptions {
 /// is out of its range, or a ray leaves without meeting the surface, naming the point; Stopped. The same bits
 /// on any number of threads. Cost: n log n for the tree, about log n a point; parallel. Source: Ma, Bae and
 /// Choi, "3D medial axis point approximation using nearest neighbors and the normal field", The Visual
-/// Computer 28, 2012, with triangles for points and all sheets at each step.
+/// Computer 28, 2012, here with triangles instead of points, and with all sheets tested at each step.
 std::vector<Thickness> thickness(const Solid& solid, const std::vector<SurfacePoint>& points,
                                  const ThicknessOptions& options = {});
 

@@ -19,7 +19,7 @@ bool is_inside(const glm::dvec3& p_mm, const Triangles& surface);
 /// A triangle that a ray towards +x crosses.
 struct Crossing {
   std::uint32_t face = 0;
-  bool leaving = false;  ///< from inside to outside, by the triangle's winding
+  bool leaving = false;  ///< the ray leaves the solid there, by the triangle's winding
 };
 
 /// The nearest point of a surface to a point.

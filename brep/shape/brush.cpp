@@ -48,8 +48,8 @@ Polyhedron polyhedron_of(const std::vector<Plane>& planes) {
         const glm::dvec3 corner_mm = (a.distance_mm * bc + b.distance_mm * glm::cross(c.normal, a.normal) +
                                       c.distance_mm * glm::cross(a.normal, b.normal)) /
                                      volume;
-        // Planes that do not meet at a corner pass it at a hundredth of its distance or more; rounding is far
-        // below that.
+        // A plane that does not meet at a corner passes the corner at a hundredth or more of the corner's
+        // distance from the origin. Rounding is far below that.
         const double slack_mm = 1e-9 * glm::length(corner_mm);
         if (std::all_of(planes.begin(), planes.end(), [&](const Plane& plane) {
               return glm::dot(plane.normal, corner_mm) <= plane.distance_mm + slack_mm;

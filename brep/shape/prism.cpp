@@ -121,7 +121,7 @@ void check_crossings(std::vector<Side> sides) {
     }
 }
 
-/// Fewer points are fast to insert in any order. They are inserted in the outline's order, which determines
+/// With fewer points than this, any order is fast. They are inserted in the outline's order, which determines
 /// the diagonals.
 constexpr std::size_t many_points = 2000;
 

@@ -58,7 +58,8 @@ struct DeckOptions {
   std::string element_set = "SOLID";
   std::string surface_node_set = "SURFACE";
   std::vector<DeckMaterial> materials{DeckMaterial{}};
-  std::vector<std::uint32_t> material_of_tet;  ///< by number in `materials`; empty: all are the first
+  std::vector<std::uint32_t> material_of_tet;  ///< for each element, the number of its material in
+                                               ///< `materials`; empty: all have the first
   std::vector<NodeSet> node_sets;
   std::vector<DeckSurface> surfaces;
   std::vector<ContactPair> contacts;

@@ -156,7 +156,8 @@ class Derivation {
     add(a[0], b[1], apex, between({a[0], b[1]}), across);
     add(a[1], b[0], apex, across, between({a[1], b[0]}));
   }
-  /// A cone from the point on the face of same[1], b and c. Two corners, in `same`, have the same label.
+  /// Three labels, one of which the two corners in `same` have: a cone from the point on the face of same[1],
+  /// b and c.
   void three_labels(const std::vector<int>& same, int b, int c) {
     const Between apex = between({same[1], b, c}), across = between({same[0], b, c});
     add(b, c, between({b, c}), across, apex);
@@ -165,7 +166,7 @@ class Derivation {
       add(same[1], other, between({same[1], other}), between({same[0], other}), apex);
     }
   }
-  /// A cone from the tetrahedron's own point.
+  /// Four labels: a cone from the tetrahedron's own point.
   void four_labels() {
     const Between apex = between({0, 1, 2, 3});
     for (int i = 0; i < 4; ++i)

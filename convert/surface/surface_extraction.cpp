@@ -176,7 +176,8 @@ class Extraction {
         crossed[i] = crossed_x(row[i], word, bits_.words);
       }
       const std::uint64_t along_y = here[0] ^ here[1], along_z = here[0] ^ here[2];
-      // If no edge at x is crossed, all eight corners are equal, and so are the far edges.
+      // If no edge along x and no edge at the lower x is crossed, all eight corners are equal, so no edge at
+      // the upper x is crossed either.
       const std::uint64_t any = crossed[0] | crossed[1] | crossed[2] | crossed[3] | along_y | along_z |
                                 (here[2] ^ here[3]) | (here[1] ^ here[3]);
       if (any == 0) continue;

@@ -243,7 +243,7 @@ class Improving {
     return shortest;
   }
 
-  /// Moves a node to a position where its flattest element is less flat. Returns false if it finds none.
+  /// Moves a node to a position where its flattest element is less flat. Returns false if none is found.
   bool move(std::uint32_t v) {
     if (play_mm_[v] <= 0.0) return false;
     glm::dvec3 best_mm = t_.nodes_mm[v];

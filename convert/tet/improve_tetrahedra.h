@@ -9,7 +9,7 @@
 namespace octotomy::convert {
 
 struct ImproveOptions {
-  double min_dihedral_deg = 8.0;  ///< goal for every element, 0..60; better ones stay as they are
+  double min_dihedral_deg = 8.0;  ///< goal for every element, 0..60; elements that reach it stay as they are
   /// How far each node of the surface may move, in the order of `boundary_nodes`. Empty: they stay, to the
   /// bit. With `keeps_flat` nodes of flat faces of the surface and between regions stay in their planes,
   /// nodes of straight edges stay on their lines, and corners do not move.

@@ -126,7 +126,8 @@ constexpr double misplaced_share() {
   return 0.1;
 }
 
-/// One try: its elements if there are any, their faults, and the points of the given surface that it lost.
+/// One try: how the mesher ended, its elements if there are any, and the points of the given surface that it
+/// lost.
 struct Try {
   MesherOutcome outcome;
   Tetrahedra made;
@@ -160,7 +161,7 @@ Shells shells_of(const MesherInput& surface) {
   return shells;
 }
 
-/// The given surface, and the sizes of facets at its points that bind every try.
+/// The given surface, and the largest sizes of facets at its points, which hold for every try.
 struct Given {
   const MesherInput& surface;
   double volume_mm3 = 0.0;
