@@ -317,7 +317,7 @@ std::vector<Section> sections_between(const std::vector<Section>& drawn,
   std::vector<Section> whole = drawn;
   for (Section& section : whole) section.contours = divided(section.contours, options.step_mm);
   const std::size_t last = drawn.size() - 1;
-  // Adds an empty section at either end, as far beyond it as its neighbour is.
+  // Adds an empty section beyond each end, at the distance between the end section and its neighbour.
   whole.insert(whole.begin(), {2.0 * drawn[0].z_mm - drawn[1].z_mm, {}});
   whole.push_back({2.0 * drawn[last].z_mm - drawn[last - 1].z_mm, {}});
   std::vector<std::vector<Section>> gaps(whole.size() - 1);

@@ -311,10 +311,10 @@ std::optional<std::string> finish(Try& t, const Given& given, const TetOptions& 
       brep::SurfaceTree(surface_of(t.made)).distances_mm(given.surface.points_mm);
   const Apart own = apart(to_own_mm);
   const Apart nodes = apart(given.tree.distances_mm(boundary_mm(t.made)));
-  t.made.findings.push_back(
-      "Mesh_3 made a surface of its own: its nodes are within " + rounded(nodes.max_mm) +
-      " mm of the given one; 95 % of the given surface's points are within " + rounded(own.p95_mm) +
-      " mm of the new surface, all within " + rounded(own.max_mm) + " mm");
+  t.made.findings.push_back("Mesh_3 made a new surface: its nodes are within " + rounded(nodes.max_mm) +
+                            " mm of the given one; 95 % of the given surface's points are within " +
+                            rounded(own.p95_mm) + " mm of the new surface, all within " +
+                            rounded(own.max_mm) + " mm");
   if (std::optional<std::string> lost = lost_details(t, given, to_own_mm)) return lost;
   if (std::optional<std::string> lost = misplaced(t.made, given)) return lost;
   return fault;

@@ -265,7 +265,7 @@ bool read_answer(const MemoryFile& file, MesherOutcome& outcome) {
          file.read_all(outcome.labels.data(), answer.labels * sizeof(std::uint32_t));
 }
 
-/// A mesher that runs in a process of its own.
+/// A mesher that runs in a separate process.
 struct Mesher {
   std::string executable;
   std::string name;  ///< in messages

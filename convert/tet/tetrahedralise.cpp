@@ -28,7 +28,7 @@
 // 3 TetGen runs, with fewer and fewer demands. Its answer counts only if all volumes are positive and their
 //   sum is the volume that the surface encloses: a wrong sum shows filled cavities and leaks.
 // 4 Nodes inside move to improve flat elements. If that is not enough and the surface need not be kept,
-//   Mesh_3 makes one of its own.
+//   Mesh_3 makes a new surface.
 // 5 Where Mesh_3 fails, too, or leaves elements too flat for a solver, a lattice's cells are cut to the
 // surface.
 

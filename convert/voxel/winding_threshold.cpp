@@ -124,9 +124,9 @@ std::optional<int> WindingThreshold::in_cube(const Cube& cube) const {
   return std::nullopt;
 }
 
-/// Sums clusters whose remainder is at most `tolerance` / 100, or that tolerance times their share of the
-/// cap's area, and triangles one by one where it is more. Stops where the error exceeds 1/2, which decides
-/// nothing.
+/// Sums a cluster as one term if its remainder is at most the larger of `tolerance` / 100 and `tolerance`
+/// times the cluster's share of the cap's area; otherwise its children, or its triangles one by one. Stops if
+/// the error exceeds 1/2: such an estimate decides nothing.
 WindingThreshold::Estimate WindingThreshold::estimate(const glm::dvec3& centre_mm, double reach_mm,
                                                       double tolerance) const {
   Estimate sum;
