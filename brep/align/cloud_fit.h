@@ -13,7 +13,7 @@
 // The final refinement of register_surfaces(), for callers that already have samples and a start.
 namespace octotomy::brep {
 
-/// Points of a surface; each represents the same area.
+/// Points spread over a surface, with unit normals; each represents the same area.
 struct Cloud {
   std::vector<glm::dvec3> points_mm, normals;
   glm::dvec3 centre_mm{0.0};
@@ -25,8 +25,9 @@ struct Cloud {
 /// it has no area.
 Cloud cloud_of(const Mesh& mesh, std::size_t count, const std::string& which);
 
-/// The fit from `start`. Only if `widens` is set, the last step uses all samples within the noise. Throws and
-/// reports progress as register_surfaces() does.
+/// Fits the moving cloud to the surface, from the motion `start` (fixed from moving). If `widens` is set, a
+/// last refinement uses all samples within the noise, without a limit on their share. Throws and reports
+/// progress as register_surfaces() does.
 SurfaceFit fit_cloud(const Cloud& moving, const OrientedSurface& fixed, const glm::dmat4& start,
                      const SurfaceFitOptions& options, bool widens = true);
 

@@ -10,14 +10,15 @@
 namespace octotomy::brep {
 namespace {
 
-/// Least cosine between normals that match: 37 degrees, which facets of a noisy surface still satisfy.
+/// Smallest cosine between the normals of matching surfaces: 37 degrees, which the facets of a noisy surface
+/// do not exceed.
 constexpr double matching_cosine() {
   return 0.8;
 }
 
-/// A right fit matches at least `least_ratio` times as much of the surface as any other motion, and exceeds it
-/// by at least `least_lead` of the surface. Both constants are not derived; they were chosen by trial fits of
-/// bones and of generated bodies, up to 60 % of which was missing or foreign.
+/// A right fit matches at least `least_ratio` times as much of the surface as any other motion, and exceeds
+/// it by at least `least_lead` of the surface. Neither constant is derived: they were chosen by trial fits of
+/// bones and of generated bodies, of which up to 60 % was missing or belonged to another body.
 constexpr double least_ratio() {
   return 2.0;
 }
@@ -32,17 +33,17 @@ constexpr double least_small_ratio() {
 constexpr double least_lead() {
   return 0.12;
 }
-/// A match of less than this share of the surface is no evidence, however little other motions match: bumps
-/// of a rounded body match a fifth of the body by chance.
+/// A match of less than this share of the surface is no evidence, even if other motions match less: bumps of
+/// a rounded body match a fifth of the body by chance.
 constexpr double least_share() {
   return 0.2;
 }
 
-/// If surfaces coincide except for noise, the noise is about the standard deviation of the samples'
-/// distances. So at least 68 % of the samples lie within a rung as wide as the noise, and at most 1.46 times
-/// as many within four times that distance. If samples are scattered evenly about a surface, for example
-/// where caps of two bodies happen to be alike, several times as many lie within four times the distance. A
-/// small match that grows by more than this factor is chance.
+/// If surfaces coincide except for noise, the standard deviation of the samples' distances is about the
+/// noise. Then at least 68 % of the samples lie within that distance, and at most 1.46 times as many within
+/// four times that distance. If samples are scattered evenly about a surface, for example where caps of two
+/// bodies happen to be alike, several times as many lie within four times the distance. A small match is
+/// chance if four times the distance holds more than this many times as many samples.
 constexpr double most_growth() {
   return 1.5;
 }
@@ -57,9 +58,9 @@ constexpr double equal_share() {
   return 0.35;
 }
 
-/// The fits of a symmetric shape match equally much, apart from the noise of samples. If the smaller of two
-/// matches is below this ratio of the larger one, and the fit matches less than this share, the matches are
-/// chance, as for caps of two unrelated bodies.
+/// The fits of a symmetric shape match equally much, apart from the noise of samples. Two matches are chance,
+/// as for caps of two unrelated bodies, if the smaller is below `chance_ratio` times the larger and the fit
+/// matches less than `chance_share` of the surface.
 constexpr double chance_ratio() {
   return 0.95;
 }
@@ -67,14 +68,14 @@ constexpr double chance_share() {
   return 0.6;
 }
 
-/// Motions closer than this share of the spread count as one answer. Refinements with few samples end within
-/// a hundredth of the spread.
+/// Motions closer than this share of the spread count as one answer. Refinements that reach the same answer
+/// with few samples end within a hundredth of the spread of each other.
 constexpr double same_share() {
   return 0.1;
 }
 
-/// A residual above both this multiple of the noise and this share of the spread comes from parts without a
-/// counterpart.
+/// A residual above both `most_noises` times the noise and `most_residual_share` of the spread comes from
+/// parts without a counterpart.
 constexpr double most_noises() {
   return 5.0;
 }
@@ -89,7 +90,7 @@ std::string per_cent(double share) {
   return short_text(100.0 * share) + " %";
 }
 
-/// Judges a fit from a given start.
+/// Judges a fit that began at a given start by its matched shares `own` within the distances `ladder_mm`.
 FitTrust trust_of_start(const std::vector<double>& own, const std::vector<double>& ladder_mm,
                         FitTrust trust) {
   if (own[1] >= 0.15 || own[2] >= 0.3) return trust;
@@ -199,8 +200,8 @@ FitTrust matched_trust(const glm::dmat4& motion, const TrustedFrom& from) {
       trust.equals.push_back(other);
   }
   trust.rival_share = rival[near_rungs - 1];
-  // Shares within about two and four times the noise, or within larger distances; noise above 4 % of the
-  // spread counts as 4 %.
+  // Matched shares within eight and sixteen times the first distance of the ladder. That is about two and
+  // four times the noise, if the noise is 1 % to 4 % of the spread.
   const std::vector<double> wide =
       matched_shares(from.cloud, from.fixed, motion, {8.0 * ladder_mm[0], 16.0 * ladder_mm[0]});
   const auto is_scattered = [&](std::size_t rung, double below_share) {
@@ -227,8 +228,8 @@ FitTrust matched_trust(const glm::dmat4& motion, const TrustedFrom& from) {
                          is_scattered(near_rungs - 1, chance_share());
   if (!trust.equals.empty() && !is_chance) return trust;
   trust.equals.clear();
-  // The share of samples that coincide: those within the smaller distance, minus those that evenly scattered
-  // samples would have within it.
+  // The share of samples that coincide: those within the smaller distance, less those between the two
+  // distances. Evenly scattered samples would be equally many in both ranges.
   const double coincident_share = 2.0 * wide[0] - wide[1];
   const bool is_near = leads(ladder_mm.size() - 1) || own[near_rungs - 1] >= equal_share() ||
                        coincident_share >= least_share();
@@ -247,7 +248,7 @@ FitTrust trust_of(const glm::dmat4& motion, const TrustedFrom& from) {
       std::max(most_noises() * from.noise_mm, most_residual_share() * from.cloud.spread_mm);
   if (trust.verdict != FitVerdict::Right || from.residual_mm <= most_mm) return trust;
   trust.verdict = FitVerdict::Doubtful;
-  trust.reason = "the residual of the samples kept is above " + short_text(most_mm) +
+  trust.reason = "the residual of the kept samples is above " + short_text(most_mm) +
                  " mm, so that parts without a counterpart may have drawn the fit aside";
   return trust;
 }

@@ -14,7 +14,7 @@
 namespace octotomy::brep {
 namespace {
 
-/// Wendland's function; r is the distance in reaches.
+/// Wendland's function (1-r)^4 (4r+1) of a distance of r reaches.
 double wendland(double r) {
   if (r >= 1.0) return 0.0;
   const double square = (1.0 - r) * (1.0 - r);
@@ -70,7 +70,7 @@ glm::dvec3 LandmarkWarp::at(const glm::dvec3& p_mm) const {
   return by_mm;
 }
 
-/// The Frobenius norm of the field's derivative, which is at least its largest stretch.
+/// The Frobenius norm of the field's derivative, an upper bound of the field's largest stretch.
 double LandmarkWarp::change_at(const glm::dvec3& p_mm) const {
   glm::dmat3 change(0.0);
   for (std::size_t i = 0; i < points_mm_.size(); ++i) {
@@ -78,7 +78,7 @@ double LandmarkWarp::change_at(const glm::dvec3& p_mm) const {
     const double r = glm::length(off);
     if (r >= 1.0) continue;
     const double rest = 1.0 - r;
-    // The slope -20 r (1-r)^3 along off / r.
+    // The derivative of Wendland's function is -20 r (1-r)^3, in the direction off / r.
     change += glm::outerProduct(weights_mm_[i], -20.0 * rest * rest * rest / reach_mm_ * off);
   }
   double sum = 0.0;

@@ -20,12 +20,14 @@ class LandmarkWarp {
   LandmarkWarp(std::vector<glm::dvec3> points_mm, const std::vector<glm::dvec3>& displacement_mm,
                double reach_mm);
 
-  /// Cost: linear in the landmarks.
+  /// The displacement at a point, mm. Cost: linear in the landmarks.
   glm::dvec3 at(const glm::dvec3& p_mm) const;
 
-  /// A bound of how fast the displacement changes, in mm per mm. Below 1 the field folds nothing: each point has one
-  /// origin. Read on a lattice of a 40th of the reach and raised by what the field's curvature allows in between, at
-  /// most 20 / reach_mm^2 times a weight. Parallel. Cost: some million readings.
+  /// An upper bound of the field's rate of change, in mm per mm. Below 1 the field does not fold space: no
+  /// two points are displaced to the same place. Computed from the rate at the points of a lattice with steps
+  /// of a 40th of the reach. The bound adds the most that the rate can grow between them: the second
+  /// derivative of a landmark's share is at most 20 / reach_mm^2 times its weight. Parallel. Cost: the rate
+  /// at some million points.
   double steepest() const;
 
  private:

@@ -20,15 +20,13 @@
 namespace octotomy::brep {
 namespace {
 
-/// The starts are sorted by fits with few samples and few rounds; the best planes are then fitted with
-/// more.
+/// Fits with few samples and rounds sort the starts; the best planes are then fitted with more of both.
 constexpr std::size_t voting_samples = 1000, voted_count = 24, sift_samples = 150, trial_samples = 1000;
 constexpr int sift_rounds = 15, trial_rounds = 60;
 constexpr std::size_t tried_count = 4;
 
-/// The share of the overlap that trials keep. A missing part on one side may shift the surface's centre and
-/// axes, or be larger than the stated overlap allows. With this share the trials find the plane in spite of
-/// it.
+/// Trials keep only this share of the overlap. The part that is missing on one side may shift the surface's
+/// centre and axes, or exceed what the stated overlap allows. The trials then still find the plane.
 constexpr double trial_overlap() {
   return 0.5;
 }
@@ -221,31 +219,32 @@ std::vector<Tried> tried(const std::vector<MirrorPlane>& starts, const Cloud& cl
   return different;
 }
 
-/// If the residual is this many times that of the trials, which keep less of the surface, some kept samples
-/// have no counterpart.
+/// If the final residual is more than this many times that of the trials, which keep less of the surface,
+/// some of its samples have no counterpart.
 constexpr double far_worse() {
   return 5.0;
 }
 
-/// Reports a second plane that fits nearly as well, and a surface that no plane fits.
+/// Reports that no tried plane fits, or that a second plane fits nearly as well.
 void tell_rival(const std::vector<Tried>& planes, MirrorFit& found) {
   if (!planes.empty() && !planes[0].is_fit())
     found.findings.emplace_back(
-        "WARN mid-plane: at none of the tried planes does half of the overlap have a counterpart: the "
-        "plane "
-        "is a guess: state a plane near the right one by --plane, or a smaller --overlap");
+        "WARN mid-plane: the plane is a guess, because less than a quarter of the stated overlap has a "
+        "counterpart at every plane that was tried: give a plane near the right one by --plane, or a smaller "
+        "--overlap");
   if (planes.size() < 2 || !planes[1].is_fit() || planes[1].rms_mm > rival_share() * planes[0].rms_mm) return;
   const glm::dvec3& n = planes[1].plane.normal;
   found.findings.push_back("WARN mid-plane: another plane, of normal (" + short_text(n.x) + ", " +
-                           short_text(n.y) + ", " + short_text(n.z) + "), fits nearly as well: residual " +
-                           short_text(planes[1].rms_mm) + " mm instead of " + short_text(planes[0].rms_mm) +
-                           " mm: look at the image, or give a plane near the right one by --plane");
+                           short_text(n.y) + ", " + short_text(n.z) +
+                           "), fits nearly as well, with a residual of " + short_text(planes[1].rms_mm) +
+                           " mm instead of " + short_text(planes[0].rms_mm) +
+                           " mm: check the mirrored surface, or give a plane near the right one by --plane");
 }
 
 Triangles mirrored_triangles(Triangles triangles, const MirrorPlane& plane) {
   const double length = glm::length(plane.normal);
   if (!(length > 0.0) || !std::isfinite(length))
-    throw InvalidInput("mirrored: the plane's normal has no length");
+    throw InvalidInput("mirrored: the length of the plane's normal is 0 or not finite");
   const glm::dmat4 image_of = reflection({plane.point_mm, plane.normal / length});
   for (glm::dvec3& p : triangles.points_mm) p = glm::dvec3(image_of * glm::dvec4(p, 1.0));
   for (auto& face : triangles.faces) std::swap(face[1], face[2]);

@@ -23,8 +23,8 @@ Mesh mirrored(const Mesh& mesh, const MirrorPlane& plane);
 Solid mirrored(const Solid& solid, const MirrorPlane& plane);
 
 struct MirrorFitOptions {
-  /// The plane near which the result lies, to about 20 degrees. None: tries the planes perpendicular to the
-  /// surface's three axes, and the planes about which the most pairs of points are mirror images.
+  /// A plane within about 20 degrees of the right one. None: tries the planes perpendicular to the surface's
+  /// three axes, and the planes about which the most pairs of points are mirror images.
   std::optional<MirrorPlane> start = std::nullopt;
   /// Share of the surface's area that has a counterpart on the other side, as in SurfaceFitOptions: the
   /// missing or crooked part of one side must be less than the rest. Without a start, half of this share is
@@ -39,7 +39,7 @@ struct MirrorFitOptions {
 struct MirrorFit {
   MirrorPlane plane;    ///< its point is the plane's nearest point to the surface's centre; the largest
                         ///< component of its normal is positive
-  double rms_mm = 0.0;  ///< distance of the mirrored surface from the surface, over the samples kept
+  double rms_mm = 0.0;  ///< root mean square distance of the mirrored surface's kept samples from the surface
   double kept_share = 0.0;
   /// The remaining motion that would fit the mirror image to the surface best, as rotation about the normal
   /// and shift in the plane. Both are near zero if the surface has a mid-plane.
@@ -54,7 +54,7 @@ struct MirrorFit {
 
 /// The plane about which a surface is most nearly its own mirror image. Throws as register_surfaces(). Cost:
 /// one fit of register_surfaces(); without a start, also 27 short fits with few samples and four with more.
-/// Source: Benz et al., "The symmetry of faces", VMV 2002: mirror about any plane, register, and take the
+/// Source: Benz et al., "The symmetry of faces", VMV 2002: mirror about any plane, register, and return the
 /// plane half way between points and their images; starts by votes of pairs after Mitra, Guibas, Pauly,
 /// "Partial and approximate symmetry detection for 3D geometry", SIGGRAPH 2006.
 MirrorFit fit_mirror_plane(const Mesh& mesh, const MirrorFitOptions& options = {});

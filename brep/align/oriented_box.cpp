@@ -27,10 +27,10 @@ std::vector<Kernel::Point_3> points_of(const Mesh& mesh) {
   return points;
 }
 
-/// If the hull has more points, the search uses those that lie furthest in `most_points / 2` directions and
-/// in the opposite ones. Every direction is within about 2 degrees of one of these directions. The box is
-/// measured again over all points, so it holds all of them; on a rounded body its edges exceed the shortest
-/// possible ones by less than 1e-3.
+/// If the hull has more points than this, the search uses those that lie furthest in `most_points / 2`
+/// directions and in the opposite ones. Every direction is within about 2 degrees of one of these directions.
+/// The box is measured again over all points, so it holds all of them; on a rounded body its edges exceed the
+/// shortest possible ones by less than 0.1 %.
 constexpr std::size_t most_points = 4000;
 
 glm::dvec3 as_vector(const Kernel::Point_3& p) {
@@ -41,7 +41,7 @@ std::vector<Kernel::Point_3> furthest_points(const std::vector<Kernel::Point_3>&
   std::vector<std::size_t> chosen;
   const std::size_t directions = most_points / 2;
   for (std::size_t i = 0; i < directions; ++i) {
-    // A spiral of equal areas over half of the sphere.
+    // Directions along a spiral over half of the sphere; each represents an equal area.
     const double z = (static_cast<double>(i) + 0.5) / static_cast<double>(directions),
                  turn = static_cast<double>(i) * std::numbers::pi * (3.0 - std::sqrt(5.0)),
                  r = std::sqrt(1.0 - z * z);
@@ -94,7 +94,7 @@ void order(OrientedBox& box) {
 
 OrientedBox oriented_box(const Mesh& mesh) {
   std::vector<Kernel::Point_3> points = points_of(mesh), all;
-  if (points.empty()) throw InvalidInput("oriented_box: there are no triangles for a box");
+  if (points.empty()) throw InvalidInput("oriented_box: the mesh has no triangles, so it has no box");
   bool is_hull = false;
   if (points.size() > most_points) {
     std::vector<Kernel::Point_3> hull;
@@ -121,7 +121,7 @@ OrientedBox oriented_box(const Mesh& mesh) {
   for (int k = 0; k < 3; ++k) box.edges_mm[k] = glm::length(edges[static_cast<std::size_t>(k)]);
   // A flat box is valid: two edges suffice for three axes.
   if (!(box.edges_mm.y > 0.0))
-    throw InvalidInput("oriented_box: all points lie in one line, so a box has no axes");
+    throw InvalidInput("oriented_box: all points lie on one line, so the axes of a box are undetermined");
   box.axes[0] = forward(edges[0] / box.edges_mm.x);
   box.axes[1] = forward(edges[1] / box.edges_mm.y);
   box.axes[2] = glm::normalize(glm::cross(box.axes[0], box.axes[1]));

@@ -26,9 +26,9 @@ struct Pair {
   double weight = 1.0;
 };
 
-/// A set counts as lying on a line if no point is farther from the line to the outermost point than this
-/// share of that point's distance from the centre. Landmarks on a head of about 200 mm are placed to a tenth
-/// of a millimetre at best, so a smaller spread is only noise.
+/// A set counts as lying on one line if its points are near the line from its centre to its outermost point:
+/// within this share of the outermost point's distance from the centre. Landmarks on a head of about 200 mm
+/// are placed to a tenth of a millimetre at best, so a smaller spread is only noise.
 constexpr double line_share() {
   return 0.1 / 200.0;
 }

@@ -26,8 +26,8 @@ struct LandmarkFit {
 enum class MotionModel {
   rigid,
   similarity,    ///< rigid, and one scale
-  three_points,  ///< rigid: makes the first pair coincide, then aligns the direction to the second, then the
-                 ///< plane of the third; further pairs only have residuals
+  three_points,  ///< rigid: the first pair coincides, then the directions to the second pair, then the planes
+                 ///< with the third pair; further pairs do not affect the motion
 };
 
 /// The motion that maps landmarks to those of the same name with the least weighted sum of squared distances;

@@ -85,7 +85,8 @@ glm::dvec3 through(const glm::dmat4& motion, const glm::dvec3& p) {
   return glm::dvec3(motion * glm::dvec4(p, 1.0));
 }
 
-/// The motion that makes both clouds' centres coincide, and their axes after the rotation `turn`.
+/// The motion that makes both clouds' centres coincide and lays the moving cloud's axes, rotated by `turn`,
+/// on the fixed cloud's.
 glm::dmat4 laid_on(const Cloud& moving, const Cloud& fixed, const glm::dmat3& turn) {
   const glm::dmat3 rotation = fixed.axes * turn * glm::transpose(moving.axes);
   glm::dmat4 motion(rotation);
@@ -103,8 +104,8 @@ std::vector<glm::dmat3> icosahedral_turns() {
   std::vector<glm::dmat3> turns = {glm::dmat3(1.0)};
   const auto known = [&](const glm::dmat3& turn) {
     return std::any_of(turns.begin(), turns.end(), [&](const glm::dmat3& other) {
-      // The products sum to the trace of the rotation between both: 3 if they are equal, else at most 1.62,
-      // because the group's smallest rotation is 72 degrees.
+      // These three products add up to the trace of the rotation between both: 3 if they are equal, else at
+      // most 1.62, because the group's smallest rotation is 72 degrees.
       return glm::dot(turn[0], other[0]) + glm::dot(turn[1], other[1]) + glm::dot(turn[2], other[2]) > 2.5;
     });
   };
@@ -121,7 +122,8 @@ struct Fit {
   glm::dmat4 motion{1.0};
   double rms_mm = 0.0;                                        ///< of the samples kept
   double limit_mm = std::numeric_limits<double>::infinity();  ///< samples further away are dropped
-  double score_mm = 0.0;  ///< rms of the nearest `overlap` of all samples, counterpart or not
+  double score_mm = 0.0;  ///< rms of the nearest samples, a share `overlap` of all, with or without
+                          ///< counterpart
   std::size_t kept = 0;
   double stiffness = 0.0;
   MotionDoubt doubt;
@@ -133,7 +135,8 @@ struct Fit {
   int since_best = 0;  ///< rounds since best_mm fell noticeably
 };
 
-/// Evaluates a motion: the samples, their counterparts, and which samples are kept.
+/// Refines a motion, point to plane, and evaluates it: the counterparts of the samples, and which samples are
+/// kept.
 class Refinement {
  public:
   Refinement(const Cloud& moving, const OrientedSurface& fixed, const SurfaceFitOptions& options)
@@ -199,8 +202,8 @@ class Refinement {
     return static_cast<std::size_t>(std::ceil(overlap_ * static_cast<double>(moving_.points_mm.size())));
   }
 
-  /// The samples with a counterpart, in their order. Trims the furthest by share until a distance limit is
-  /// set.
+  /// The samples with a counterpart, in their order. While no distance limit is set, the farthest beyond the
+  /// share `overlap` are left out.
   std::vector<std::size_t> kept(const std::vector<Meeting>& meetings, const Fit& fit) const {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < meetings.size(); ++i)
@@ -264,8 +267,7 @@ class Refinement {
     return row;
   }
 
-  /// The inverse of the normal equations. An undetermined motion gets the largest value that sums of doubles
-  /// allow.
+  /// The inverse of the normal equations. Motions that the samples leave undetermined get a variance of 1e12.
   MotionDoubt doubt_of(const std::vector<Meeting>& meetings, const std::vector<std::size_t>& chosen,
                        const glm::dmat4& motion) const {
     MotionDoubt doubt{through(motion, moving_.centre_mm), moving_.spread_mm};
@@ -288,7 +290,7 @@ class Refinement {
     return doubt;
   }
 
-  /// Stores the best motion so far. Returns whether it has not improved for cycle_rounds.
+  /// Stores the best motion so far. Returns whether none of the last cycle_rounds rounds has improved it.
   static bool is_cycling(Fit& fit, const std::vector<Meeting>& meetings,
                          const std::vector<std::size_t>& chosen) {
     double squares = 0.0;
@@ -349,8 +351,8 @@ void sort_by_score(std::vector<Fit>& fits) {
 /// The result of a search with few samples.
 struct Searched {
   glm::dmat4 best{1.0};
-  std::vector<glm::dmat4> ends;    ///< motions at which the starts ended, the best first
-  std::vector<glm::dmat4> others;  ///< different motions, the best first, refined further
+  std::vector<glm::dmat4> ends;    ///< motions at which the search's starts ended, the best first
+  std::vector<glm::dmat4> others;  ///< the different ones of them after further refinement, the best first
 };
 
 std::vector<glm::dmat4> motions_of(const std::vector<Fit>& fits) {
@@ -360,7 +362,7 @@ std::vector<glm::dmat4> motions_of(const std::vector<Fit>& fits) {
   return motions;
 }
 
-/// Refines each rotation with few samples and sorts the results.
+/// Refines the present position and each rotation with few samples, and sorts the results.
 Searched search(const Cloud& cloud, const Cloud& fixed, const OrientedSurface& surface,
                 const SurfaceFitOptions& options) {
   const Refinement refinement(cloud, surface, options);
@@ -389,7 +391,7 @@ Searched search(const Cloud& cloud, const Cloud& fixed, const OrientedSurface& s
   return searched;
 }
 
-/// Refines the search's results with a smaller overlap. Returns the one that matches most first.
+/// Refines the search's results with a smaller overlap. Returns the motions, the one that matches most first.
 std::vector<glm::dmat4> narrowed(const Cloud& cloud, const Searched& searched, const OrientedSurface& surface,
                                  double noise_mm, const SurfaceFitOptions& options) {
   const std::vector<double> ladder_mm = trust_ladder_mm(cloud.spread_mm, noise_mm);
@@ -409,7 +411,8 @@ std::vector<glm::dmat4> narrowed(const Cloud& cloud, const Searched& searched, c
   };
   const Refinement refinement(cloud, surface, options);
   std::vector<glm::dmat4> again;
-  // Short refinements end a few hundredths of the spread away from where they would come to rest.
+  // Ends of short refinements are a few hundredths of the spread away from where longer ones would come to
+  // rest.
   const std::vector<glm::dmat4> ends = sorted(searched.ends, 2.0 * ladder_mm.back());
   for (const glm::dmat4& end : different_motions(cloud, ends, narrowed_ends))
     again.push_back(refinement.widened(refinement.run(end, finalist_rounds), finalist_rounds).motion);

@@ -37,15 +37,16 @@
 namespace octotomy::brep {
 namespace {
 
-constexpr double on_surface_mm = 3.0;  ///< points are placed by hand
+constexpr double on_surface_mm = 3.0;  ///< largest distance of a given point from its surface: points are
+                                       ///< placed by hand
 constexpr double beside_mm = 15.0;     ///< only the object's surface within this distance of the points is
                                        ///< used
 constexpr double patch_mm = 4.0;       ///< about half a tooth
 constexpr std::uint32_t held_one_in = 4;
 constexpr std::size_t least_held = 8;
 constexpr double sample_every_mm = 0.4;
-/// Smallest accepted share of the held patches that lies near the object's surface. Right scans of the head
-/// phantom's teeth reach 0.8, those of the other jaw less than 0.4.
+/// Smallest accepted share of the held patches' samples that match the object's surface. Right scans of the
+/// head phantom's teeth reach 0.8, those of the other jaw less than 0.4.
 constexpr double least_matched = 0.55;
 /// Shares of the samples' spacing. The first is the largest error that the object's surface has on all teeth
 /// alike, the second the largest root mean square of its error. Isosurfaces of partial volumes stay within
@@ -53,8 +54,8 @@ constexpr double least_matched = 0.55;
 constexpr double common_share = 0.05, own_share = 0.25;
 constexpr double deviations_99 = 2.58;
 
-/// Surfaces within this distance of each other match. The scan's points and the object's samples resolve no
-/// less.
+/// Surfaces within this distance of each other match. The scan's points and the object's samples do not
+/// resolve smaller distances.
 double match_mm(const ToothScanOptions& options) {
   return std::max(0.3, 0.5 * options.sample_mm);
 }
@@ -72,7 +73,7 @@ glm::dvec3 through(const glm::dmat4& motion, const glm::dvec3& p_mm) {
   throw Error(ErrorCode::Geometry, why);
 }
 
-/// The triangles for whose middle `keeps` returns true, and only the points of these.
+/// The triangles at whose middle `keeps` returns true, and only the points of these.
 template <typename Keeps>
 Triangles part_where(const Triangles& whole, const Keeps& keeps) {
   constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
@@ -223,7 +224,7 @@ double middle_of(std::vector<double> values) {
   return *middle;
 }
 
-/// The patches of the crowns.
+/// The crowns, divided into the patches to fit and the patches held back.
 struct Patches {
   Triangles fitted;
   std::map<Cell, Triangles> held;
@@ -320,9 +321,9 @@ void find_roots(const Solid& fixed, const ToothPoints& points, const ToothScanOp
     votes += static_cast<int>(fixed.tree().is_inside(p + step_mm * laid.to_roots)) -
              static_cast<int>(fixed.tree().is_inside(p - step_mm * laid.to_roots));
   if (2 * std::abs(votes) < static_cast<int>(points.fixed_mm.size()))
-    refuse(
-        "there are no teeth of " + options.fixed +
-        " at the points: it lies on no side of their plane; give points on the biting surfaces of its teeth");
+    refuse("the points are not on teeth of " + options.fixed +
+           ": at most of them, both sides of their plane are inside it, or neither is; give points on the "
+           "biting surfaces of its teeth");
   if (votes < 0) laid.to_roots = -laid.to_roots;
   for (const glm::dvec3& p : points.fixed_mm)
     laid.tips_mm += glm::dot(p, laid.to_roots) / static_cast<double>(points.fixed_mm.size());

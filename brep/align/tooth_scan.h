@@ -36,7 +36,7 @@ struct HeldPatch {
   glm::dvec3 at_mm{0.0};     ///< middle of the patch in the laid scan
   double mean_mm = 0.0;      ///< mean distance from the fixed surface, negative inside
   double mean_mm2 = 0.0;     ///< mean of the squared distances
-  bool is_left_out = false;  ///< much farther from the fixed surface than the other patches
+  bool is_left_out = false;  ///< not used: much farther from the fixed surface than the other patches
 };
 
 /// A scan laid onto the teeth, and the error of its position.
@@ -44,12 +44,14 @@ struct LaidToothScan {
   glm::dmat4 fixed_from_scan{1.0};
   glm::dvec3 to_roots{0, 0, 1};  ///< unit normal of the plane of the points, from the tips to the roots
   double tips_mm = 0.0;          ///< p . to_roots for the points p of the plane
-  double points_rms_mm = 0.0;    ///< root mean square residual of the points, before the surfaces are fitted
-  SurfaceFit fit;                ///< fit of the patches that were not held back
+  double points_rms_mm = 0.0;    ///< root mean square residual of the given points, before the surfaces are
+                                 ///< fitted
+  SurfaceFit fit;                ///< fit of the crowns' patches that were not held back
   std::vector<HeldPatch> held;
   std::size_t fitted_patches = 0;
-  double matched_share = 0.0;  ///< share of the held patches' samples with a counterpart on the fixed surface
-  double distance_mm = 0.0;    ///< root mean square distance of the held patches from the fixed surface
+  double matched_share = 0.0;  ///< share of the held patches' samples that match the fixed surface
+  double distance_mm = 0.0;    ///< root mean square distance of the held patches in use from the fixed
+                               ///< surface
   /// The root mean square distance of the laid scan's points from their true positions is error_mm +-
   /// half_width_mm in 99 of 100 cases.
   double error_mm = 0.0, half_width_mm = 0.0;
@@ -58,14 +60,14 @@ struct LaidToothScan {
   double depth_mm(const glm::dvec3& p_mm) const { return glm::dot(p_mm, to_roots) - tips_mm; }
 };
 
-/// Lays a scan of teeth, open and with holes, onto a solid that shows the same teeth: first by the points, then by
-/// the surfaces of the crowns, without their farthest parts. A quarter of the crowns, in patches, is not fitted: the
-/// distances of these patches bound the error. Both in LPS millimetres. Throws Error (Input or Geometry) in one
-/// sentence that states the cause: a wrong unit; points that are too few, off their surface or fit only mirrored; a
-/// scan that does not match the teeth, such as one of the other jaw; too little of the crowns. Throws
-/// std::invalid_argument if the points lie on one line, and Stopped. The same bits on any number of threads. Cost:
-/// that of register_surfaces() with a start. Sources: as register_surfaces(); held-out patches are a
-/// cross-validation.
+/// Lays a scan of teeth, open and with holes, onto a solid that shows the same teeth: first by the points,
+/// then by the surfaces of the crowns, without their farthest parts. About a quarter of the crowns, in
+/// patches, is not fitted: the distances of these patches bound the error. Both in LPS millimetres. Throws
+/// Error (Input or Geometry) in one sentence that states the cause: a wrong unit; points that are too few,
+/// off their surface or fit only mirrored; a scan that does not match the teeth, such as one of the other
+/// jaw; too little of the crowns. Throws std::invalid_argument if the points lie on one line, and Stopped.
+/// The same bits on any number of threads. Cost: that of register_surfaces() with a start. Sources: as
+/// register_surfaces(); held-out patches are a cross-validation.
 LaidToothScan lay_tooth_scan(const Mesh& scan, const Solid& fixed, const ToothPoints& points,
                              const ToothScanOptions& options);
 

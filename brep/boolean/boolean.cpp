@@ -69,18 +69,19 @@ double reach_mm(const Size& a, const Size& b) {
   return reach;
 }
 
-/// The largest error of a sum of volumes for correct results. A new point is rounded by half a unit of the
-/// last place in each coordinate, which moves the surface by no more than that, and errors of either sign
-/// cancel: on skulls of 600k triangles the volumes add up to within a hundredth of one unit over the whole
-/// area. Slivers that cross at a small angle may be worse. 2^12 units leave room for slivers and are still
-/// far below the volume of a lost triangle.
+/// The largest error of a sum of volumes of correct results. Rounding moves a new point, and thus the
+/// surface, by at most half a unit of the last place in each coordinate, and errors of either sign cancel. On
+/// skulls of 600k triangles the sums are wrong by less than a hundredth of one unit times the whole area.
+/// Slivers that cross at a small angle may be worse. 2^12 units leave room for slivers and are still far
+/// below the volume of a lost triangle.
 double volume_tolerance_mm3(const Size& a, const Size& b) {
   return 0x1p12 * std::numeric_limits<double>::epsilon() * reach_mm(a, b) * (a.area_mm2 + b.area_mm2);
 }
 
-/// The shift for a further attempt: 2^-18 of the extent at first, about 1 um for a head of 250 mm; later
-/// attempts reverse it and go further. It is 2^34 times the last place, so that nothing stays in contact, and
-/// far below a voxel. Its direction is unlikely to be parallel to any plane or edge.
+/// The shift for a further attempt: 2^-18 of the extent at first, about 1 um for a head of 250 mm. Later
+/// attempts shift in the opposite direction and farther. The shift is 2^34 times the last place, so that no
+/// parts stay in contact, and far below a voxel. Its direction is unlikely to be parallel to any plane or
+/// edge.
 glm::dvec3 shift_mm(int attempt, double extent) {
   assert(attempt >= 0 && std::isfinite(extent));
   if (attempt == 0) return glm::dvec3(0.0);
@@ -90,8 +91,8 @@ glm::dvec3 shift_mm(int attempt, double extent) {
 }
 constexpr int attempt_count = 4;
 
-/// The wanted results, and those that the check of volumes needs: always the intersection and, if nothing
-/// else is wanted, the difference with the smaller mesh.
+/// The wanted results, and those that the check of volumes needs: always the intersection and, if no other
+/// result is wanted, the difference whose minuend has fewer triangles.
 Wanted with_witnesses(Wanted wanted, const Mesh& a, const Mesh& b) {
   assert(wanted[of_union] || wanted[of_intersection] || wanted[of_a_minus_b] || wanted[of_b_minus_a]);
   wanted[of_intersection] = true;
@@ -102,7 +103,7 @@ Wanted with_witnesses(Wanted wanted, const Mesh& a, const Mesh& b) {
 
 using Volumes = std::array<std::optional<double>, 4>;
 
-/// The largest disagreement of the volumes, in cubic millimetres.
+/// The largest error of the identities between volumes, mm3; none if too few volumes are known.
 std::optional<double> disagreement_mm3(const Volumes& volumes, double a_mm3, double b_mm3) {
   std::optional<double> worst;
   const auto compare = [&](double whole, const std::optional<double>& part,
@@ -115,8 +116,8 @@ std::optional<double> disagreement_mm3(const Volumes& volumes, double a_mm3, dou
   return worst;
 }
 
-/// The number of points in a box that several vertices share. Where sheets of the surface touch, corefinement
-/// creates a vertex for each sheet.
+/// The number of positions in a box at which several vertices lie. Where sheets of the surface touch,
+/// corefinement creates a vertex for each sheet.
 std::size_t shared_point_count(const Triangles& surface, const glm::dvec3& low, const glm::dvec3& high) {
   assert(!glm::any(glm::isnan(low)) && !glm::any(glm::isnan(high)));
   std::vector<glm::dvec3> points;
@@ -161,8 +162,8 @@ struct Question {
 };
 
 /// The union of pieces that share whole triangles with opposite winding, such as both differences and the
-/// intersection of two solids. Its sheets may touch along edges, where corefinement alone has no union. None
-/// if the remaining triangles are not closed.
+/// intersection of two solids. Unlike corefinement, this works also where sheets touch along edges. None if
+/// the remaining triangles are not closed.
 std::optional<Triangles> union_of_pieces(const std::array<const Triangles*, 3>& pieces) {
   Triangles all;
   PointNumbers numbers(all.points_mm);
@@ -190,7 +191,7 @@ std::optional<Triangles> union_of_pieces(const std::array<const Triangles*, 3>& 
   return in_coordinate_order(mesh_of(joined));
 }
 
-/// Adds the union, if it is wanted and missing, from the other results.
+/// If the union is wanted and missing, computes the other results and unites them.
 void add_union_of_pieces(const Question& question, const Solid& b, Corefined& corefined) {
   if (!question.wanted[of_union] || corefined.results[of_union] || !corefined.failure.empty()) return;
   Corefined pieces = corefine(question.a, b, {false, true, true, true}, question.stop);
@@ -233,13 +234,13 @@ Attempt near_attempt(const Question& question, const Solid& b) {
   return attempt;
 }
 
-/// Adds to the failure which results are missing, which volumes do not add up, and which lines through the
-/// shells disagree.
+/// Records as failure: wanted results that are missing, volumes that do not add up, or a line through a shell
+/// that disagrees.
 void judge(const Question& question, const Solid& b, Attempt& attempt) {
   const std::string missing = missing_of(attempt.results, question.wanted, question.names);
   if (!missing.empty()) {
     if (attempt.failure.empty())
-      attempt.failure = missing + " would not be manifold: the surfaces only touch";
+      attempt.failure = missing + " would not be manifold, because the surfaces only touch";
     return;
   }
   attempt.failure.clear();
@@ -247,12 +248,13 @@ void judge(const Question& question, const Solid& b, Attempt& attempt) {
       disagreement_mm3(attempt.volumes_mm3, volume_mm3(question.a), volume_mm3(question.b));
   const double tolerance = volume_tolerance_mm3(question.a.size(), question.b.size());
   if (!attempt.disagreement_mm3)
-    attempt.findings.emplace_back("too few results are manifold for their volumes to be compared");
+    attempt.findings.emplace_back("the volumes could not be checked, because too few results are manifold");
   else if (*attempt.disagreement_mm3 > tolerance)
     attempt.failure = "the results' volumes are " + std::to_string(*attempt.disagreement_mm3) +
                       " mm3 from adding up, " + std::to_string(tolerance) + " is allowed";
   if (!attempt.failure.empty()) return;
-  // Volumes cannot detect a surplus shell if the result that they are checked against has it, too. Lines can.
+  // A check by volumes misses a surplus shell that is also in the other result of the identity. A check by
+  // lines finds it.
   const auto wrong =
       attempt.widest.empty()
           ? disagreement_along_lines(question.a, b, attempt.results, question.wanted)
@@ -269,15 +271,16 @@ Attempt best_attempt(const Question& question, const Solid& b) {
   return whole;
 }
 
-/// Computes the results from the cells between the planes of all faces, which must be square to the axes.
-/// Used where corefinement fails: for surfaces that touch themselves, and for results that cross themselves.
+/// Computes the results from the cells between the planes of all faces, all of which must be square to the
+/// axes. Used where corefinement fails: for surfaces that touch themselves, and for results that cross
+/// themselves.
 Attempt rectilinear_attempt(const Question& question, double tolerance_mm) {
   Attempt attempt;
   std::optional<Results> results =
       rectilinear_results(question.a.triangles(), question.b.triangles(),
                           with_witnesses(question.wanted, question.a, question.b), tolerance_mm);
   if (!results) {
-    attempt.failure = "faces are not square to the axes";
+    attempt.failure = "some faces are not square to the axes";
     return attempt;
   }
   for (std::size_t r = 0; r < results->size(); ++r)
@@ -293,7 +296,8 @@ Attempt shifted_attempt(const Question& question, const glm::dvec3& shift) {
   return best_attempt(question, trusted_solid(b, Proof::Rounded));
 }
 
-/// Sheets can only touch where the boxes of both operands overlap, so the rest is not searched.
+/// Reports positions at which sheets of a result touch. They can only lie where the boxes of both operands
+/// overlap, so only this region is searched.
 void tell_touching(const Question& question, Attempt& attempt) {
   const Size &a = question.a.size(), &b = question.b.size();
   const double margin = glm::length(shift_mm(attempt_count, extent_mm(a, b)));
@@ -324,7 +328,7 @@ void tell_flat(Attempt& attempt) {
         (attempt.flat == 1 ? " other diagonal" : " other diagonals") + "; their surfaces are unchanged");
 }
 
-/// Takes out the folds that rounding left, reports those that stay, and returns their number.
+/// Removes folds that rounding made, reports those that cannot be removed, and returns their number.
 std::size_t settle(const Question& question, Attempt& attempt, SettleReach reach) {
   std::size_t unfit = 0;
   for (std::size_t r = 0; r < attempt.results.size(); ++r) {
@@ -366,8 +370,8 @@ Answer answer_of(const Question& question, Attempt attempt, SettleReach reach = 
   return answer;
 }
 
-/// Reports that faces were moved onto one plane. Moves within the rounding of doubles, which every new point
-/// undergoes, are not reported.
+/// Reports that points were moved onto common planes. Moves within the rounding of doubles, which every new
+/// point undergoes, are not reported.
 void tell_coplanar(const Question& question, double moved_mm, Attempt& attempt) {
   const double area_mm2 = question.a.size().area_mm2 + question.b.size().area_mm2;
   if (moved_mm <= volume_tolerance_mm3(question.a.size(), question.b.size()) / area_mm2) return;
@@ -378,8 +382,7 @@ void tell_coplanar(const Question& question, double moved_mm, Attempt& attempt) 
                              short_text(moved_mm * area_mm2) + " mm3");
 }
 
-/// The first answer without folds, or else the one with the fewest; and the reason if the operands as given
-/// had no answer.
+/// The first answer without folds; if there is none, the answer with the fewest folds.
 class Best {
  public:
   bool is_found() const { return best_ && best_->unfit == 0; }
@@ -394,7 +397,7 @@ class Best {
   std::optional<Answer> best_;
 };
 
-/// Answers in a frame in which faces that lie on one plane, apart from rounding, lie on it exactly.
+/// Computes answers in a frame in which faces that lie on one plane, apart from rounding, lie on it exactly.
 void answer_in_common_frame(const Question& question, Best& best) {
   const std::optional<CommonFrame> frame = common_frame(question.a, question.b);
   if (!frame) return;
@@ -411,8 +414,8 @@ void answer_in_common_frame(const Question& question, Best& best) {
   }
 }
 
-/// Answers with operands that have the same triangles on common planes. These planes may have several
-/// directions.
+/// Computes an answer from operands that have the same triangles on their common planes. These planes may
+/// have several directions.
 void answer_of_imprinted(const Question& question, Best& best) {
   const std::optional<Imprinted> divided = imprinted(question.a, question.b);
   if (!divided) return;
@@ -454,7 +457,8 @@ Answer answer(const Question& question) {
                   " mm did not help; check the health of both operands and repair them, or move one");
 }
 
-/// An order of meshes that does not depend on the order of the arguments.
+/// Whether a comes after b in an order of meshes, which makes a result independent of the order of the
+/// arguments.
 bool comes_after(const Triangles& a, const Triangles& b) {
   if (a.faces.size() != b.faces.size()) return a.faces.size() > b.faces.size();
   const auto less = [](const glm::dvec3& p, const glm::dvec3& q) {
@@ -506,7 +510,7 @@ BooleanResult boolean(const Solid& a, Operation operation, const Solid& b, const
 }
 
 BooleanResult boolean(const std::vector<Solid>& operands, Operation operation, const std::stop_token& stop) {
-  if (operands.empty()) throw std::invalid_argument("a Boolean needs an operand");
+  if (operands.empty()) throw std::invalid_argument("a Boolean needs at least one operand");
   BooleanResult all;
   const auto combine = [&](const Solid& a, Operation step, const Solid& b) {
     BooleanResult result = boolean(a, step, b, stop);

@@ -18,7 +18,7 @@
 
 namespace octotomy::brep {
 
-/// Triangles over points of any type that has an order.
+/// Triangles over points of any type, which are compared by `less`.
 template <typename Point>
 struct PointTriangles {
   std::vector<Point> points;
@@ -28,7 +28,7 @@ struct PointTriangles {
 /// The faces of a shell, ascending.
 using Shell = std::vector<std::uint32_t>;
 
-/// The shells, connected across points, and the least point of each. Cost: linear.
+/// The shells, connected across points, and each one's least point. Cost: linear.
 template <typename Point, typename Less>
 std::vector<std::pair<std::uint32_t, Shell>> shells_by_least_point(const PointTriangles<Point>& surface,
                                                                    const Less& less) {
@@ -54,7 +54,7 @@ std::vector<std::pair<std::uint32_t, Shell>> shells_by_least_point(const PointTr
   return shells;
 }
 
-/// A surface of only these faces.
+/// A surface of the given faces only.
 template <typename Point>
 PointTriangles<Point> part_of(const PointTriangles<Point>& surface, const Shell& faces) {
   constexpr auto none = static_cast<std::uint32_t>(-1);
@@ -95,8 +95,8 @@ bool coincide(const PointTriangles<Point>& a, const PointTriangles<Point>& b, bo
   return places_of(a, contrary) == places_of(b, false);
 }
 
-/// The pairs of shells of two surfaces that have the same triangles. Cost: linear, and n log n for shells
-/// that share their least point.
+/// The pairs of shells, one from each surface, that have the same triangles. Cost: linear, and n log n for
+/// shells that share their least point.
 template <typename Point, typename Less>
 std::vector<std::array<Shell, 2>> coincident_shells(const PointTriangles<Point>& a,
                                                     const PointTriangles<Point>& b, bool contrary,

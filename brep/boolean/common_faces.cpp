@@ -22,7 +22,7 @@ struct FaceHash {
   }
 };
 
-/// The face rotated so that its least number comes first.
+/// The face with its corners rotated so that the lowest number comes first.
 Face turned(const Face& f) {
   const auto least = static_cast<std::size_t>(std::min_element(f.begin(), f.end()) - f.begin());
   return {f[least], f[(least + 1) % 3], f[(least + 2) % 3]};
@@ -36,7 +36,7 @@ std::optional<Solid> united_at_common_faces(const Solid& a, const Solid& b) {
   both.points_mm.insert(both.points_mm.end(), of_b.points_mm.begin(), of_b.points_mm.end());
   const auto shift = static_cast<std::uint32_t>(of_a.points_mm.size());
   const std::vector<std::uint32_t> first = first_equal_points(both.points_mm);
-  // Reversed faces of the second solid, by the numbers that their corners have in the first solid.
+  // The second solid's faces, reversed, by the numbers that their corners have in the first solid.
   std::unordered_map<Face, std::uint32_t, FaceHash> opposite;
   for (std::uint32_t f = 0; f < of_b.faces.size(); ++f) {
     const Face& face = of_b.faces[f];

@@ -22,20 +22,20 @@ namespace {
 
 constexpr std::size_t most_triangles = 200'000;
 
-/// How far points of one plane may lie beside it, in roundings. A rotation sums three products, a file
-/// rounds once more, and three points rounded in this way define a plane that is off by as much again between
-/// the points.
+/// How far points of one plane may lie off it, in units of rounding. A rotation sums three products, and a
+/// file rounds once more. Three points rounded in this way define a plane that may be off by the same length
+/// between the points.
 constexpr double beside_plane() {
   return 8.0;
 }
 
-/// Coordinates that differ by less than this many roundings become equal: twice beside_plane(), plus the
-/// error of the rotation into the frame.
+/// Coordinates that differ by less than this many units of rounding become equal: twice beside_plane(), plus
+/// the error of the rotation into the frame.
 constexpr double apart_along_axis() {
   return 32.0;
 }
 
-/// A direction that planes of both solids are square to.
+/// A direction to which planes of both solids are perpendicular.
 struct Direction {
   glm::dvec3 normal{0.0};
   double area_mm2 = 0.0;
@@ -45,8 +45,9 @@ bool is_axis(const glm::dvec3& normal) {
   return (normal.x != 0.0) + (normal.y != 0.0) + (normal.z != 0.0) == 1;
 }
 
-/// Directions of the common planes, in the order in which they are found. A direction is the normal of its
-/// widest triangle. Cost: n log n, and the pairs of triangles whose planes lie equally far from the origin.
+/// Directions of the common planes, in the order in which they are found. Each is the normal of the largest
+/// triangle on these planes. Cost: n log n, and the pairs of triangles whose planes lie equally far from the
+/// origin.
 std::vector<Direction> common_directions(const std::vector<Plane>& of_a, const std::vector<Plane>& of_b,
                                          double tolerance_mm) {
   std::vector<Direction> directions;
@@ -72,7 +73,7 @@ std::vector<Direction> common_directions(const std::vector<Plane>& of_a, const s
   return directions;
 }
 
-/// The direction with the largest area among those that `may_be` allows; the first of several equal ones.
+/// Among the directions for which `may_be` returns true, the one of largest area; of equal ones, the first.
 template <typename MayBe>
 std::optional<glm::dvec3> widest_direction(const std::vector<Direction>& directions, const MayBe& may_be) {
   const Direction* best = nullptr;
@@ -81,7 +82,7 @@ std::optional<glm::dvec3> widest_direction(const std::vector<Direction>& directi
   return best == nullptr ? std::nullopt : std::optional(best->normal);
 }
 
-/// The normal of the largest triangle whose normal `may_be` allows.
+/// The normal of the largest triangle for whose normal `may_be` returns true.
 template <typename MayBe>
 std::optional<glm::dvec3> widest_plane(const std::vector<Plane>& of_a, const std::vector<Plane>& of_b,
                                        const MayBe& may_be) {
@@ -107,7 +108,7 @@ std::vector<double> offsets_along(const std::vector<Plane>& of_a, const std::vec
   return apart;
 }
 
-/// The offset that lies within the tolerance of a coordinate; if there is none, the coordinate.
+/// The offset within the tolerance of a coordinate; the coordinate itself if there is none.
 double on_plane(double coordinate, const std::vector<double>& offsets, double tolerance_mm) {
   auto above = std::lower_bound(offsets.begin(), offsets.end(), coordinate);
   if (above != offsets.end() && *above - coordinate <= tolerance_mm) return *above;
@@ -115,7 +116,7 @@ double on_plane(double coordinate, const std::vector<double>& offsets, double to
   return coordinate;
 }
 
-/// Whether points that differ in `given` still differ in `turned`.
+/// Whether all points that differ in `given` also differ in `turned`.
 bool are_apart(const std::vector<glm::dvec3>& given, const std::vector<glm::dvec3>& turned) {
   std::map<CommonFrame::PointKey, glm::dvec3> at;
   for (std::size_t i = 0; i < turned.size(); ++i) {
@@ -136,8 +137,7 @@ Triangles CommonFrame::moved_back(const Triangles& triangles) const {
     is_given[v] = given != given_mm.end();
     p = is_given[v] ? given->second : origin_mm + lps_from_frame * p;
   }
-  // Crossing points that coincide except for rounding become one, because the triangles between them are
-  // reversed.
+  // Merges new points that coincide except for rounding, because the triangles between them are reversed.
   for (const auto& face : back.faces)
     for (std::size_t k = 0; k < 3; ++k) {
       std::uint32_t v = face[k], w = face[(k + 1) % 3];
@@ -191,8 +191,8 @@ std::optional<CommonFrame> common_frame(const Solid& a, const Solid& b) {
   }
   if (!are_apart(of_a.points_mm, turned_a.points_mm) || !are_apart(of_b.points_mm, turned_b.points_mm))
     return std::nullopt;
-  // Points that lay off a plane by more than the last places of doubles are not moved back: that could
-  // reverse the triangles cut beside them.
+  // Only points that were moved by no more than the last places of doubles get their given coordinates back.
+  // Moving other points back could reverse the triangles that were cut beside them.
   frame.kept_mm = apart_along_axis() * std::numeric_limits<double>::epsilon() * rounding.reach_mm;
   const auto keep = [&](const Triangles& given, const Triangles& exact, const Triangles& turned) {
     for (std::size_t i = 0; i < turned.points_mm.size(); ++i) {

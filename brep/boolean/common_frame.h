@@ -24,8 +24,7 @@ struct CommonFrame {
   using PointKey = std::array<double, 3>;
   glm::dmat3 lps_from_frame{1.0};
   glm::dvec3 origin_mm{0.0};
-  double kept_mm = 0.0;  ///< a point of a solid that comes back this near to its original place was moved
-                         ///< only by rounding
+  double kept_mm = 0.0;  ///< a point is exactly restored if it lies this near to its original place
   std::map<PointKey, glm::dvec3> given_mm;
 };
 
@@ -33,7 +32,7 @@ struct CommonFrame {
 /// doubles, or to floats if all coordinates are floats. The first axis is square to the plane of largest
 /// common area. The second is square to the largest plane that is perpendicular to the first one's,
 /// preferably a common plane. None if there is no common plane, if all common planes are already square to
-/// the axes of LPS, if points of a solid are nearer to each other than their rounding, or if more than
+/// the axes of LPS, if different points of a solid would become one, or if more than
 /// 200 000 triangles reach into the other's box. Cost: n log n of the triangles in the common box, their
 /// pairs on planes that lie equally far from one point, and n log n of all points where there is a frame.
 std::optional<CommonFrame> common_frame(const Solid& a, const Solid& b);

@@ -14,7 +14,8 @@ bool are_on(const std::array<glm::dvec3, 3>& points_mm, const Plane& plane, doub
   });
 }
 
-/// The distance of a plane from a common origin along its normal, or along the reversed normal.
+/// The distance of a plane from an origin that all planes share, along its normal or along the reversed
+/// normal.
 struct Offset {
   double along_mm = 0.0;
   const Plane* plane = nullptr;
@@ -65,7 +66,8 @@ void for_each_coplanar_pair(const std::vector<Plane>& of_a, const std::vector<Pl
   double reach_mm = 0.0;
   for (const std::vector<Plane>* planes : {&of_a, &of_b})
     for (const Plane& plane : *planes) reach_mm = std::max(reach_mm, glm::distance(plane.on_mm, origin_mm));
-  // On a common plane, points differ by the tolerance and normals by `same_direction` at most.
+  // Triangles on a common plane differ by at most the tolerance in position and by `same_direction` in
+  // normal.
   const double range_mm = tolerance_mm + 2.0 * same_direction() * reach_mm;
   std::vector<Offset> offsets;
   for (const Plane& plane : of_b) {

@@ -36,9 +36,9 @@ struct Plane {
 /// The triangles that have an area and reach into the box.
 std::vector<Plane> planes_of(const Triangles& surface, const glm::dvec3& low, const glm::dvec3& high);
 
-/// Visits the pairs whose narrower triangle lies within the tolerance of the wider one's plane, whether or not
-/// they meet, in the order of the first list. Cost: n log n, and the pairs of triangles whose planes lie
-/// equally far from one point.
+/// Visits the pairs of triangles of which the narrower one lies within the tolerance of the wider one's
+/// plane, in the order of the first list. The two triangles need not meet. Cost: n log n, and the pairs of
+/// triangles whose planes lie equally far from one point.
 void for_each_coplanar_pair(const std::vector<Plane>& of_a, const std::vector<Plane>& of_b,
                             double tolerance_mm,
                             const std::function<void(const Plane&, const Plane&)>& visit);

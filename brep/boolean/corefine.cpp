@@ -23,8 +23,8 @@
 #include "brep/mesh/flat_triangles.h"
 #include "brep/mesh/triangles.h"
 
-// One of those checks costs more than half of all time: after each point on a side of a triangle it tests in
-// exact numbers whether the whole triangulation of that triangle is Delaunay. It is disabled. Memory is
+// One of those checks costs more than half of all time: after each point on a side of a triangle CGAL tests
+// in exact numbers whether the whole triangulation of that triangle is Delaunay. It is disabled. Memory is
 // protected by the check of the triangulation's links, and points in a wrong order show up in the results'
 // volumes.
 namespace CGAL {
@@ -52,8 +52,8 @@ class Box_with_info_d<double, 3, OpenMesh::HalfedgeHandle, ID_FROM_BOX_ADDRESS>
 
 namespace octotomy::brep {
 
-/// The number of steps along halfedges that the current corefinement may still take, and the request that may
-/// stop it earlier.
+/// The number of steps along halfedges that the current corefinement may still make, and a request to stop it
+/// earlier.
 struct StepBudget {
   static thread_local std::size_t left;
   static thread_local std::stop_token stop;
@@ -61,10 +61,9 @@ struct StepBudget {
 thread_local std::size_t StepBudget::left = 0;
 thread_local std::stop_token StepBudget::stop;
 
-// CGAL finds these overloads for this mesh instead of its own functions. CGAL's output builder does not
-// accept open operands: it would refuse them, although for patches of solids the classification by edges,
-// which it has made, suffices. Solids are checked to be closed and outward before this point, and patches
-// have the winding of their solids.
+// CGAL uses these overloads for this mesh instead of its own functions. CGAL's output builder would refuse
+// open operands, although its classification by edges suffices for patches of solids. Solids are checked to
+// be closed and outward before this point, and patches have the winding of their solids.
 inline bool is_closed(const Mesh&) {
   return true;
 }
@@ -72,7 +71,7 @@ template <typename Parameters>
 bool is_outward_oriented(const Mesh&, const Parameters&) {
   return true;
 }
-// Where surfaces nearly coincide, CGAL may link halfedges into rings that its loops never leave.
+// Where surfaces nearly coincide, CGAL may link halfedges into rings in which its loops run forever.
 inline void take_step() {
   if (StepBudget::left == 0) throw std::runtime_error("its loop along the surface does not end");
   constexpr std::size_t between_looks = 1 << 12;
@@ -129,9 +128,9 @@ struct CutEdges {
   }
 };
 
-/// The largest distance between sheets that would coincide without rounding. The operands' points are rounded
-/// by half a unit of the last place of the largest coordinate, wherever the film itself lies; new points add
-/// the same error again.
+/// Sheets up to this distance apart form a film: without rounding they would coincide. The operands' points
+/// are rounded by half a unit of the last place of the largest coordinate, wherever the film itself lies; new
+/// points add the same error again.
 double film_thickness(const Mesh& a, const Mesh& b) {
   double reach = 0.0;
   for (const Mesh* mesh : {&a, &b})
@@ -180,8 +179,8 @@ Films drop_films(Mesh& mesh, double thickness) {
   return films;
 }
 
-/// For each part that has no edge on the cut: one of its points that the operand had (numbers below `known`).
-/// Parts are connected across edges.
+/// One point of each part that has no edge on the cut; the point belonged to the operand, so its number is
+/// below `known`. Parts are connected across edges.
 std::vector<std::uint32_t> uncut_parts(const Mesh& mesh, const std::vector<bool>& on_cut, std::size_t known) {
   std::vector<bool> seen(mesh.n_faces(), false);
   std::vector<Mesh::FaceHandle> flood;
@@ -217,7 +216,7 @@ PlainTriangles plain(const Mesh& mesh) {
   return {std::move(triangles.points_mm), std::move(triangles.faces)};
 }
 
-/// See correct_contrary_shells(). Results without such shells are not changed.
+/// Corrects the results by correct_contrary_shells(). Does not change results without such shells.
 void correct_results(const Mesh& a, const Mesh& b, std::array<Mesh, 4>& meshes,
                      const std::array<bool, 4>& is_there) {
   const auto less = [](const glm::dvec3& p, const glm::dvec3& q) {
@@ -232,7 +231,7 @@ void correct_results(const Mesh& a, const Mesh& b, std::array<Mesh, 4>& meshes,
       meshes[i] = mesh_of(Triangles{std::move(results[i]->points), std::move(results[i]->faces)});
 }
 
-/// A result in a canonical order, without triangles that rounding left without area, because a further
+/// A result in a canonical order. Triangles that rounding left without area are removed, because a further
 /// Boolean would fail at them.
 Triangles finished(const Mesh& mesh) {
   Triangles triangles = in_coordinate_order(mesh);
@@ -243,7 +242,8 @@ Triangles finished(const Mesh& mesh) {
 }
 
 /// Limit of steps, far above the number in any correct corefinement: about 100 steps per triangle (measured),
-/// and n^2 for a fan of n triangles around a point. An endless ring uses up all steps, a nanosecond each.
+/// and n^2 for a fan of n triangles around a point. A loop in an endless ring makes all these steps, each of
+/// which takes a nanosecond.
 std::size_t step_limit(const Mesh& a, const Mesh& b) {
   const std::size_t triangles = a.n_faces() + b.n_faces();
   return std::min<std::size_t>(10'000 * triangles, 100'000'000 + 500 * triangles);
@@ -282,7 +282,7 @@ Corefined attempt(Mesh a, Mesh b, const Wanted& wanted, bool refuse_self_interse
     check_joins(triangles_of(meshes[i]));
   }
   corefined.uncut = {uncut_parts(a, cut_a, points[0]), uncut_parts(b, cut_b, points[1])};
-  // Shells that coincide have no edge on the cut.
+  // Shells can only coincide if both operands have parts without an edge on the cut.
   if (!corefined.uncut[0].empty() && !corefined.uncut[1].empty()) {
     for (Mesh* operand : {&a, &b}) operand->garbage_collection();
     correct_results(a, b, meshes, is_there);

@@ -27,8 +27,7 @@ struct Corefined {
   /// Number of closed shells that were left out because they are thinner than the rounding of points. They
   /// lie between faces that would coincide without rounding.
   std::array<std::size_t, 4> films{};
-  bool has_open_film = false;  ///< an equally thin part ends at a border, so it is unknown whether it is a
-                               ///< film
+  bool has_open_film = false;  ///< an equally thin part ends at a border, so it may or may not be a film
   /// One point of each part of the operands that has no edge on the cut; parts are connected across edges.
   /// Such a part may touch the other surface. It counts as outside if the other surface is open. Points are
   /// numbered as in the operand if `flat` is 0.

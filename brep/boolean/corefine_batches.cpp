@@ -22,7 +22,7 @@
 namespace octotomy::brep {
 namespace {
 
-/// For each operand, numbers of triangles.
+/// The numbers of some triangles of each operand.
 using Faces = std::array<std::vector<std::uint32_t>, 2>;
 
 std::size_t count_of(const Faces& faces) {
@@ -43,7 +43,7 @@ void add_box(const Triangles& operand, const std::vector<std::uint32_t>& part, T
 }
 
 /// Groups of parts whose boxes overlap, in the order of their first parts; none if there cannot be two groups
-/// with parts of both operands, or if boxes overlap too often for the groups to be worth their cost.
+/// with parts of both operands, or if boxes overlap so often that finding the groups would cost too much.
 std::vector<Faces> groups_of(const std::array<Linked, 2>& operands) {
   std::vector<std::pair<std::size_t, std::vector<std::uint32_t>>> parts;  // operand, and triangles of the
                                                                           // part
@@ -86,8 +86,8 @@ void append(const Faces& group, Faces& batch) {
     batch[side].insert(batch[side].end(), group[side].begin(), group[side].end());
 }
 
-/// Batches of groups. Each has a group with parts of both operands, because CGAL expects two surfaces. Parts
-/// that meet nothing of the other operand fill the batches up.
+/// Combines groups into batches. Each batch has a group with parts of both operands, because CGAL expects two
+/// surfaces. Groups with parts of one operand only are added to batches that are not full yet.
 std::vector<Faces> batches_of(const std::vector<Faces>& groups, std::size_t batch_size) {
   std::vector<Faces> batches;
   const auto has_both = [](const Faces& group) { return !group[0].empty() && !group[1].empty(); };
@@ -108,7 +108,7 @@ std::vector<Faces> batches_of(const std::vector<Faces>& groups, std::size_t batc
   return batches;
 }
 
-/// Puts the batches' results together. A result exists only if every batch has it.
+/// Joins the batches' results. A result exists only if all batches have it.
 Corefined together(std::vector<Corefined> parts) {
   Corefined whole;
   for (Corefined& part : parts) {
@@ -141,18 +141,19 @@ Corefined corefine_in_batches(const Mesh& a, const Mesh& b, const Wanted& wanted
   assert(batch_size > 0);
   const std::size_t all = a.n_faces() + b.n_faces();
   if (all <= batch_size) return corefine(a, b, wanted, stop);
-  constexpr std::size_t most_batches = 64;  // each batch visits all points
+  constexpr std::size_t most_batches = 64;  // every batch costs a pass over all points
   const std::array<Linked, 2> operands{linked_of(a), linked_of(b)};
   const std::vector<Faces> batches =
       batches_of(groups_of(operands), std::max(batch_size, all / most_batches));
   if (batches.empty()) return corefine(a, b, wanted, stop);
 
   std::vector<Corefined> parts(batches.size());
-  run_parallel_tasks(batches.size(), [&](std::size_t i) {  // corefine() counts its steps by thread
+  run_parallel_tasks(batches.size(), [&](std::size_t i) {  // corefine() has one count of steps for each
+                                                           // thread
     const Patch patches[] = {patch_of(operands[0].triangles, batches[i][0]),
                              patch_of(operands[1].triangles, batches[i][1])};
     parts[i] = corefine(patches[0].mesh, patches[1].mesh, wanted, stop);
-    if (parts[i].flat > 0) return;  // its points are not numbered as the operand's
+    if (parts[i].flat > 0) return;  // then its points are not numbered as in the patch
     for (const std::size_t side : {0u, 1u})
       for (std::uint32_t& v : parts[i].uncut[side]) v = patches[side].points.at(v);
   });

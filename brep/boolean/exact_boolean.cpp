@@ -44,11 +44,11 @@ void need_points_apart(const Solid& solid, const Solid& other, const std::string
     if (first[v] == v || glm::any(glm::lessThan(p, low)) || glm::any(glm::greaterThan(p, high))) continue;
     throw Error(ErrorCode::Geometry, "no exact Boolean: operand " + name + " touches itself at (" +
                                          short_text(p.x) + ", " + short_text(p.y) + ", " + short_text(p.z) +
-                                         ") mm, which only the inexact Boolean resolves");
+                                         ") mm: use the inexact Boolean, which resolves such points");
   }
 }
 
-/// Adds the sums of both halves, recursively, so that most sums are of numbers with similarly many digits.
+/// Sums both halves recursively, so that most additions are of numbers with similarly many digits.
 Rational sum_of(const std::vector<Rational>& terms, std::size_t begin, std::size_t end) {
   assert(begin <= end && end <= terms.size());
   if (end - begin == 0) return Rational(0);
@@ -182,8 +182,8 @@ ExactBoolean exact_boolean(const Solid& a, Operation operation, const Solid& b, 
   if (!results[wanted] || !results[of_intersection] ||
       (by_differences && (wanted == of_union || !results[of_a_minus_b] || !results[of_b_minus_a])))
     throw Error(ErrorCode::Geometry,
-                "no exact Boolean: a result would not be manifold, as the surfaces only touch; the inexact "
-                "Boolean moves one of them by a negligible length");
+                "no exact Boolean: a result would not be manifold, because the surfaces only touch: use the "
+                "inexact Boolean, which moves one of them by a negligible length");
 
   progress.at(0.9);
   correct_contrary_shells(made.a, made.b, results, Kernel().less_xyz_3_object());

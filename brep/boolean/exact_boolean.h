@@ -9,7 +9,7 @@ namespace octotomy::brep {
 
 struct ExactBoolean {
   Solid solid;  ///< rounded to doubles at the end; check with health() whether it then intersects itself
-  /// Exact volumes, rounded for reading: of the operands, their union and intersection, and the result.
+  /// Exact volumes of the operands, their union, their intersection and the result, each rounded to a double.
   double a_mm3 = 0.0, b_mm3 = 0.0, united_mm3 = 0.0, intersection_mm3 = 0.0, result_mm3 = 0.0;
   double rounding_mm3 = 0.0;  ///< volume of the rounded mesh minus the exact volume
   std::size_t points = 0;     ///< points of the result that rounding moved: new ones that doubles cannot

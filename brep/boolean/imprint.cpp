@@ -44,7 +44,7 @@ SidePoints side_points(std::uint32_t v, std::uint32_t w) {
   return {std::min(v, w), std::max(v, w)};
 }
 
-/// A triangle cannot be divided, because rounding left sides that cross.
+/// Thrown if rounding left sides that cross, so that a triangle cannot be divided.
 struct NotDivided : std::exception {};
 
 class Imprint {
@@ -67,7 +67,7 @@ class Imprint {
     }
   }
 
-  /// Whether any triangles meet on one plane.
+  /// Whether any triangles of both solids meet on one plane.
   bool find_pairs(const std::vector<Plane>& of_a, const std::vector<Plane>& of_b, double tolerance_mm) {
     tolerance_mm_ = tolerance_mm;
     for_each_coplanar_pair(of_a, of_b, tolerance_mm, [&](const Plane& a, const Plane& b) {
@@ -131,14 +131,14 @@ class Imprint {
     return glm::normalize(glm::cross(points_mm_[face[1]] - p, points_mm_[face[2]] - p));
   }
 
-  /// How far a point lies from a side, inward.
+  /// The distance of a point from a side, positive inward.
   double inward_mm(const FacePoints& face, std::size_t side, const glm::dvec3& normal,
                    const glm::dvec3& p) const {
     const glm::dvec3 &from = points_mm_[face[side]], &to = points_mm_[face[(side + 1) % 3]];
     return glm::dot(glm::cross(normal, glm::normalize(to - from)), p - from);
   }
 
-  /// Lists the corners of another triangle that lie in a triangle or on its sides.
+  /// Records which corners of another triangle lie in a triangle, and which lie on its sides.
   void place_corners(std::size_t solid, std::uint32_t f, const FacePoints& others) {
     const FacePoints& face = faces_[solid][f];
     const glm::dvec3 normal = normal_of(face);
@@ -166,7 +166,7 @@ class Imprint {
            (found != on_side_[solid].end() && found->second.count(v) != 0);
   }
 
-  /// If a side of each solid cross, adds the crossing point to both sides.
+  /// If a side of the first solid crosses a side of the second, adds the crossing point to both sides.
   void cross_sides(std::uint32_t f, std::size_t i, std::uint32_t g, std::size_t j) {
     const FacePoints &of_a = faces_[0][f], &of_b = faces_[1][g];
     const SidePoints a = side_points(of_a[i], of_a[(i + 1) % 3]), b = side_points(of_b[j], of_b[(j + 1) % 3]);
@@ -250,7 +250,7 @@ class Imprint {
                                 const std::set<SidePoints>& within) const {
     const FacePoints& face = faces_[solid][f];
     if (points.size() == 3) return {face};
-    // Projects along the axis nearest to the normal, so that no coordinate is rounded.
+    // Projects along the axis nearest to the normal: the other two coordinates stay unrounded.
     const glm::dvec3 normal = normal_of(face), size = glm::abs(normal);
     const int drop = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     int u = (drop + 1) % 3, v = (drop + 2) % 3;
@@ -275,7 +275,7 @@ class Imprint {
     return inside(plane, outer);
   }
 
-  /// The triangles within the outline.
+  /// Collects the triangles within the outline.
   static std::vector<FacePoints> inside(const PlaneTriangulation& plane,
                                         const std::set<SidePoints>& outline) {
     std::set<PlaneTriangulation::Face_handle> outside{plane.infinite_face()};
@@ -299,7 +299,7 @@ class Imprint {
   }
 
   double tolerance_mm_ = 0.0, moved_mm_ = 0.0;
-  std::vector<glm::dvec3> points_mm_;  ///< points of both solids, equal ones once, then the points where
+  std::vector<glm::dvec3> points_mm_;  ///< points of both solids, equal points once, then the points where
                                        ///< sides cross
   std::array<std::vector<FacePoints>, 2> faces_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;
@@ -309,9 +309,9 @@ class Imprint {
   std::map<std::array<std::uint32_t, 4>, std::uint32_t> crossings_;
 };
 
-/// How far a point may lie off the triangle that it was cut from, in multiples of the rounding: a motion
-/// computes each coordinate as a sum of three products, and settle.cpp may have merged points of doubles
-/// before.
+/// How far a point may lie off the triangle from which it was cut, in multiples of the rounding. A motion
+/// computes each coordinate as a sum of three products. Points of doubles may also have been merged by
+/// settle.cpp.
 constexpr double beside_triangle(bool are_floats) {
   return are_floats ? 8.0 : 64.0;
 }

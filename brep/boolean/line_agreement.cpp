@@ -37,13 +37,14 @@ double reach_mm(const Solid& a, const Solid& b) {
 }
 
 /// The length over which a line may disagree: 2^20 units of the last place, 0.06 nm for a head. Points are
-/// rounded by less than one unit; a side at an angle of 2^-16 to the line enlarges that to 2^16 units.
+/// rounded by less than one unit. On a side at an angle of 2^-16 to the line, that shifts the crossing by up
+/// to 2^16 units.
 double tolerance_mm(double reach) {
   return 0x1p20 * std::numeric_limits<double>::epsilon() * reach;
 }
 
-/// Smallest height of a triangle, as seen along x, for which a line through the triangle is sure to avoid its
-/// sides.
+/// Smallest height of a triangle, projected along x, at which a line through point_in() is sure to avoid the
+/// triangle's sides.
 double clearance_mm(double reach) {
   return 0x1p12 * std::numeric_limits<double>::epsilon() * reach;
 }
@@ -62,7 +63,7 @@ glm::dvec3 point_in(const Corners& t, std::size_t round) {
   return t[0] + shares.at(round).x * (t[1] - t[0]) + shares.at(round).y * (t[2] - t[0]);
 }
 
-/// Lines through the triangles that are wide enough.
+/// One line through each triangle that is high enough to avoid its sides.
 std::vector<Line> lines_through(const std::vector<Corners>& triangles, double clearance) {
   std::vector<Line> lines;
   for (const Corners& t : triangles) {
@@ -84,7 +85,7 @@ struct Crossing {
   double x;
 };
 
-/// The lines, sorted by intervals of y and, within an interval, by z. Points are sorted into the same
+/// The lines, sorted by intervals of y and, within an interval, by z. Points are assigned to the same
 /// intervals.
 class LinesByPlace {
  public:
@@ -103,14 +104,15 @@ class LinesByPlace {
     std::sort(ordered_.begin(), ordered_.end());
   }
 
-  /// The number of the interval of y, ascending; the first and the last lie outside all lines.
+  /// The number of the interval that holds y. Numbers ascend with y; no line lies in the first and the last
+  /// interval.
   std::uint16_t stretch(double y) const {
     constexpr auto last = static_cast<double>(stretch_count - 1);
     return static_cast<std::uint16_t>(std::clamp(1.0 + (y - low_) * scale_, 0.0, last));
   }
 
-  /// Calls visit(line) for the lines of the intervals from `least` to `greatest`. If there are many, calls
-  /// z_range() and leaves out lines beyond it.
+  /// Calls visit(line) for the lines of the intervals from `least` to `greatest`. If these are more than a
+  /// few lines, leaves out those outside z_range().
   template <typename Range, typename Visit>
   void visit(std::uint16_t least, std::uint16_t greatest, const Range& z_range, const Visit& visit) const {
     constexpr std::uint32_t few = 16;

@@ -55,7 +55,7 @@ std::pair<EdgePlace, Edge> placed(const Triangles& triangles, const Edge& edge) 
   return {{p, q}, edge};
 }
 
-/// A solid and the triangles to cut: its own, or other triangles of the same surface.
+/// A solid, and the triangles to cut: the solid's own, or others that cover the same surface.
 struct Operand {
   const Solid& solid;
   const Linked& linked;
@@ -63,25 +63,28 @@ struct Operand {
   const Triangles& triangles() const { return linked.triangles; }
 };
 
-/// The reason why a Boolean cannot be computed near the cut only.
+/// Thrown with the reason why the Boolean cannot be computed from the triangles near the cut alone.
 struct Obstacle : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 /// One operand, divided into near triangles and far parts.
 struct Side {
-  std::vector<std::uint8_t> near;          ///< 1 for each near triangle
+  std::vector<std::uint8_t> near;          ///< by triangle: 1 if it is near the cut
   std::vector<std::uint32_t> near_faces;   ///< ascending
-  std::vector<std::uint32_t> part;         ///< part of each point of a far triangle; none for other points
-  std::vector<std::uint32_t> first;        ///< a point of each part, off the other surface
-  std::vector<std::uint8_t> touching;      ///< 1 for each far point that may lie on the other surface
-  std::vector<double> volumes_mm3;         ///< volumes of the cones over each part
-  std::vector<std::uint32_t> widest;       ///< widest face of each part as seen along x
-  std::map<Edge, std::uint32_t> border;    ///< for each edge between near and far triangles, by its points:
-                                           ///< the far part
-  std::map<EdgePlace, Edge> border_edges;  ///< the same edges by position, with points in that order
-  std::vector<std::uint8_t> inside;        ///< 1 for each part inside the other solid
-  std::vector<std::uint8_t> known;         ///< 1 for each part that a border has classified
+  std::vector<std::uint32_t> part;         ///< by point: the part of its far triangles; none if it has no far
+                                           ///< triangle
+  std::vector<std::uint32_t> first;        ///< by part: one of its points that is off the other surface
+  std::vector<std::uint8_t> touching;      ///< by point: 1 if its triangles are far but may touch the other
+                                           ///<   surface
+  std::vector<double> volumes_mm3;         ///< by part: total volume of the cones from the tip to its
+                                           ///< triangles
+  std::vector<std::uint32_t> widest;       ///< by part: the triangle that is widest when projected along x
+  std::map<Edge, std::uint32_t> border;    ///< by edge between a near and a far triangle: the far triangle's
+                                           ///< part
+  std::map<EdgePlace, Edge> border_edges;  ///< the same edges by position, with their points in that order
+  std::vector<std::uint8_t> inside;        ///< by part: 1 if it is inside the other solid
+  std::vector<std::uint8_t> known;         ///< by part: 1 if a border has decided `inside`
 
   /// The part of a far triangle.
   std::uint32_t part_of(const std::array<std::uint32_t, 3>& face) const { return part[face[0]]; }
@@ -105,12 +108,13 @@ void visit_leaving(const Linked& linked, std::uint32_t first, const Visit& visit
   } while (side != first);
 }
 
-/// Marks the triangles that intersect. At a point where these would form two fans, marks all triangles around
-/// it, because corefinement would treat the point as two different ones.
+/// Marks the given triangles, which meet the other surface. Where the marked triangles around a point form
+/// two fans, marks all triangles around the point, because corefinement would treat the point as two
+/// different ones.
 void mark_near(const Operand& operand, const std::vector<std::uint32_t>& meeting, Side& side) {
   side.near.assign(operand.triangles().faces.size(), 0);
   side.touching.assign(operand.triangles().points_mm.size(), 0);
-  std::vector<std::uint32_t> unseen;  // sides, each of which represents the point that it leaves
+  std::vector<std::uint32_t> unseen;  // each side stands for the point at which it begins
   const auto mark = [&](std::uint32_t f) {
     assert(f < side.near.size());
     if (side.near[f]) return;
@@ -132,8 +136,8 @@ void mark_near(const Operand& operand, const std::vector<std::uint32_t>& meeting
   std::sort(side.near_faces.begin(), side.near_faces.end());
 }
 
-/// Joins the far triangles into parts wherever they share a point: the other surface cuts none of them, so
-/// each part is wholly inside or outside.
+/// Joins far triangles that share a point into parts. The other surface cuts none of them, so each part is
+/// wholly inside or outside.
 void find_parts(const Operand& operand, Side& side) {
   const auto& faces = operand.triangles().faces;
   DisjointSets parts(operand.triangles().points_mm.size());
@@ -144,8 +148,7 @@ void find_parts(const Operand& operand, Side& side) {
     parts.join(faces[f][1], faces[f][2]);
     for (const std::uint32_t v : faces[f]) side.part[v] = 0;
   }
-  // A part is represented by its least point, so the part gets its number there, before its other points are
-  // reached.
+  // A part is numbered at its lowest point, which is reached before its other points.
   side.first.clear();
   for (std::uint32_t v = 0; v < side.part.size(); ++v) {
     if (side.part[v] == none) continue;
@@ -203,8 +206,8 @@ void measure_parts(const Operand& operand, const glm::dvec3& tip, Side& side) {
   for (std::size_t part = 0; part < lost.size(); ++part) side.volumes_mm3[part] += lost[part];
 }
 
-/// Turns near triangles that are connected to the given points into far ones: they touch the other surface,
-/// but it does not cut them.
+/// Makes near triangles that are connected to the given points far: they touch the other surface, but it does
+/// not cut them.
 void take_as_far(const Operand& operand, const std::vector<std::uint32_t>& points, Side& side) {
   std::vector<std::uint8_t> is_among(operand.triangles().points_mm.size(), 0);
   for (const std::uint32_t v : points) is_among[v] = 1;
@@ -227,9 +230,9 @@ void take_as_far(const Operand& operand, const std::vector<std::uint32_t>& point
   std::erase_if(side.near_faces, [&](std::uint32_t f) { return !side.near[f]; });
 }
 
-/// The points of a near result that lie on a border, matched to points of an operand.
+/// The points of a near result that lie on a border, with the matching points of the operands.
 struct Seam {
-  std::vector<std::uint32_t> on_a, on_b;  ///< for each point of the result: its number in the operand, or
+  std::vector<std::uint32_t> on_a, on_b;  ///< by point of the result: the operand's point that it matches, or
                                           ///< none
   std::set<Edge> edges_a, edges_b;        ///< border edges at which the result ends
 };
@@ -241,8 +244,8 @@ Seam seam_of(const Triangles& result, const Side& a, const Side& b) {
   std::map<Edge, int> sides;
   for (const auto& face : result.faces)
     for (std::size_t k = 0; k < 3; ++k) ++sides[edge_of(face[k], face[(k + 1) % 3])];
-  // Points are matched by their edges, because coordinates may coincide: sheets that touch in a point each
-  // have a point there, and a new point may have been rounded to the same place.
+  // Matches points by their edges, because coordinates may coincide: sheets that touch in a point each have a
+  // point there, and a new point may have been rounded to the same place.
   const auto know = [](std::vector<std::uint32_t>& on, std::uint32_t v, std::uint32_t point) {
     if (on[v] != none && on[v] != point) throw Obstacle("sheets of an operand touch at a border");
     on[v] = point;
@@ -261,12 +264,12 @@ Seam seam_of(const Triangles& result, const Side& a, const Side& b) {
   return seam;
 }
 
-/// Whether a result contains an operand's inside parts (true) or its outside parts (false).
+/// Whether a result contains the parts of an operand that lie inside the other one (true) or outside (false).
 bool takes_inside(std::size_t result, bool of_a) {
   return result == of_intersection || result == (of_a ? of_b_minus_a : of_a_minus_b);
 }
 
-/// Whether the result contains the operand's parts with reversed winding.
+/// Whether a result contains the operand's parts with reversed winding.
 bool turns_round(std::size_t result, bool of_a) {
   return result == (of_a ? of_b_minus_a : of_a_minus_b);
 }
@@ -278,13 +281,14 @@ void place_parts(const std::set<Edge>& edges, bool inside_where_there, Side& sid
     assert(part < side.known.size());
     const bool inside = edges.contains(edge) == inside_where_there;
     if (side.known[part] && (side.inside[part] != 0) != inside)
-      throw Obstacle("the borders of a part disagree about its place");
+      throw Obstacle("the borders of a part disagree whether it is inside");
     side.inside[part] = inside;
     side.known[part] = 1;
   }
 }
 
-/// Casts a ray from each part; it decides for parts without a border and checks the others.
+/// Casts a ray from each part. The ray decides whether a part without a border is inside, and checks the
+/// other parts.
 void confirm_parts(const Operand& operand, const Operand& other, Side& side) {
   std::vector<glm::dvec3> probes;
   for (const std::uint32_t v : side.first) probes.push_back(operand.triangles().points_mm[v]);
@@ -295,14 +299,14 @@ void confirm_parts(const Operand& operand, const Operand& other, Side& side) {
     for (const glm::dvec3& probe : probes) inside.push_back(is_inside(probe, other.triangles()));
   for (std::size_t part = 0; part < inside.size(); ++part) {
     if (side.known[part] && inside[part] != side.inside[part])
-      throw Obstacle("a ray and the borders of a part disagree about its place");
+      throw Obstacle("a ray and the borders of a part disagree whether it is inside");
     side.inside[part] = inside[part];
   }
   assert(inside.size() == side.inside.size());
 }
 
-/// Appends the far triangles of one operand that belong to a result, and uses their points in the near
-/// result.
+/// Appends the far triangles of one operand that belong to a result. The near result then uses their points
+/// on the borders.
 class Sewing {
  public:
   void add_far(const Operand& operand, const Side& side, std::size_t result, bool of_a) {
@@ -443,7 +447,7 @@ void sew(const Operand& a, const Operand& b, const Wanted& wanted, const std::st
 }
 
 /// If the operands have triangles without area, repeats the computation with other triangles of the same
-/// surfaces: a triangle without area that crosses the border makes corefinement fail.
+/// surfaces. A triangle without area that crosses the border would make corefinement fail.
 void sew_flattened(const Solid& a, const Solid& b, const Wanted& wanted, const std::stop_token& stop,
                    NearBoolean& answer) {
   std::size_t taken = 0;

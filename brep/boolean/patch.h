@@ -11,7 +11,7 @@
 
 namespace octotomy::brep {
 
-/// Some triangles of an operand as a mesh of their own.
+/// Some triangles of an operand as a separate mesh.
 struct Patch {
   Mesh mesh;
   std::vector<std::uint32_t> points;  ///< points of the operand, in the order of the mesh's points

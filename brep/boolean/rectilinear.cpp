@@ -83,21 +83,21 @@ class Grid {
 
 using Cells = std::vector<std::int8_t>;
 
-/// Twice the signed area of a triangle projected along x, in numbers of planes.
+/// Twice the signed area of a triangle projected along x; coordinates are numbers of planes.
 long turn(const Place& p, const Place& q, const Place& r) {
   return static_cast<long>(q[1] - p[1]) * (r[2] - p[2]) - static_cast<long>(q[2] - p[2]) * (r[1] - p[1]);
 }
 
-/// Whether the line along x through a row of cells crosses the triangle: +1 or -1 for the triangle's
-/// orientation, else 0. The line passes the cells' middles at an infinitesimal distance, so that it meets no
-/// side of a triangle.
+/// How the line along x through a row of cells crosses the triangle: +1 or -1 by the triangle's orientation,
+/// or 0 if it does not. The line is moved off the cells' middles by an infinitesimal distance, so that it
+/// meets no side of a triangle.
 int crossing(const std::array<Place, 3>& corners, int y, int z) {
   int inside = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const Place &p = corners[k], &q = corners[(k + 1) % 3];
     const long dy = q[1] - p[1], dz = q[2] - p[2];
-    // Twice the area of the triangle of the side and the cell's middle; if it is 0, its sign after the middle
-    // is moved along y, then along z.
+    // Twice the signed area of the triangle of the side's ends and the cell's middle. If it is 0, the sign
+    // that it has after the middle is moved a little along y or, if it stays 0, along z.
     long side = dy * (2L * (z - p[2]) + 1) - dz * (2L * (y - p[1]) + 1);
     if (side == 0) side = dz != 0 ? -dz : dy;
     if (side == 0) return 0;
@@ -106,8 +106,8 @@ int crossing(const std::array<Place, 3>& corners, int y, int z) {
   return inside == 3 ? 1 : inside == -3 ? -1 : 0;
 }
 
-/// Finds the cells inside a surface; none if a triangle is square to no axis, or if the surface winds around
-/// a cell other than 0 or 1 times.
+/// The cells inside a surface; none if a triangle is not square to any axis, or if the surface winds around a
+/// cell other than 0 or 1 times.
 std::optional<Cells> cells_in(const Triangles& surface, const Grid& grid) {
   std::vector<Place> places;
   places.reserve(surface.points_mm.size());
@@ -127,7 +127,7 @@ std::optional<Cells> cells_in(const Triangles& surface, const Grid& grid) {
     const auto [low_z, high_z] = std::minmax({corners[0][2], corners[1][2], corners[2][2]});
     for (int z = low_z; z < high_z; ++z)
       for (int y = low_y; y < high_y; ++y)
-        // Where a face's normal points along x, the line leaves the solid.
+        // Where a face's normal points along +x, the line leaves the solid.
         cells[grid.cell(corners[0][0], y, z)] =
             static_cast<std::int8_t>(cells[grid.cell(corners[0][0], y, z)] - crossing(corners, y, z));
   }
@@ -141,8 +141,8 @@ std::optional<Cells> cells_in(const Triangles& surface, const Grid& grid) {
   return cells;
 }
 
-/// Divides each side where more than two triangles meet, in all of them at the same point. Each sheet that
-/// touches the side then has points of its own, and a later motion rounds equal points equally.
+/// Divides each side at which more than two triangles meet, at the same point in all of them. Each sheet that
+/// touches the side then has separate points, and a later motion rounds equal points equally.
 void divide_pinched_sides(Triangles& surface) {
   using Side = std::pair<std::uint32_t, std::uint32_t>;
   const auto side_of = [](std::uint32_t v, std::uint32_t w) { return Side(std::min(v, w), std::max(v, w)); };
@@ -172,7 +172,7 @@ void divide_pinched_sides(Triangles& surface) {
     }
 }
 
-/// The faces between cells in and out.
+/// The faces between a cell inside and one outside.
 Triangles boundary_of(const Cells& cells, const Grid& grid) {
   Triangles boundary;
   const int along_x = grid.count(0) + 1, along_y = grid.count(1) + 1;

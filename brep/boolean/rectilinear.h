@@ -13,8 +13,8 @@ namespace octotomy::brep {
 /// each of which is inside or outside of each surface. Coordinates that are nearer to each other than
 /// `tolerance_mm` count as one. Results that touch themselves have a vertex for each sheet. A result has two
 /// triangles for each face of a cell on its surface, so it may have many more triangles than the operands.
-/// None if a triangle is square to no axis, if there are more than 4 million cells, or if an operand overlaps
-/// itself. Cost: linear in the cells, plus the cells that each triangle covers.
+/// None if a triangle is not square to any axis, if there are more than 4 million cells, or if an operand
+/// overlaps itself. Cost: linear in the cells, plus the cells that each triangle covers.
 std::optional<Results> rectilinear_results(const Triangles& a, const Triangles& b, const Wanted& wanted,
                                            double tolerance_mm);
 

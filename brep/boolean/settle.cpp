@@ -40,7 +40,8 @@ Box box_of(const Triangles& triangles) {
   return box;
 }
 
-/// Distinguishes new points, all of which lie in the operands' common box, from points of the operands.
+/// Determines whether a point belongs to an operand or is new. All new points lie in the operands' common
+/// box.
 class Origins {
  public:
   explicit Origins(const std::array<const Triangles*, 2>& operands) {
@@ -57,7 +58,7 @@ class Origins {
     }
   }
 
-  /// The last place of the largest coordinate.
+  /// One unit in the last place of the largest coordinate.
   double rounding_mm() const { return std::numeric_limits<double>::epsilon() * reach_mm_; }
 
   /// Marks the points in the common box.
@@ -68,7 +69,8 @@ class Origins {
     return is_in;
   }
 
-  /// For each point: 1 if it is the first operand's, 2 if the second's, 3 if both have it, 0 if it is new.
+  /// For each point in the common box: 1 if it is the first operand's, 2 if the second's, 3 if both have it,
+  /// 0 if it is new. Points outside of the box get 3.
   std::vector<std::uint8_t> origins(const Triangles& surface) const {
     std::vector<std::uint8_t> origin(surface.points_mm.size(), 3);
     for (std::size_t v = 0; v < origin.size(); ++v) {
@@ -102,7 +104,7 @@ std::vector<std::uint8_t> corners_of_new(const Triangles& surface, const std::ve
   return is_corner;
 }
 
-/// The triangles that have a marked corner.
+/// The triangles with at least one marked corner.
 std::vector<std::uint32_t> faces_at(const Triangles& surface, const std::vector<std::uint8_t>& is_marked) {
   std::vector<std::uint32_t> faces;
   for (std::uint32_t f = 0; f < surface.faces.size(); ++f)
@@ -116,7 +118,7 @@ bool has_no_area(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& r) 
                          Kernel::Point_3(r.x, r.y, r.z));
 }
 
-/// Defects beside new points that later operations would refuse.
+/// Counts of defects beside new points at which later operations would fail.
 struct Folds {
   std::size_t crossing = 0, flat = 0;
   glm::dvec3 at_mm{0.0};
@@ -143,10 +145,10 @@ Folds folds_of(const Triangles& surface, const std::vector<std::uint8_t>& is_mar
 
 struct Tolerances {
   double length_mm = 0.0;  ///< triangles of at most this height are thin
-  double beside_mm = 0.0;  ///< how far the surface may move along its normal
+  double beside_mm = 0.0;  ///< largest distance by which the surface may move along its normal
 };
 
-/// Removes thin triangles beside new points from a mesh where that does not move the surface.
+/// Removes thin triangles beside new points where that does not move the surface by more than the tolerance.
 class Settler {
  public:
   Settler(const Triangles& surface, std::vector<std::uint8_t> origin, const Tolerances& tolerances)
@@ -207,17 +209,17 @@ class Settler {
     exchange(by_length[2]);
   }
 
-  /// Points of the operands come before new ones.
+  /// An order of points in which those of the operands come before new ones.
   bool is_before(Mesh::VertexHandle v, Mesh::VertexHandle w) const {
     const bool is_v_new = origin(v) == 0, is_w_new = origin(w) == 0;
     return is_v_new != is_w_new ? is_w_new : v.idx() < w.idx();
   }
 
-  /// Moves the first end onto the second.
+  /// Moves the first end of a side onto the second, if the tolerance allows it; returns whether it did.
   bool contract(Mesh::HalfedgeHandle h) {
     if (!mesh_.is_collapse_ok(h)) return false;
     const Mesh::Point moved = to(h) - from(h);
-    double volume_mm3 = 0.0, area_mm2 = 0.0;  // six times the volume, and likewise the area
+    double volume_mm3 = 0.0, area_mm2 = 0.0;  // six times the volume and six times the area
     for (const auto face : mesh_.vf_range(mesh_.from_vertex_handle(h))) {
       const Mesh::HalfedgeHandle side = mesh_.halfedge_handle(face);
       const Mesh::Point normal =

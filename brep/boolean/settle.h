@@ -17,9 +17,9 @@ struct Settled {
   glm::dvec3 at_mm{0.0};     ///< a corner of the first of these triangles
 };
 
-/// Where folds are searched: beside new points, or in the whole common box of the operands. CommonBox is
-/// needed where faces of both operands lie on one plane, because their triangles may then intersect without a
-/// new point. It costs an intersection test of all triangles in the box.
+/// Where to search for folds: beside new points, or in the whole common box of the operands. Where faces of
+/// both operands lie on one plane, triangles may intersect without a new point, so CommonBox is necessary. It
+/// costs an intersection test of all triangles in the box.
 enum class SettleReach { NewPoints, CommonBox };
 
 /// The surface of a Boolean without the folds caused by rounding its points. A new point lies within a

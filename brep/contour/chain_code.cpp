@@ -101,7 +101,7 @@ Contour contour_of(const ChainCode& code, const glm::dvec2& spacing_mm) {
   for (std::size_t i = 0; i < code.steps.size(); ++i) {
     if (code.steps[i] > 7)
       throw InvalidInput("chain_code: step " + std::to_string(i) + " is " + std::to_string(code.steps[i]) +
-                         ", 7 is the last direction");
+                         ": directions are numbered 0 to 7");
     at += glm::ivec2(directions[code.steps[i]][0], directions[code.steps[i]][1]);
     contour.points_mm.push_back(glm::dvec2(at) * spacing_mm);
   }

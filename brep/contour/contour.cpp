@@ -24,9 +24,9 @@ namespace {
 constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
 /// The least distance of a crossing from a sample, as a share of the edge. Without it, a sample exactly at
-/// the threshold would move the crossings of all its edges to one point, where contours touch. A thousandth
-/// of a sample is far below what a scan resolves, and far above the rounding of coordinates (2^-52 times the
-/// number of samples along a side).
+/// the threshold would move the crossings of all its edges to one point, at which contours would touch. A
+/// thousandth of a sample is far below what a scan resolves, and far above the rounding of coordinates (2^-52
+/// times the number of samples along a side).
 constexpr double least_fraction() {
   return 1.0 / 1024.0;
 }
@@ -49,8 +49,8 @@ void check(const Slice& slice, const FollowOptions& options) {
              ") is not finite: fill such samples first");
 }
 
-/// The lattice's edges, with one more ring of nodes around it: node (i, j) is sample (i - 1, j - 1); edge 2 *
-/// node runs from it along x and 2 * node + 1 along y.
+/// The lattice's edges, with one more ring of nodes around it. Node (i, j) is sample (i - 1, j - 1). Edge 2 *
+/// node begins at that node and runs along x; edge 2 * node + 1 runs along y.
 class Follower {
  public:
   Follower(const Slice& slice, const FollowOptions& options)
@@ -185,9 +185,9 @@ class Enclosure {
   RunTree pieces_;
 };
 
-/// A point that a closed contour encloses, even if other contours touch it: half way along the contour's
-/// lowest horizontal line between two heights of its points. If rounding leaves no such line, the contour's
-/// first point.
+/// A point that a closed contour encloses, even if other contours touch it. It lies half way between the two
+/// lowest different heights of the contour's points, in the middle of a horizontal line inside the contour.
+/// If rounding leaves no such line, returns the contour's first point.
 glm::dvec2 point_within(const Contour& contour) {
   const auto& points = contour.points_mm;
   double lowest = std::numeric_limits<double>::infinity(), next = lowest;
@@ -212,8 +212,7 @@ std::vector<Contour> follow(const Slice& slice, const FollowOptions& options) {
 }
 
 void need_closed(const Contour& contour, const char* asking) {
-  if (!contour.closed)
-    throw InvalidInput(std::string(asking) + ": the contour is open: follow it with its border closed");
+  if (!contour.closed) throw InvalidInput(std::string(asking) + ": the contour is open: close it first");
 }
 
 double signed_area_mm2(const Contour& contour) {

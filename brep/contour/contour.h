@@ -43,7 +43,8 @@ struct FollowOptions {
 /// Nielson and Hamann, "The asymptotic decider", Visualization 1991.
 std::vector<Contour> follow(const Slice& slice, const FollowOptions& options);
 
-/// Throws std::invalid_argument if a contour is open; the message begins with `asking`, the caller's name.
+/// Throws std::invalid_argument if a contour is open; the message begins with `asking`, the name of the
+/// calling function.
 void need_closed(const Contour& contour, const char* asking);
 
 /// The area a closed contour encloses, positive counter-clockwise. Throws std::invalid_argument if it is

@@ -102,19 +102,20 @@ Contour point_deleted(const Contour& contour, std::size_t point) {
 std::pair<Contour, Contour> split(const Contour& contour, std::size_t first, std::size_t second) {
   need_number(first, contour.points_mm.size(), "point");
   need_number(second, contour.points_mm.size(), "point");
-  if (!contour.closed) throw InvalidInput("contour: an open one is split at one point");
+  if (!contour.closed) throw InvalidInput("contour: an open contour is split at one point, not between two");
   return {whole({run(contour, first, second), true}), whole({run(contour, second, first), true})};
 }
 
 std::pair<Contour, Contour> split(const Contour& contour, std::size_t point) {
   need_number(point, contour.points_mm.size(), "point");
-  if (contour.closed) throw InvalidInput("contour: a closed one is split between two points");
+  if (contour.closed) throw InvalidInput("contour: a closed contour is split between two points, not at one");
   const auto at = contour.points_mm.begin() + static_cast<std::ptrdiff_t>(point);
   return {whole({{contour.points_mm.begin(), at + 1}, false}), whole({{at, contour.points_mm.end()}, false})};
 }
 
 Contour joined(const Contour& a, std::size_t piece_of_a, const Contour& b, std::size_t piece_of_b) {
-  if (!a.closed || !b.closed) throw InvalidInput("contour: two closed ones are joined by pieces");
+  if (!a.closed || !b.closed)
+    throw InvalidInput("contour: only closed contours can be joined at a piece of each");
   need_number(piece_of_a, piece_count(a), "piece");
   need_number(piece_of_b, piece_count(b), "piece");
   Contour both{run(a, (piece_of_a + 1) % a.points_mm.size(), piece_of_a), true};
@@ -124,7 +125,7 @@ Contour joined(const Contour& a, std::size_t piece_of_a, const Contour& b, std::
 }
 
 Contour joined(const Contour& a, const Contour& b) {
-  if (a.closed || b.closed) throw InvalidInput("contour: two open ones are joined end to start");
+  if (a.closed || b.closed) throw InvalidInput("contour: only open contours can be joined end to start");
   Contour both = a;
   both.points_mm.insert(both.points_mm.end(), b.points_mm.begin(), b.points_mm.end());
   return whole(std::move(both));

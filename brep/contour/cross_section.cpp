@@ -125,8 +125,7 @@ Plane plane_through(const glm::dvec3& point_mm, const glm::dvec3& normal) {
   Plane plane;
   plane.origin_mm = point_mm;
   plane.normal = normal / length;
-  // If the normal is nearer to z than this, the component of z perpendicular to it has lost half of its
-  // digits.
+  // Below this length, the component of z perpendicular to the normal has lost half of its digits.
   const double half_of_digits = std::sqrt(std::numeric_limits<double>::epsilon());
   const glm::dvec3 z(0, 0, 1), aside = z - plane.normal * plane.normal.z;
   const bool is_along_z = glm::length(aside) < half_of_digits;
@@ -141,7 +140,7 @@ CrossSection cross_section(const Mesh& mesh, const Plane& plane) {
 }
 
 void part_touching(std::vector<Contour>& contours) {
-  std::map<std::pair<double, double>, int> passes;  // number of times that contours pass a point
+  std::map<std::pair<double, double>, int> passes;  // how often contours pass each point
   for (const Contour& contour : contours)
     for (const glm::dvec2& p : contour.points_mm) ++passes[{p.x, p.y}];
   constexpr double share = 1.0 / 1024.0;

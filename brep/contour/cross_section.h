@@ -9,7 +9,7 @@
 
 namespace octotomy::brep {
 
-/// A plane of LPS millimetres with axes of its own: a point is origin + right * u + up * v, and the three
+/// A plane of LPS millimetres with two axes in it: a point is origin + right * u + up * v, and the three
 /// directions are orthonormal and right-handed (right x up = normal).
 struct Plane {
   glm::dvec3 origin_mm{0.0}, right{1, 0, 0}, up{0, 1, 0}, normal{0, 0, 1};

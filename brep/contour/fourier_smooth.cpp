@@ -26,9 +26,9 @@ namespace {
 using Complex = std::complex<double>;
 using std::numbers::pi;
 
-/// An even grid around a circle, for sums of waves, up to a number of harmonics, at positions that are not on
-/// the grid. With at least four grid points per wave and a Gaussian cut off at 14 grid points, the error of
-/// the cut and of higher waves is e^-37 of the largest, below rounding.
+/// A regular grid around a circle, for sums of waves, up to a number of harmonics, at positions that need not
+/// be grid points. With at least four grid points per wave, and a Gaussian that is cut off at 14 grid points,
+/// the cut and the higher waves cause errors of at most e^-37 of the largest value, which is below rounding.
 class Circle {
  public:
   explicit Circle(std::size_t harmonics) : count_(std::bit_ceil(8 * harmonics)), grid_(count_) {
@@ -49,7 +49,7 @@ class Circle {
   }
 
   /// To sum wave(k) e^(2 pi i k turn): set all waves, multiplied by undone(k), call from_waves(), then
-  /// gather.
+  /// gather().
   void from_waves() {
     std::vector<Complex> sums;
     transform().inv(sums, grid_);
@@ -102,7 +102,7 @@ Contour fourier_smooth(const Contour& contour, const FourierOptions& options) {
   const auto& p = contour.points_mm;
 
   struct EdgeSpan {
-    double turn;  ///< where the piece begins, in turns
+    double turn;  ///< position at which the piece begins, as a share of the contour's length
     Complex direction;
   };
   std::vector<EdgeSpan> pieces;

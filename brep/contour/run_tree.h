@@ -37,10 +37,10 @@ struct PlaneBox {
   }
 };
 
-/// An open contour has one piece fewer than points.
+/// The number of a contour's pieces: one for each point, or one fewer if the contour is open.
 std::size_t piece_count(const Contour& contour);
 
-/// The box of a contour's piece, by its first point.
+/// The box of the piece that begins at point `piece`.
 PlaneBox box_of_piece(const Contour& contour, std::size_t piece);
 
 /// Boxes around the runs that result from halving a sequence repeatedly. Queries are fast if neighbours in
@@ -52,14 +52,14 @@ class RunTree {
   /// A tree over a contour's pieces, numbered by their first points.
   explicit RunTree(const Contour& contour);
 
-  /// Calls enter(box, begin, end) for the run of all items. For each run of two or more items for which it
-  /// returns true, calls it for both halves, in order.
+  /// Calls enter(box, begin, end) for the run of all items. If it returns true for a run of two or more
+  /// items, calls it for both halves of the run, in order.
   template <typename Enter>
   void walk(const Enter& enter) const {
     if (count_ > 0) walk_run(0, 0, count_, enter);
   }
-  /// The first item in from..until - 1 for which `hit` is true and `reaches` is true for its box and for the
-  /// boxes of its runs.
+  /// The first item in from..until - 1 for which `hit` returns true. Only items are tested for which
+  /// `reaches` returns true for the item's box and for the boxes of all runs that contain the item.
   template <typename Reaches, typename Hit>
   std::optional<std::size_t> first(std::size_t from, std::size_t until, const Reaches& reaches,
                                    const Hit& hit) const {
@@ -75,7 +75,7 @@ class RunTree {
  private:
   void append(const std::vector<PlaneBox>& items, std::size_t begin, std::size_t end);
 
-  // A run of n items has 2 n - 1 nodes: its own, those of its first half, those of its second.
+  // A run of n items has 2 n - 1 nodes: its own, then those of its first half, then those of its second half.
   template <typename Enter>
   void walk_run(std::size_t node, std::size_t begin, std::size_t end, const Enter& enter) const {
     assert(begin < end && node < boxes_.size());

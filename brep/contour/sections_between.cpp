@@ -92,7 +92,7 @@ class Outline {
     const int first = row_of(std::min(a.y, b.y)), last = row_of(std::max(a.y, b.y));
     for (int j = first; j <= last; ++j) {
       rows_[static_cast<std::size_t>(j)].push_back(side);
-      // The part of the side in this row, and a cell on either side for rounding.
+      // The part of the side in this row, longer by a millionth of a cell at either end because of rounding.
       double from = a.x, to = b.x;
       if (first != last) {
         const double low = low_.y + (j - 1e-6) * cell_mm_, high = low_.y + (j + 1.0 + 1e-6) * cell_mm_;
@@ -317,7 +317,7 @@ std::vector<Section> sections_between(const std::vector<Section>& drawn,
   std::vector<Section> whole = drawn;
   for (Section& section : whole) section.contours = divided(section.contours, options.step_mm);
   const std::size_t last = drawn.size() - 1;
-  // Adds an empty section at either end, as far beyond it as its neighbour is.
+  // Adds an empty section beyond each end, at the distance between the end section and its neighbour.
   whole.insert(whole.begin(), {2.0 * drawn[0].z_mm - drawn[1].z_mm, {}});
   whole.push_back({2.0 * drawn[last].z_mm - drawn[last - 1].z_mm, {}});
   std::vector<std::vector<Section>> gaps(whole.size() - 1);
@@ -340,7 +340,8 @@ TiledBetween tile_between(const std::vector<Section>& drawn, const SectionsBetwe
   TileSectionsOptions tiling;
   tiling.cost = cost;
   tiling.stop = options.stop;
-  // Longer strips could leave the area between two outlines, as between the halves of an hourglass.
+  // With longer spans, strips could leave the area between two outlines, for example between the halves of an
+  // hourglass.
   tiling.most_span_mm = options.step_mm;
   TiledBetween tiled{tile_sections(sections, tiling).surface, sections.size()};
   Triangles back = put_back(tiled.surface, sections);

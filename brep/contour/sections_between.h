@@ -51,7 +51,7 @@ struct TiledBetween {
   Triangles surface;           ///< as tile_sections() makes it
   std::size_t sections = 0;    ///< number of sections that were tiled
   bool is_whole_flat = false;  ///< flat ends, steps and upright walls lie exactly in their planes
-  bool is_apart = false;       ///< no two of its triangles meet, by an exact search
+  bool is_apart = false;       ///< no two of its triangles intersect, by an exact search
 };
 
 /// Tiles drawn sections with others between them. If the result is a solid, points that tile_sections() and

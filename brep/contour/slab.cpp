@@ -102,7 +102,7 @@ class Overlay {
       for (std::size_t k = 0; k < ring.size(); ++k)
         sides_.push_back({level, ring[k], ring[(k + 1) % ring.size()], {}, {}});
     }
-    // Points on sides are inserted after all others, so that a point on a side is detected.
+    // Sides are inserted after all points, so that a point on a side is detected.
     if (level == at_upper)
       for (Side& side : sides_) side.constraint = plane_.insert_constraint(side.from, side.to);
   }

@@ -19,8 +19,8 @@ struct Slab {
   double low_mm = 0.0, high_mm = 1.0;
 };
 
-/// The surface between two sections. Points are numbered: the lower section's in the order of its contours,
-/// the upper section's, then `inner_mm`.
+/// The surface between two sections. Points are numbered in this order: those of the lower section's
+/// contours, those of the upper section's, then `inner_mm`.
 struct SlabSurface {
   std::vector<glm::dvec3> inner_mm;  ///< all at half height
   std::vector<std::array<std::uint32_t, 3>> faces;

@@ -54,7 +54,8 @@ class Thinner {
 
  private:
   const glm::dvec2& point(std::size_t k) const { return points_[k % points_.size()]; }
-  /// The angle from the direction of the first point that is not near the anchor.
+  /// The angle of a direction, counted from `reference_`, the direction of the first point that is not near
+  /// the anchor.
   double angle_of(const glm::dvec2& way) const {
     return std::atan2(reference_.x * way.y - reference_.y * way.x, glm::dot(reference_, way));
   }
@@ -64,7 +65,8 @@ class Thinner {
     const double away_mm = glm::length(way);
     farthest_mm_ = std::max(farthest_mm_, away_mm);
     if (away_mm <= sure_mm_) return;
-    // The wedge is within a quarter turn, so that angles from the first direction do not wrap around.
+    // The wedge reaches at most a quarter turn to either side, so that angles from the first direction do not
+    // wrap around.
     const double open = sure_mm_ > 0.0 ? std::asin(sure_mm_ / away_mm) : -1.0;
     if (!is_wedged_) {
       is_wedged_ = true;

@@ -40,7 +40,7 @@ struct Triangle {
 struct Pair {
   std::vector<glm::dvec3> lower, upper;  ///< the first point is repeated at the end
 
-  /// The triangle of a step from a span.
+  /// The triangle between the span of lower point i and upper point j and the span to which the step leads.
   Triangle triangle(std::size_t i, std::size_t j, Step step) const {
     assert(i + (step == along_lower) <= m() && j + (step == along_upper) <= n());
     return step == along_lower ? Triangle{lower[i], lower[i + 1], upper[j]}
@@ -101,7 +101,7 @@ class Blame {
     if (score == unknown) score = scored(i % m_, j % n_);
     return score;
   }
-  /// The lowest score of a span at each lower and each upper point.
+  /// For each lower point, the lowest score of its spans; then the same for each upper point.
   std::array<std::vector<int>, 2> least() const {
     return {least_of(m_, n_, [&](std::size_t i, std::size_t j) { return (*this)(i, j); }),
             least_of(n_, m_, [&](std::size_t j, std::size_t i) { return (*this)(i, j); })};
@@ -238,7 +238,8 @@ std::vector<Step> greedy_steps(const Ring& lower, const Ring& upper, std::array<
   return steps;
 }
 
-/// A path once around both rings from node (0, start), stored as its last column in each row.
+/// A path once around both rings. Node (i, j) is the span between lower point i and upper point j. The path
+/// begins at node (0, start) and is stored as its last column j in each row i.
 struct Path {
   std::size_t start = 0;
   std::vector<std::size_t> last;
@@ -259,8 +260,8 @@ Path path_of(const std::vector<Step>& steps, std::size_t start) {
   return path;
 }
 
-/// The span at which a path's strip degenerates into two cones: all steps along one ring start at one point
-/// of the other.
+/// The span at which a path's strip degenerates into two cones, because all steps along one ring begin at one
+/// point of the other. None if it does not degenerate.
 std::optional<std::array<std::size_t, 2>> neck_of(const Path& path, std::size_t n) {
   const std::size_t m = path.last.size() - 1;
   for (std::size_t i = 0; i < m; ++i) {
@@ -296,7 +297,7 @@ Band about(const std::vector<Step>& steps, std::size_t reach) {
   return band;
 }
 
-/// What a path costs: first the blame of its spans, then the sum of its costs.
+/// The cost of a path: the blame of its steps and the sum of their costs. Blame is compared first.
 struct Sum {
   int blame = 0;
   double cost = 0.0;
@@ -304,7 +305,7 @@ struct Sum {
 };
 constexpr Sum no_limit{std::numeric_limits<int>::max(), std::numeric_limits<double>::infinity()};
 
-/// A path of least sum from a start.
+/// A path of least cost that begins at column `start`.
 struct Found {
   Sum sum;
   std::size_t start = 0;
@@ -314,7 +315,7 @@ struct Found {
 /// Finds paths of least sum between two rings.
 class LeastPath {
  public:
-  /// `start` is the pair's start in its rings.
+  /// `start`: the points of both rings at which the pair begins.
   LeastPath(const Pair& pair, TileCost cost, const std::array<std::size_t, 2>& start,
             const Blame* blame = nullptr)
       : pair_(pair), cost_(cost), start_(start), blame_(blame), m_(pair.m()), n_(pair.n()) {}
@@ -325,7 +326,7 @@ class LeastPath {
     constexpr std::size_t reach = 8;
     const Sum known = from(0, about(steps_near, reach), no_limit)->sum;
     const Band all = all_of(pair_);
-    // Most strips need little blame, and with a low limit few nodes are reached.
+    // Tries low limits first: most strips need little blame, and with a low limit few nodes are reached.
     const int least = least_rest(0, 0, 0).blame;
     for (int more = 0; least + more < known.blame; more = std::max(1, 4 * more))
       if (auto found = from(0, all, {least + more, no_limit.cost})) return *std::move(found);
@@ -400,7 +401,7 @@ class LeastPath {
   }
 
  private:
-  /// The pairs of points up to which the least costs to the last row are kept: 128 MB.
+  /// Up to this number of pairs of points, the least costs to the last row are stored: 128 MB.
   static constexpr std::size_t most_tabled = std::size_t{1} << 25;
 
   /// A node within the limit and the best path to it for each last step: the angle at the next step depends
@@ -435,7 +436,7 @@ class LeastPath {
     }
   };
 
-  /// The last step by which a path is chosen among paths with equal sums.
+  /// Among paths with equal sums, the one with this last step is chosen.
   Step preferred() const { return cost_ == TileCost::least_angle ? along_lower : along_upper; }
 
   /// The limit for the sums at all nodes of a path whose sum at the end is at most `end`.
@@ -481,8 +482,8 @@ class LeastPath {
     to_column_ = summed(least[1], 2 * n_);
   }
 
-  /// Computes the least cost from each node of a row to the last row, at any column, from those of the row below.
-  /// Steps along the row lead around the ring, so two rounds settle it: no cost is below zero.
+  /// Computes the least cost from each node of a row to the last row, at any column, from those of the row
+  /// below. Steps along the row lead around the ring; two rounds suffice, because no cost is below zero.
   void table_row(std::size_t i, const std::array<std::vector<double>, 2>& own, std::vector<double>& below) {
     std::vector<double>& here = below;
     for (std::size_t j = 0; j < n_; ++j) here[j] += own[along_lower][j];
@@ -495,8 +496,9 @@ class LeastPath {
     for (std::size_t j = 0; j < n_; ++j) to_end_[i * n_ + j] = static_cast<float>(rounding * here[j]);
   }
 
-  /// A lower bound of the sum of the steps from a node to the end of a path from a start: one step leads to each
-  /// row and one to each column; and no way to the last row costs less than the least.
+  /// A lower bound of the sum from a node to the end of a path that began at `start`. The path still has one
+  /// step to each later row and one to each later column; each costs at least the least of all steps to that
+  /// row or column. If to_end_ is stored, its entry for the node is a bound, too.
   Sum least_rest(std::size_t i, std::size_t j, std::size_t start) const {
     if (to_row_.empty()) return {};
     const Sum &row = to_row_[i], &column = to_column_[j], &last_row = to_row_[m_];
@@ -529,7 +531,7 @@ class LeastPath {
     return 0.0;
   }
 
-  /// What a search looks for: a path from (0, start) with at most this sum.
+  /// The aim of a search: a path from (0, start) with at most this sum.
   struct Aim {
     std::size_t start;
     Sum most;
@@ -621,14 +623,14 @@ class LeastPath {
     return found;
   }
 
-  /// Searches paths between the two of `between` that start after column `after` and before `before`; updates
-  /// the best.
+  /// Searches for paths that begin after column `after` and before column `before` and lie between both paths
+  /// of `between`; updates the best.
   void search(const Band& between, std::size_t after, std::size_t before, Found& best) {
     if (before - after < 2) return;
     const std::size_t middle = (after + before) / 2;
     auto found = from(middle, between, limit(best.sum));
-    // A failed search does not narrow the bands of later ones. Once failed searches have reached as many nodes as
-    // there are, which is the cost of one without a limit, the start's own best path is found so: it narrows them.
+    // A failed search does not narrow the bands of later ones. Once failed searches have reached as many
+    // nodes as a search without a limit, such a search is made for this start: its path narrows the bands.
     if (!found && (failed_count_ += reached_count_) > m_ * n_) {
       failed_count_ = 0;
       found = from(middle, between, no_limit);
@@ -667,7 +669,8 @@ void check(const Ring& lower, const Ring& upper, TileCost cost) {
     if (ring->points_mm.size() < 3)
       throw std::invalid_argument("tile: a ring has " + std::to_string(ring->points_mm.size()) +
                                   " points, three are needed");
-  if (!(lower.z_mm < upper.z_mm)) throw std::invalid_argument("tile: the lower ring must lie lower");
+  if (!(lower.z_mm < upper.z_mm))
+    throw std::invalid_argument("tile: the lower ring must lie below the upper one");
   if (cost != TileCost::shortest_span && lower.points_mm.size() * upper.points_mm.size() > most_pairs(cost))
     throw Error(ErrorCode::Resource,
                 "tile: rings of " + std::to_string(lower.points_mm.size()) + " and " +
@@ -729,7 +732,7 @@ std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& up
 
 namespace {
 
-/// The best strip with the blame of the rings, which may be scaled ones.
+/// The best strip by the blame of two rings, which may have been scaled.
 std::vector<std::array<std::uint32_t, 3>> blamed_strip(const Ring& lower, const Ring& upper, TileCost cost,
                                                        const Blame& blame, bool has_avoided) {
   const std::array<std::size_t, 2> start = start_of(lower, upper, &blame);

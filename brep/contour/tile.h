@@ -36,8 +36,8 @@ struct Ring {
 /// and 2 m n bytes. Source: the papers named above.
 std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& upper, TileCost cost);
 
-/// The best strip by the cost among those near the strip of shortest spans: at each lower point, its spans
-/// end at most `band` upper points before or behind the ends of the shortest spans. With a band of 0 it is
+/// The best strip by the cost among those near the strip of shortest spans: at each lower point, the strip's
+/// spans end at most `band` upper points before or after those of the shortest spans. With a band of 0 it is
 /// the strip of shortest spans. Throws and costs as tile().
 std::vector<std::array<std::uint32_t, 3>> tile_near(const Ring& lower, const Ring& upper, TileCost cost,
                                                     std::size_t band);
@@ -52,9 +52,9 @@ std::vector<std::array<std::uint32_t, 3>> tile_near(const Ring& lower, const Rin
 /// shortest_span minimises the sum of its spans instead of choosing step by step, because a single step does
 /// not show which triangles follow; rings too long for the tables are still tiled step by step. If the best
 /// strip by least_area or greatest_volume is no surface but two cones that meet at one span, returns the best
-/// surface that contains this span. `scores` keeps a byte per pair of points from one call for the same rings
-/// and sides to the next; empty at first. Throws and costs as tile(), plus, for each span that a good strip
-/// may contain, a test against the sides near the span.
+/// surface that contains this span. `scores` stores a byte per pair of points between calls for the same
+/// rings and sides; pass an empty list to the first call. Throws and costs as tile(), plus, for each span
+/// that a good strip may contain, a test against the sides near the span.
 std::vector<std::array<std::uint32_t, 3>> tile_clear(
     const Ring& lower, const Ring& upper, TileCost cost, const SpanClearance& sides,
     std::vector<std::uint8_t>& scores, const std::vector<std::array<std::uint32_t, 3>>& avoided = {});

@@ -140,17 +140,17 @@ class Strips {
         std::count_if(strips_.begin(), strips_.end(), [](const FaceList& strip) { return !strip.empty(); }));
   }
 
-  /// The number of groups that a strip may join.
+  /// The number of groups of two contours that a strip could join.
   std::size_t wanted() const {
     return static_cast<std::size_t>(std::count_if(surface_.groups.begin(), surface_.groups.end(),
                                                   [&](const auto& group) { return is_pair(group); }));
   }
 
-  /// The number of strips that are the best by their cost among those whose spans cross no contour.
+  /// The number of strips that were found by a clear attempt: their spans cross no contour.
   std::size_t clear_count() const {
     return count_if([](int attempt) { return clear_attempt <= attempt && attempt <= last_clear_attempt; });
   }
-  /// The number of strips that had to be narrowed further.
+  /// The number of strips that were found by an attempt after the clear ones.
   std::size_t narrowed_count() const {
     return count_if([](int attempt) { return attempt > last_clear_attempt; });
   }
@@ -206,8 +206,8 @@ class Strips {
     return narrowing == 1 ? eighth(points) : narrowing == 2 ? std::max<std::size_t>(2, points / 32) : 2;
   }
 
-  /// Ends the clear attempts of a group once three in a row have crossed no less than the best before. Contours
-  /// without a strip would otherwise take most of the time.
+  /// Skips the remaining clear attempts of a group after three in a row of which none crossed less than the
+  /// best before. Contours that no strip can join would otherwise take most of the time.
   void give_up_stale(std::size_t g) {
     constexpr int most_stale = 3;
     if (attempts_[g] < clear_attempt || attempts_[g] > last_clear_attempt) return;
@@ -267,7 +267,7 @@ class Strips {
     });
   }
 
-  /// A point of the sections, in the plane.
+  /// A point of the sections by its number, without its height.
   const glm::dvec2& point(std::uint32_t number) const {
     for (const auto* section : {&slab_.lower, &slab_.upper})
       for (const Contour& contour : *section) {
@@ -348,11 +348,12 @@ class Strips {
   SpanClearance sides_;
   std::vector<int> attempts_;      ///< number of each group's present attempt
   std::vector<FaceList> avoided_;  ///< triangles that each group avoids, numbered by its rings
-  /// For each group: the number of avoided triangles known before the last attempt, the fewest that a clear attempt
+  /// For each group: the number of avoided triangles before the last attempt, the fewest that a clear attempt
   /// has added, and the number of attempts in a row that have not added fewer.
   std::vector<std::size_t> known_avoided_, fewest_;
   std::vector<int> stale_;
-  /// Scores of each group's spans, for further clear attempts; second those of aligned contours.
+  /// By group, the scores of its spans for further clear attempts: first for the contours as they are, second
+  /// for contours that were scaled to one box.
   std::array<std::vector<std::vector<std::uint8_t>>, 2> scores_;
 };
 
@@ -372,8 +373,8 @@ Tiled tile_slab(const Slab& slab, const TileSectionsOptions& options) {
   return tiled;
 }
 
-/// The surfaces of all slabs, including those beyond the ends. Throws SectionsCoincide if another shift is
-/// needed.
+/// Computes the surfaces of all slabs, including those beyond the ends. Throws SectionsCoincide if points of
+/// two sections coincide, so that another shift is needed.
 std::vector<Tiled> tile_slabs(const std::vector<std::vector<Contour>>& contours,
                               const std::vector<double>& heights_mm, const TileSectionsOptions& options) {
   assert(!contours.empty() && contours.size() == heights_mm.size());

@@ -33,7 +33,7 @@ struct TileSectionsOptions {
 
 struct TiledSections {
   Triangles surface;
-  std::size_t strips = 0;  ///< pairs of contours joined by cost
+  std::size_t strips = 0;  ///< pairs of contours joined by a strip
   /// Of `strips`: pairs whose best strip crossed itself or another surface, or would enclose a volume twice. They
   /// were joined by the best strip whose spans cross no contour (tile_clear(), tile_clear_aligned()).
   std::size_t clear_strips = 0;

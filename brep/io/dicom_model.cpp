@@ -24,7 +24,7 @@ constexpr std::uint32_t open_length = 0xffffffff;
 /// Sequences nested deeper than this mean that the file is damaged.
 constexpr int most_depth = 16;
 
-/// A value without the blanks and zeros around it.
+/// A value without surrounding blanks and zero bytes.
 std::string_view trimmed(std::string_view value) {
   const std::string_view blank(" \0", 2);
   const std::size_t first = value.find_first_not_of(blank);
@@ -53,7 +53,7 @@ class AttributeWalk {
       }
       if (length > scanner_.rest())
         throw Error(ErrorCode::Input,
-                    "an attribute of the DICOM file ends beyond it: the file is cut short or "
+                    "an attribute reaches beyond the end of the DICOM file: the file is cut short or "
                     "damaged; copy it again");
       found[tag] = scanner_.bytes(length);
     }
@@ -98,7 +98,7 @@ class AttributeWalk {
 };
 
 struct Syntax {
-  std::string_view rest;  ///< the attributes behind the file meta information
+  std::string_view rest;  ///< the attributes after the file meta information
   bool is_explicit = true;
 };
 
@@ -186,9 +186,12 @@ MeshContent read_dicom_model(std::string_view bytes) {
   if (const std::string unit = word_of_unit(code); !unit.empty())
     made.says.add_unit(unit, "the measurement unit '" + code + "' of the DICOM header");
   else
-    made.says.warn("unit", code.empty() ? "the DICOM header states no measurement unit, which is required"
-                                        : "the measurement unit '" + code.substr(0, 16) +
-                                              "' of the DICOM header is not a unit of length");
+    made.says.warn(
+        "unit",
+        code.empty()
+            ? "the DICOM header states no measurement unit, which is required: export the model with its unit"
+            : "the measurement unit '" + code.substr(0, 16) +
+                  "' of the DICOM header is not a unit of length");
   if (!text(0x00200052).empty()) made.says.add_frame("LPS", "DICOM's frame of reference");
   made.says.tell("file", std::string(is_stl ? "STL" : "OBJ") + " in DICOM, of the patient '" +
                              std::string(text(0x00100020).substr(0, 64)) + "', frame of reference '" +

@@ -16,7 +16,8 @@
 namespace octotomy::brep {
 namespace {
 
-/// ASCII letters and digits, all bytes of other UTF-8 characters, and the characters that join words.
+/// Whether a byte belongs to a word: ASCII letters and digits, all bytes of other UTF-8 characters, hyphen
+/// and underscore.
 bool is_name_letter(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' ||
          (static_cast<unsigned char>(c) & 0x80) != 0;
@@ -28,7 +29,7 @@ bool is_one_of(std::string_view word, const std::array<std::string_view, N>& wor
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Quantities with units other than lengths, and screens, whose lengths are not those of the mesh.
+/// Whether a word names a quantity that is no length, or a screen, whose lengths are not those of the mesh.
 bool is_other_quantity(std::string_view word) {
   static constexpr auto known = std::to_array<std::string_view>(
       {"volume",   "volumes",   "area",      "areas",         "velocity",    "velocities",   "speed",
@@ -50,8 +51,8 @@ struct Token {
   bool is_word() const { return !text.empty() && is_name_letter(text.front()); }
 };
 
-/// One occurrence of a key, from the word before it to the end of the sentence: a line, or the part up to a
-/// semicolon or to a full stop before a blank.
+/// One occurrence of a key, with the word before it and the text after it up to the end of the sentence: the
+/// end of the line, a semicolon, or a full stop before a blank.
 struct Sentence {
   std::string_view key;      ///< as written in the text
   std::string before;        ///< the word before the key, in lower case; empty if there is none
@@ -68,7 +69,7 @@ struct Sentence {
   bool is_open(std::size_t i) const {
     return text(i) == "(" || text(i) == "[" || text(i) == "<" || text(i) == "{";
   }
-  /// At most 40 characters, starting at a token.
+  /// The text from a token on, at most 40 characters.
   std::string excerpt(std::size_t i) const {
     return std::string(behind.substr(i < size() ? tokens[i].at : behind.size()).substr(0, 40));
   }
@@ -95,7 +96,7 @@ std::vector<Token> tokens_of(std::string_view behind) {
   return tokens;
 }
 
-/// The end of a sentence, or of the last whole word in its first 200 characters: a statement is short, and a
+/// The end of a sentence, or of the last whole word in its first 200 characters. Statements are short, but a
 /// text may be a file's whole first line.
 std::size_t sentence_end(std::string_view text, std::size_t at) {
   constexpr std::size_t longest = 200;
@@ -110,7 +111,7 @@ std::size_t sentence_end(std::string_view text, std::size_t at) {
   return at;
 }
 
-/// The occurrences of a key as a whole word.
+/// The occurrences of a key that are whole words.
 std::vector<Sentence> sentences_about(std::string_view text, std::string_view key) {
   std::vector<Sentence> found;
   const std::string folded = lower_case(text);
@@ -178,8 +179,7 @@ std::optional<std::string> unit_name(std::string_view word) {
   return unit ? std::optional(unit->name) : std::nullopt;
 }
 
-/// Whether "in" means inch: it follows = or : and is followed by the end of the sentence or another
-/// statement.
+/// Whether "in" after = or : means inch: after it, the sentence ends or another statement begins.
 bool is_inch(const Sentence& s, std::size_t at) {
   std::size_t next = at + 1;
   while (next < s.size() && s.is_open(next)) ++next;

@@ -49,14 +49,15 @@ bool is_likely(double side_mm, double other_mm) {
   return side_mm >= other_mm / 50.0 && side_mm <= 2.0 * other_mm;
 }
 
-/// "; in metres it is 180 mm: try --unit m", for the unit in which a side has a likely size.
+/// "; read as metres it is 180 mm: try --unit m", for the first unit in which a side has a likely size; else
+/// advice to check the file.
 std::string unit_advice(double side_mm, double other_mm) {
   constexpr std::array<std::pair<const char*, const char*>, 4> tried{
       {{"m", "metres"}, {"um", "micrometres"}, {"inch", "inches"}, {"cm", "centimetres"}}};
   for (const auto& [name, words] : tried)
     if (const double right_mm = side_mm * length_unit(name)->mm; is_likely(right_mm, other_mm))
       return std::string("; read as ") + words + " it is " + short_text(right_mm) + " mm: try --unit " + name;
-  return "; it fits in no usual unit: check that it is the right file";
+  return "; its size is likely in no usual unit: check that it is the right file";
 }
 
 }  // namespace

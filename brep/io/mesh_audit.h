@@ -33,7 +33,7 @@ std::optional<std::string> frame_named(std::string_view name);
 /// determinant means that the frame is left-handed, so that triangles must be reversed.
 glm::dmat3 lps_from(const std::string& frame);
 
-/// A unit of length: its name as in `--unit`, and its millimetres.
+/// A unit of length: its name as in `--unit`, and its length in millimetres.
 struct LengthUnit {
   std::string name;
   double mm = 1.0;

@@ -14,7 +14,7 @@
 #include "brep/io/write_mesh.h"
 #include "brep/mesh/triangles.h"
 
-// The bytes of files in formats with normals. Precondition: vertex data fit the triangles.
+// Writers of the formats that have normals. Precondition: vertex data have one entry per point.
 namespace octotomy::brep {
 
 /// Data of a .vtp: named lists with one number per triangle, and the parts in the file.
@@ -24,12 +24,12 @@ struct CellData {
   std::vector<std::string> part_names;
 };
 
-/// Writes a file in pieces, so that the whole need not be in memory.
+/// Collects a file's text and writes it in pieces, so that the whole file need not be in memory.
 struct Sink {
   std::ofstream& file;
   std::string bytes{};
 
-  /// Writes the buffer if it is large; is called between items.
+  /// Writes the collected text if it is large. Called between items.
   void let_go() {
     if (bytes.size() >= (1u << 20)) flush();
   }
@@ -39,7 +39,8 @@ struct Sink {
   }
 };
 
-/// Writes to a temporary file by `write` and renames it into place. Throws Error with path and reason.
+/// Calls `write`, which writes to a temporary file, and renames that file to `path`. Throws Error with path
+/// and reason.
 void replace_file(const std::filesystem::path& path, const std::function<void(Sink&)>& write);
 
 /// VTK's XML polydata with raw data appended: points and vertex data as doubles, normals in single precision.
@@ -64,8 +65,8 @@ std::string lower_extension(const std::filesystem::path& path);
 /// As replace_file().
 void write_bytes(const std::filesystem::path& path, const std::string& bytes);
 
-/// Unit normals of the points: means of the surrounding triangles' normals, weighted by area. (0, 0, 1) if
-/// they cancel or there are none, because the formats require unit length.
+/// Unit normals of the points: means of the surrounding triangles' normals, weighted by area. (0, 0, 1) where
+/// these cancel or a point has no triangles, because the formats require unit length.
 std::vector<glm::vec3> vertex_normals(const Triangles& triangles);
 
 /// Appends a number's bytes, least significant first.

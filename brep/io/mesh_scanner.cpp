@@ -112,7 +112,7 @@ std::size_t MeshScanner::bounded(long long count, std::size_t bytes_each) const 
   assert(bytes_each > 0);
   if (count < 0 || static_cast<unsigned long long>(count) > rest() / bytes_each)
     fail("a count of " + std::to_string(count) + " is more than the rest of the file, " +
-         std::to_string(rest()) + " bytes, can hold; it is cut short or damaged");
+         std::to_string(rest()) + " bytes, can hold; the file is cut short or damaged");
   return static_cast<std::size_t>(count);
 }
 

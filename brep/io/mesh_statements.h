@@ -18,7 +18,7 @@ class MeshStatements {
   /// Adds the statements that stated_frames() and stated_units() (free_text.h) find in a header, comment or
   /// title, named by `where` ("the header"). "LPS millimetres", which this program writes, states both.
   void read_text(std::string_view text, const std::string& where);
-  /// Adds a statement of the format itself or of a field.
+  /// Adds a statement that follows from the format or stands in a field of the file.
   void add_frame(const std::string& name, const std::string& words);
   void add_unit(const std::string& name, const std::string& words);
   /// The writing program, from a header's free text. Stores the printable part of the first non-empty text.
@@ -29,7 +29,8 @@ class MeshStatements {
   void tell(const std::string& check, const std::string& detail) {
     doubts_.push_back({check, MeshVerdict::Pass, detail});
   }
-  /// Replaces "the file names no frame" for formats that define a frame.
+  /// The message for files without a statement, in place of "the file names no frame". For formats that
+  /// define a frame.
   void silent_frame(std::string words) { silent_frame_ = std::move(words); }
 
   /// The frame and unit to use, with the audit's lines about both, the writer and all doubts. Throws Error

@@ -63,8 +63,8 @@ bool is_fan(const std::vector<glm::dvec2>& p) {
     const glm::dvec2 a = p[i] - p[0], b = p[i + 1] - p[0];
     angle += std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
   }
-  // Two triangles always turn by less than a full circle. If more triangles turn by nearly one, ears are cut
-  // instead.
+  // A fan of two triangles turns by less than a full circle. If more triangles turn by nearly one, ears are
+  // cut instead.
   return p.size() == 4 || angle < 2.0 * std::numbers::pi - 1e-6;
 }
 
@@ -255,7 +255,7 @@ void PolygonSplitter::add(std::span<const long long> given) {
   for (const std::uint32_t corner : corners) places.push_back(points[corner]);
   const glm::dvec3 normal = area_vector(places);
   const double length = glm::length(normal);
-  if (!std::isfinite(length)) return add_fan(corners);  // its points are refused later
+  if (!std::isfinite(length)) return add_fan(corners);  // read_mesh() refuses its points later
   const std::vector<glm::dvec2> flat = projected(places, normal);
   const bool fits_fan = corners.size() == 3 || is_fan(flat);
   const bool crosses = !fits_fan && crosses_itself(flat);

@@ -235,7 +235,8 @@ class Reader3mf {
     made_.says.add_writer(root.application);
     unit_ = root.unit;
     std::vector<Placed> items = root.items.empty() ? unplaced(path) : root.items;
-    if (root.items.empty()) made_.says.warn("file", "its build places no object: each is read untransformed");
+    if (root.items.empty())
+      made_.says.warn("file", "its build places no object: all objects are read untransformed");
     for (const Placed& item : items) add(item, 0);
     if (left_out_ > 0)
       made_.says.tell("file", std::to_string(left_out_) + " support structures are left out");
@@ -250,7 +251,7 @@ class Reader3mf {
     std::string text = archive_.read(name);
     // Checks the total, because many entries may share the same bytes.
     if ((unpacked_ += text.size()) / 1100 > bytes_.size())
-      refuse_file("the archive unpacks to more than it can hold");
+      refuse_file("the archive unpacks to more bytes than its size allows: it is damaged; export it again");
     return text;
   }
 
@@ -262,7 +263,8 @@ class Reader3mf {
     // The production extension is supported; colours and materials do not change the surface.
     for (std::string_view word = extensions.word(); !word.empty(); word = extensions.word())
       if (word != "p" && word != "m" && word != "c")
-        refuse_file("requires the extension '" + std::string(word.substr(0, 40)) + "', which is not read");
+        refuse_file("requires the extension '" + std::string(word.substr(0, 40)) +
+                    "', which is not read: export it without this extension");
     return part;
   }
 
@@ -273,7 +275,7 @@ class Reader3mf {
     }
     const auto found = objects_.find(key);
     if (found == objects_.end())
-      refuse_file("places object " + key.second.substr(0, 40) + ", which is not there");
+      refuse_file("places object " + key.second.substr(0, 40) + ", which the file does not contain");
     return found->second;
   }
 

@@ -81,7 +81,9 @@ glm::dmat4 matrix_of(const Json& node) {
     glm::dmat4 made;
     for (std::size_t i = 0; i < 16; ++i) made[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = (*m)[i];
     if (glm::row(made, 3) != glm::dvec4(0, 0, 0, 1))
-      refuse_file("a node's matrix does not end in the row 0 0 0 1: it is no motion, scale or shear");
+      refuse_file(
+          "a node's matrix does not end in the row 0 0 0 1, so it is not affine: export the mesh without "
+          "this matrix");
     return made;
   }
   glm::dmat4 made(1.0);
@@ -182,7 +184,7 @@ class GlbReader {
       if (kind == 0x004e4942 && binary_.empty()) binary_ = chunk;
     }
     document_ = Json::parse(json);
-    if (!document_.is_object()) refuse_file("its JSON is no object");
+    if (!document_.is_object()) refuse_file("its JSON is not an object: the file is damaged");
   }
 
   void need_known_extensions() {
@@ -191,7 +193,7 @@ class GlbReader {
     for (const Json& name : list_of(document_, "extensionsUsed"))
       if (name.is_string() &&
           std::find(packed.begin(), packed.end(), name.get<std::string>()) != packed.end())
-        refuse_file("uses " + name.get<std::string>() + ", which is not read: export it without");
+        refuse_file("uses " + name.get<std::string>() + ", which is not read: export the file without it");
   }
 
   void read_buffers() {
@@ -209,7 +211,8 @@ class GlbReader {
     }
   }
 
-  /// `count` elements of a view, each `bytes` long and `stride` apart.
+  /// The bytes of `count` elements of a view, each `bytes` long; sets `stride`, the bytes from one element to
+  /// the next.
   std::string_view elements(std::size_t view_number, std::size_t offset, std::size_t count, std::size_t bytes,
                             std::size_t& stride) const {
     const Json& view = entry(document_, "bufferViews", view_number);
@@ -225,7 +228,7 @@ class GlbReader {
     return std::string_view(buffers_[buffer]).substr(begin + offset, length - offset);
   }
 
-  /// An accessor's numbers, `width` per element.
+  /// The numbers of an accessor's elements, `width` for each.
   std::vector<double> numbers(std::size_t number, std::size_t width, const char* type) {
     const Json& accessor = entry(document_, "accessors", number);
     if (accessor.value("type", std::string()) != type)
@@ -256,7 +259,7 @@ class GlbReader {
   void replace_some(const Json& sparse, std::size_t width, std::size_t bytes, std::vector<double>& made,
                     const Read& read) const {
     if (!sparse.is_object() || !sparse.contains("indices") || !sparse.contains("values"))
-      refuse_file("a sparse accessor has no indices and values");
+      refuse_file("a sparse accessor has no indices or no values");
     const Json &indices = sparse["indices"], &values = sparse["values"];
     const std::size_t count = whole(sparse, "count", 0), kind = whole(indices, "componentType", 0);
     const std::size_t index_bytes = component_of(kind).bytes;
@@ -268,7 +271,7 @@ class GlbReader {
     for (std::size_t i = 0; i < count; ++i) {
       const double index = number_at(where.substr(i * index_stride, index_bytes), kind);
       if (!(index >= 0.0) || index >= static_cast<double>(made.size() / width))
-        refuse_file("a sparse accessor changes an element that is not there");
+        refuse_file("a sparse accessor changes an element that does not exist");
       for (std::size_t k = 0; k < width; ++k)
         made[static_cast<std::size_t>(index) * width + k] = read(what.substr(i * stride + k * bytes, bytes));
     }
@@ -329,7 +332,7 @@ class GlbReader {
                    (node.contains("translation") || node.contains("rotation") || node.contains("scale"));
       const Json& below = list_of(node, "children");
       for (auto child = below.rbegin(); child != below.rend(); ++child) {
-        if (!child->is_number_unsigned()) refuse_file("a node's child is no number");
+        if (!child->is_number_unsigned()) refuse_file("a node's child is not a number");
         open.push_back({child->get<std::size_t>(), matrix});
       }
     }

@@ -26,8 +26,8 @@ MeshContent refuse_gltf_text(std::string_view /*bytes*/) {
 struct Format {
   std::string_view extension;
   MeshContent (*read)(std::string_view bytes);
-  bool is_text;         ///< the format is text, or may be
-  bool repeats_points;  ///< repeats a point if its attributes differ between triangles
+  bool is_text;         ///< a file of this format is, or may be, text
+  bool repeats_points;  ///< files repeat a point whose attributes differ between triangles
 };
 constexpr Format dicom_format{".dcm", read_dicom_model, false, true};
 constexpr std::array<Format, 10> formats{{{".stl", read_stl, true, false},
@@ -88,7 +88,7 @@ void need_reach(const Triangles& triangles) {
       if (const double x = triangles.points_mm[i][axis]; !(std::abs(x) <= largest_coordinate_mm))
         throw Error(ErrorCode::Input, "point " + std::to_string(i) + " has a coordinate of " + short_text(x) +
                                           " mm, beyond the largest, " + short_text(largest_coordinate_mm) +
-                                          " mm: is the file damaged, or its unit another one?");
+                                          " mm: the file is damaged, or its unit is another one");
 }
 
 void turn_to_lps(Triangles& triangles, const std::string& frame, double scale) {
@@ -108,7 +108,7 @@ MeshFinding size_finding(const MeshFile& file) {
   const bool is_odd = !file.triangles.points_mm.empty() && (longest < 1.0 || longest > 3000.0);
   return {"size", is_odd ? MeshVerdict::Warn : MeshVerdict::Pass,
           short_text(side.x) + " x " + short_text(side.y) + " x " + short_text(side.z) + " mm" +
-              (is_odd ? ": is its unit another one? Give it by --unit um, cm, m or inch" : "")};
+              (is_odd ? ": its unit may be another one; give it by --unit um, cm, m or inch" : "")};
 }
 
 MeshFile read_bytes(std::string bytes, const Format& format, const MeshReadOptions& options) {

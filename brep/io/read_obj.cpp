@@ -26,7 +26,7 @@ void read_comments(std::string_view bytes, MeshStatements& says) {
   }
 }
 
-/// Calls `add` and adds the line to the message of an error.
+/// Calls `add`. If it throws, adds the line to the message.
 template <typename Add>
 void on_line(const MeshScanner& scanner, const Add& add) {
   try {
@@ -53,7 +53,7 @@ struct ObjLeftOut {
     };
     if (surfaces > 0)
       says.warn("file", named(surfaces, " free-form surface is", " free-form surfaces are") +
-                            " left out, as only polygons are read: have its program export it as triangles");
+                            " left out, because only polygons are read: export triangles");
     if (files > 0)
       says.warn("file", named(files, " other file is", " other files are") +
                             " referred to (call) and left out: export everything as one file");
@@ -72,8 +72,8 @@ glm::dvec3 point(MeshScanner& scanner) {
   return p;
 }
 
-/// Bytes of each point of a binary OFF file besides its position: two numbers of a texture, four of a colour
-/// and three of a normal, as the file's prefix states. None if the prefix has other letters.
+/// Number of bytes that a binary OFF file has for each point besides its position: two numbers of a texture,
+/// four of a colour and three of a normal, as the file's prefix states. None if the prefix has other letters.
 std::optional<std::size_t> bytes_beside_place(std::string_view magic) {
   std::size_t numbers = 0;
   for (const auto& [letters, count] : {std::pair("ST", 2U), std::pair("C", 4U), std::pair("N", 3U)})

@@ -84,7 +84,7 @@ Header read_header(MeshScanner& scanner, MeshStatements& says) {
       element.count = scanner.integer();
       header.elements.push_back(element);
     } else if (key == "property") {
-      if (header.elements.empty()) scanner.fail("a property before the first element");
+      if (header.elements.empty()) scanner.fail("a property stands before the first element");
       Property property;
       std::string_view type = scanner.word();
       if (type == "list") {
@@ -156,7 +156,8 @@ void read_rows(MeshScanner& scanner, const Header& header, const Element& elemen
       std::size_t count = 1;
       if (property.list_count) {
         const double given = read_scalar(scanner, *property.list_count, header.binary);
-        if (!(given >= 0.0 && given < 4294967296.0)) scanner.fail("a list without a sensible count");
+        if (!(given >= 0.0 && given < 4294967296.0))
+          scanner.fail("the count of a list is negative or too large");
         count = scanner.bounded(static_cast<long long>(given), header.binary ? byte_count(property.type) : 1);
       }
       values.clear();
@@ -220,8 +221,7 @@ void read_lists(MeshScanner& scanner, const Header& header, const Element& eleme
             lists.ends.push_back(lists.corners.size());
             continue;
           }
-          if (!(value >= 0.0 && value < 4294967296.0))
-            scanner.fail("a corner that is not the number of a point");
+          if (!(value >= 0.0 && value < 4294967296.0)) scanner.fail("a corner is not the number of a point");
           lists.corners.push_back(static_cast<long long>(value));
         }
         lists.ends.push_back(lists.corners.size());

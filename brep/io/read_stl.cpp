@@ -69,7 +69,7 @@ std::size_t triangles_held(std::string_view bytes, MeshStatements& says) {
                           std::to_string(held) + ": all are read");
     return static_cast<std::size_t>(held);
   }
-  const std::string left = std::to_string(behind) + " bytes behind the " + std::to_string(count) +
+  const std::string left = std::to_string(behind) + " bytes after the " + std::to_string(count) +
                            " triangles that the header counts are left out";
   behind < triangle_bytes ? says.tell("file", left) : says.warn("file", left);
   return static_cast<std::size_t>(count);
@@ -143,7 +143,7 @@ MeshContent read_text(std::string_view bytes) {
     } else if (is("facet")) {
       scanner.line();
     } else if (!is("outer") && !is("loop") && !is("endfacet")) {
-      scanner.fail("'" + std::string(word.substr(0, 40)) + "' is no word of STL");
+      scanner.fail("'" + std::string(word.substr(0, 40)) + "' is not a word of STL");
     }
   }
   if (!ended) scanner.fail("the file ends without 'endsolid': it is cut short");

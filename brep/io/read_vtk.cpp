@@ -18,7 +18,7 @@ struct VtkReader {
   bool offsets = false;  ///< version 5 and later
   MeshContent made = {};
 
-  /// Bytes of a binary number.
+  /// The number of bytes of a binary number of this type.
   std::size_t bytes_of(std::string_view type) const {
     if (type == "char" || type == "unsigned_char") return 1;
     if (type == "short" || type == "unsigned_short") return 2;
@@ -85,8 +85,8 @@ struct VtkReader {
     skip_metadata();
   }
 
-  /// A string of an array: a line of text or, in a binary file, a length and its bytes. The first two bits of
-  /// the length state its size: 3 one byte, 2 two, 1 four, 0 eight.
+  /// A string of an array: a line of text or, in a binary file, a length and its bytes. The two highest bits
+  /// of the length's first byte state how long the length is: 3 one byte, 2 two, 1 four, 0 eight.
   std::string text() {
     if (!binary) return std::string(scanner.line());
     const auto first = scanner.binary<std::uint8_t>(std::endian::big);
@@ -225,7 +225,7 @@ struct VtkReader {
       else if (key == "metadata")
         skip_metadata();
       else
-        scanner.fail("'" + key.substr(0, 40) + "' is no part of " + (is_grid ? "a grid" : "polydata"));
+        scanner.fail("'" + key.substr(0, 40) + "' is not a part of " + (is_grid ? "a grid" : "polydata"));
     }
     if (is_grid) return add_grid_surface(grid, types, made);
     PolygonSplitter splitter(made.triangles, made.polygons);

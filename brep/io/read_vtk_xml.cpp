@@ -18,7 +18,7 @@
 namespace octotomy::brep {
 namespace {
 
-/// A tag and the text up to the next one.
+/// A tag and the text up to the next tag.
 struct XmlElement {
   std::string_view name;
   std::map<std::string_view, std::string_view> attributes;
@@ -121,13 +121,13 @@ class XmlReader {
       packing_ = Packing::Lz4;
     else if (!compressor.empty())
       throw Error(ErrorCode::Input, "data compressed by " + std::string(compressor.substr(0, 40)) +
-                                        " are not read; write them with zlib, LZ4 or plain");
+                                        " are not read; write them uncompressed or with zlib or LZ4");
   }
 
   void take(const XmlElement& element) {
     if (element.name == "VTKFile") take_file(element);
     if (element.name == "Piece") pieces_.emplace_back();
-    // Elements that describe an array are nested in it.
+    // Tags that describe an array stand inside it.
     for (const char* passed :
          {"/DataArray", "/Array", "InformationKey", "/InformationKey", "Value", "/Value"})
       if (element.name == passed) return;
@@ -272,7 +272,8 @@ class XmlReader {
     } else {
       source.remove_prefix(std::min(source.find_first_not_of(blanks), source.size()));
     }
-    // Decodes the first `count` bytes. For blocks, base64 ends after the header and begins anew.
+    // Decodes the first `count` bytes. If the array is stored in blocks, base64 ends after the header and
+    // begins anew.
     const auto head = [&](std::size_t count) {
       return raw ? std::string(source.substr(0, count)) : from_base64(source, count);
     };
@@ -299,7 +300,7 @@ class XmlReader {
     for (std::size_t b = 0; b < blocks; ++b) {
       const std::size_t length = header_number(header, 3 + b);
       const std::size_t wanted = b + 1 == blocks && last > 0 ? last : size;
-      // zlib compresses at most 1032 bytes into one, LZ4 at most 255.
+      // One compressed byte holds at most 1032 bytes in zlib and 255 in LZ4.
       if (at > packed.size() || length > packed.size() - at ||
           wanted / (packing_ == Packing::Zlib ? 1032 : 255) > length)
         throw Error(ErrorCode::Input, "a compressed block is longer than the file");

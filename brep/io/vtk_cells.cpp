@@ -97,7 +97,7 @@ double volume(const std::vector<glm::dvec3>& points, const std::vector<long long
   return sum;
 }
 
-/// Faces of volume cells, by their corners in ascending order.
+/// Faces of volume cells, found by their corners in ascending order.
 struct CellFace {
   std::array<long long, 4> key{-1, -1, -1, -1};
   std::size_t cell = 0;

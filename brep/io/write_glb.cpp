@@ -20,7 +20,8 @@ struct Buffer {
   std::string bytes, views, accessors;
   int count = 0;
 
-  /// Ends an array that began at `from`; `more` holds further members of its accessor.
+  /// Adds the JSON of an array that begins at byte `from` and ends with the buffer; `more` holds further
+  /// members of its accessor.
   void close(std::size_t from, int target, const std::string& more) {
     const std::string comma = count == 0 ? "" : ",";
     views += comma + "{\"buffer\":0,\"byteOffset\":" + std::to_string(from) +
@@ -137,7 +138,7 @@ std::vector<glm::vec3> vertex_normals(const Triangles& triangles) {
 std::string glb_of(const Triangles& triangles, const VertexData& data) {
   Buffer buffer;
   std::string mesh;
-  // The format does not allow a mesh without points; an empty mesh is written as a scene without nodes.
+  // The format does not allow a mesh without points, so an empty mesh is written as a scene without nodes.
   const bool is_empty = triangles.faces.empty();
   if (!is_empty) {
     add_points(triangles.points_mm, buffer);

@@ -57,7 +57,7 @@ std::string obj_of(const PartedSurface& parted) {
   return text;
 }
 
-/// The data of a .vtp on its triangles and parts.
+/// The data of a .vtp about the triangles and the parts.
 CellData cells_of(const PartedSurface& parted) {
   CellData data;
   data.numbers = {{"part_behind", {}}, {"part_in_front", {}}};

@@ -40,7 +40,7 @@ std::pair<std::size_t, std::size_t> directory_of(std::string_view bytes) {
   if ((begin == 0xffffffff || count == 0xffff) && at >= 20 &&
       number_at<std::uint32_t>(bytes, at - 20) == 0x07064b50) {
     const auto end = static_cast<std::size_t>(number_at<std::uint64_t>(bytes, at - 12));
-    if (end > bytes.size() || bytes.size() - end < 56) refuse_file("the archive's end is damaged");
+    if (end > bytes.size() || bytes.size() - end < 56) refuse_file("the archive's end record is damaged");
     count = static_cast<std::size_t>(number_at<std::uint64_t>(bytes, end + 32));
     begin = static_cast<std::size_t>(number_at<std::uint64_t>(bytes, end + 48));
   }

@@ -25,8 +25,9 @@ namespace {
 
 constexpr double samples_wanted = 200'000.0;
 
-/// A sample's triangle has at most half the square of its side as area, so this side yields the wanted number
-/// of samples if triangles are large. Small triangles each have samples of their own.
+/// A sample represents a triangle, whose area is at most half the square of the spacing. So this spacing
+/// yields at least the wanted number of samples if triangles are large. Small triangles add their corners as
+/// samples.
 double spacing_mm(double area_mm2, const Triangles& a, const Triangles& b) {
   const double even_mm = std::sqrt(2.0 * area_mm2 / samples_wanted);
   return std::max(widened_spacing_mm(a, even_mm, 8.0 * samples_wanted),
@@ -53,14 +54,14 @@ void check(const DifferenceOptions& options, double area_a_mm2, double area_b_mm
 /// Signed distances of a surface's samples and of its vertices.
 struct Distances {
   std::vector<double> areas_mm2, sample_mm, vertex_mm;
-  std::vector<bool> vertex_has_face;  ///< false for a point that no triangle uses and that is not on the
+  std::vector<bool> vertex_has_face;  ///< false for a point that no triangle uses, which is not on the
                                       ///< surface
   double reach_mm = 0.0;
   std::size_t on_border_count = 0;
 };
 
 /// Triangles with sides up to the spacing are represented by their corners, each with a third of the area;
-/// larger ones by samples of their own.
+/// larger ones are sampled.
 struct Split {
   Triangles large;                 ///< with the surface's points
   std::vector<double> corner_mm2;  ///< area assigned to each of the surface's points

@@ -16,7 +16,7 @@ struct DifferenceOptions {
   /// at most the spacing; that of means and percentiles is a small share of the spacing.
   std::optional<double> spacing_mm = std::nullopt;
   std::vector<double> tolerances_mm = {0.5, 1.0, 2.0};  ///< upper limits of the bands, positive and ascending
-  std::size_t bins = 41;  ///< bins of the histogram, at least 1; with an odd number one is centred at zero
+  std::size_t bins = 41;  ///< bins of the histogram, at least 1; an odd number centres one bin at zero
 };
 
 /// Distances from one surface's points to the nearest points of the other, weighted by the area that each
@@ -45,12 +45,12 @@ struct Difference {
   /// The true Hausdorff distance is at most this much larger: the distance changes at most as much as the
   /// position.
   double hausdorff_short_by_mm = 0.0;
-  DistanceHistogram histogram;      ///< distances from a to b
+  DistanceHistogram histogram;      ///< signed distances from a to b
   std::vector<double> vertex_mm;    ///< signed distance to b of each vertex of a
   std::size_t sample_count = 0;     ///< number of samples on both surfaces
   std::size_t on_border_count = 0;  ///< samples whose nearest point is on a border, so that their sign is a
                                     ///< guess
-  double spacing_mm = 0.0;          ///< largest side of a sample's triangle
+  double spacing_mm = 0.0;          ///< largest side of a triangle that one sample represents
 };
 
 /// The distances between two surfaces in the same LPS frame: point to triangle, in both directions,

@@ -29,8 +29,8 @@
 namespace octotomy::brep {
 namespace {
 
-/// A wrench: force, then moment over a length, then the size of reactions; or a motion: velocity, then turn
-/// times that length, then the depth that contacts may give.
+/// A wrench: a force, its moment divided by a length, and the size of the reactions. Or a motion: a velocity,
+/// its rotation times that length, and the depth by which contacts give way.
 constexpr int rows = 7;
 using Wrench = std::array<double, rows>;
 
@@ -47,7 +47,7 @@ Wrench negative(Wrench a) {
 /// Entries of wrenches are about 1, so that smaller numbers are rounding after some pivots.
 constexpr double rounding = 1e-10;
 
-/// A linear programme of seven rows: not negative shares of columns that sum to a goal.
+/// A linear programme of seven rows: finds shares of columns, none below 0, whose sum is a goal.
 class Programme {
  public:
   Programme(const std::vector<Wrench>& columns, const Wrench& goal) : columns_(columns) {
@@ -59,7 +59,7 @@ class Programme {
     }
   }
 
-  /// Whether the goal lies in the columns' cone. If not, prices() separate them.
+  /// Whether the goal lies in the columns' cone. If not, prices() separates both.
   bool reaches_goal() {
     run(artificial);
     double missing = 0.0;
@@ -67,13 +67,14 @@ class Programme {
       if (basis_[row] == artificial) missing += level_[row];
     return missing <= 100.0 * rounding;
   }
-  /// How far the goal can move along a direction within the cone; infinity where nothing ends it. prices()
-  /// then show the cone's side at the end. Precondition: reaches_goal().
+  /// How far the goal can move along a direction within the cone; infinity if it never leaves the cone.
+  /// prices() is then the cone's side at the end. Precondition: reaches_goal().
   double reach(const Wrench& along) {
     moved_ = negative(along);
     return run(moving) ? level_of(moving) : std::numeric_limits<double>::infinity();
   }
-  /// Of all columns not above 0; above 0 of what the cone does not hold.
+  /// Factors for the rows: their product with each column is at most 0; with a goal outside of the cone,
+  /// above 0.
   const Wrench& prices() const { return prices_; }
 
  private:
@@ -86,7 +87,7 @@ class Programme {
   }
 
   /// Improves the basis until no column helps: fewer artificial shares, or a larger share of the moving
-  /// column. False if nothing ends that.
+  /// column. Returns false if that share can grow without limit.
   bool run(std::size_t aim) {
     constexpr int bland_from = 200, most = 20000;
     for (int turn = 0; turn < most; ++turn) {
@@ -99,9 +100,9 @@ class Programme {
       if (enters == artificial) return true;
       if (!pivot(enters)) return false;
     }
-    throw Error(
-        ErrorCode::Geometry,
-        "rounding hides what the contacts hold: change the largest gap of a contact or the push a little");
+    throw Error(ErrorCode::Geometry,
+                "rounding hides which pushes the contacts hold: change the largest gap of a contact or the "
+                "push a little");
   }
 
   std::size_t entering(std::size_t aim, bool takes_first) const {
@@ -155,7 +156,7 @@ class Programme {
   std::array<std::size_t, rows> basis_{};
 };
 
-/// A line in the plane of deviations: across . q <= reach of the pushes that are held.
+/// A line in the plane of deviations. The deviations q of held pushes satisfy across . q <= reach.
 struct Line {
   glm::dvec2 across{0.0};  ///< unit
   double reach = 0.0;
@@ -175,7 +176,7 @@ class Contacts {
     if (squares > 0.0) length_mm_ = std::sqrt(squares);
     for (const DockingContact& contact : contacts)
       wrenches_.push_back(wrench(contact.p_mm, contact.normal, 1.0));
-    // Reactions need not use up their limit.
+    // This column takes up the part of the limit that the reactions do not use.
     wrenches_.push_back({0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0});
     const glm::dvec3 beside = std::abs(push.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
     e_ = glm::normalize(glm::cross(push, beside));
@@ -221,7 +222,7 @@ class Contacts {
     const glm::dvec3 moment = glm::cross(p_mm - middle_mm_, force) / length_mm_;
     return {force.x, force.y, force.z, moment.x, moment.y, moment.z, size};
   }
-  /// What reactions must sum up to against a push.
+  /// The sum that reactions must have to balance a push.
   Wrench balance(const glm::dvec3& p_mm, const glm::dvec3& force, double most) const {
     return wrench(p_mm, -force, most);
   }
@@ -230,7 +231,8 @@ class Contacts {
     return glm::dvec3(motion[3], motion[4], motion[5]) / length_mm_;
   }
 
-  /// The line that ends the held pushes on the way from the origin to a deviation; none if nothing does.
+  /// The line beyond which pushes are no longer held, on the way from the origin to a deviation; none if all
+  /// pushes on the way are held.
   std::optional<Line> line_before(Programme programme, const glm::dvec3& p_mm,
                                   const glm::dvec2& deviation) const {
     const glm::dvec3 force = deviation.x * e_ + deviation.y * f_;
@@ -261,18 +263,18 @@ class Contacts {
 
   Loosening loosening(const Wrench& motion) const {
     const glm::dvec3 slides = velocity(motion), turns = turn(motion);
-    // A turn about an axis ten times farther away than the contacts reach is a slide to them.
+    // About an axis ten times farther away than the contacts reach, a turn is nearly a slide at the contacts.
     if (10.0 * glm::length(turns) * length_mm_ < glm::length(slides))
       return {false, glm::normalize(slides), middle_mm_};
     return {true, glm::normalize(turns), middle_mm_ + glm::cross(turns, slides) / glm::dot(turns, turns)};
   }
 
   glm::dvec3 push_, e_{0.0}, f_{0.0}, middle_mm_{0.0};
-  double length_mm_ = 1.0;  ///< mean distance of contacts from their middle
+  double length_mm_ = 1.0;  ///< root mean square distance of the contacts from their middle
   std::vector<Wrench> wrenches_;
 };
 
-/// In the points' order, each once.
+/// The corners of the points' convex hull, in the points' order, each once.
 std::vector<glm::dvec3> hull_corners(const std::vector<glm::dvec3>& points_mm) {
   using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
   std::vector<Point> points, extreme;
@@ -287,8 +289,8 @@ std::vector<glm::dvec3> hull_corners(const std::vector<glm::dvec3>& points_mm) {
 
 void check(const std::vector<DockingContact>& contacts, const glm::dvec3& push,
            const std::vector<glm::dvec3>& points_mm) {
-  if (contacts.empty()) throw InvalidInput("nothing holds a part without contacts");
-  if (points_mm.empty()) throw InvalidInput("the push needs a point");
+  if (contacts.empty()) throw InvalidInput("there are no contacts to hold the part");
+  if (points_mm.empty()) throw InvalidInput("there is no point at which to push");
   if (!(std::abs(glm::length(push) - 1.0) < 1e-9))
     throw std::invalid_argument("the push must be a unit vector");
 }
@@ -300,7 +302,7 @@ std::vector<Docking> dockings(const std::vector<DockingContact>& contacts, const
                               double at_most_deg) {
   check(contacts, push, points_mm);
   if (!(at_most_deg >= 0.0 && at_most_deg <= most_docking_deg))
-    throw std::invalid_argument("angles are looked for up to 89 degrees at most");
+    throw std::invalid_argument("the largest angle must be from 0 to 89 degrees");
   progress.at(0.0);
   const Contacts held(contacts, push);
   std::vector<Docking> made(points_mm.size());

@@ -21,7 +21,7 @@
 namespace octotomy::brep {
 namespace {
 
-/// Surfaces face each other, or a push, within 60 degrees.
+/// Surfaces face each other, or face a push, if their directions are opposite to within 60 degrees.
 constexpr double least_facing = 0.5;
 /// Normals within 37 degrees belong to one smooth face.
 constexpr double least_alike = 0.8;
@@ -44,7 +44,7 @@ TrianglePoints triangle_of(const Triangles& triangles, std::size_t face) {
   return {triangles.points_mm[a], triangles.points_mm[b], triangles.points_mm[c]};
 }
 
-/// The first candidate in each cube of an edge.
+/// Selects the first candidate in each cube of a grid.
 class Thinning {
  public:
   explicit Thinning(double edge_mm) : edge_mm_(edge_mm) {}
@@ -58,7 +58,8 @@ class Thinning {
   std::set<std::tuple<double, double, double>> taken_;
 };
 
-/// Calls `visit` with the inner points of a triangle: corners of pieces no longer than the spacing.
+/// Calls `visit` with points inside a triangle: the corners of equal pieces whose sides are no longer than
+/// the spacing, or the middle of a triangle that is one piece.
 template <typename Visit>
 void for_pieces(const TrianglePoints& triangle, double spacing_mm, const Visit& visit) {
   const auto& [a, b, c] = triangle;
@@ -77,7 +78,8 @@ struct Place {
   glm::dvec3 p_mm{0.0}, normal{0.0};
 };
 
-/// Corners of triangles first, the largest triangles' before others'; then points between them.
+/// Places on the given triangles: first their corners, those of the largest triangles before others; then
+/// points inside them.
 std::vector<Place> places_of(const Triangles& surface, double spacing_mm,
                              const std::vector<std::uint32_t>& faces) {
   std::vector<std::pair<double, std::uint32_t>> by_size;
@@ -104,7 +106,7 @@ bool overlaps(const TrianglePoints& triangle, const glm::dvec3& low_mm, const gl
          glm::all(glm::greaterThanEqual(glm::max(glm::max(a, b), c), low_mm));
 }
 
-/// Numbers of the triangles that meet a box.
+/// The numbers of the triangles whose boxes overlap a box.
 std::vector<std::uint32_t> faces_in(const Triangles& surface, const glm::dvec3& low_mm,
                                     const glm::dvec3& high_mm) {
   std::vector<std::uint32_t> found;

@@ -13,7 +13,7 @@ namespace octotomy::brep {
 struct DockingContact {
   glm::dvec3 p_mm{0.0};    ///< on the object's surface, LPS
   glm::dvec3 normal{0.0};  ///< unit, out of the object: the direction in which it pushes the part
-  double gap_mm = 0.0;     ///< from there to the part
+  double gap_mm = 0.0;     ///< distance from there to the part
 };
 
 struct DockingContactsOptions {
@@ -26,10 +26,10 @@ struct DockingContactsOptions {
 };
 
 /// Where a part's surface lies against objects: the points of the objects that are nearest to points of the
-/// part, where they lie within a distance and the surfaces face each other by 60 degrees or better. Corners
-/// of triangles come first, so that the extent of flat faces is exact. Throws std::invalid_argument if a
-/// solid is empty or an option is out of its range; Stopped. Cost: a tree over the objects' triangles near
-/// the part; log n for each point of the part.
+/// part, if they are near enough and the surfaces face each other to within 60 degrees. Corners of triangles
+/// come first, so that the extent of flat faces is exact. Throws std::invalid_argument if a solid is empty or
+/// an option is out of its range; Stopped. Cost: a tree over the objects' triangles near the part; log n for
+/// each point of the part.
 std::vector<DockingContact> docking_contacts(const Solid& part, const std::vector<Solid>& objects,
                                              const DockingContactsOptions& options);
 

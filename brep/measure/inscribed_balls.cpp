@@ -19,9 +19,9 @@ namespace octotomy::brep {
 namespace {
 
 constexpr std::uint32_t leaf_size = 4;
-/// Shares of a radius. `rounding`: the rounding of distances, with three decimals to spare. `coarse`: the
-/// largest excess of a radius after `exact_nodes` nodes. All triangles of a sphere touch its largest ball, so
-/// excluding each exactly would cost n for each ball.
+/// Shares of a radius. `rounding`: a thousand times the rounding of distances. `coarse`: the largest excess
+/// of a radius after `exact_nodes` nodes. All triangles of a sphere touch its largest ball, so excluding each
+/// of them exactly would cost n for each ball.
 constexpr double rounding = 1e-12, coarse = 5e-3;
 constexpr int exact_nodes = 128;
 constexpr double touching_share = 0.025;
@@ -78,7 +78,9 @@ void InscribedBalls::add_slab(Node& node) const {
   for (std::uint32_t i = node.begin; i < node.end; ++i)
     sum += glm::cross(triangles_[i].b_mm - triangles_[i].a_mm, triangles_[i].c_mm - triangles_[i].a_mm);
   const double length = glm::length(sum);
-  if (!(length > 0.0)) return;  // with `across` of 0 the slab has no thickness and no distance from any point
+  if (!(length > 0.0))
+    return;  // `across` stays 0: then the slab is ignored, because its distance from any
+             // point is 0
   node.across = sum / length;
   node.slab_low_mm = std::numeric_limits<double>::infinity();
   node.slab_high_mm = -node.slab_low_mm;

@@ -35,10 +35,9 @@ class InscribedBalls {
   /// most some thousand further nodes of the tree.
   Ball touching(const glm::dvec3& p_mm, const glm::dvec3& normal, double ray_mm, double least_cosine) const;
 
-  /// Whether the surface touches a ball, within 2.5 % of its radius, at a place nearly opposite to `p_mm`,
-  /// where it also touches: seen from the ball's centre, the two places are at least `least_rad` apart.
-  /// Precondition: `least_rad` is above 90 degrees. Cost: about log n and the triangles near the opposite
-  /// point.
+  /// Whether the surface touches a ball not only at `p_mm` but also, within 2.5 % of the radius, nearly
+  /// opposite: seen from the ball's centre, both places are at least `least_rad` apart. Precondition:
+  /// `least_rad` is above 90 degrees. Cost: about log n and the triangles near the opposite point.
   bool touches_opposite(const Ball& ball, const glm::dvec3& p_mm, double least_rad) const;
 
  private:
@@ -61,7 +60,7 @@ class InscribedBalls {
   std::vector<Node> nodes_;         ///< a parent before its children
 };
 
-/// The largest of many balls that holds a point.
+/// Finds the largest of many balls that contain a point.
 class LargestBall {
  public:
   explicit LargestBall(std::vector<Ball> balls);

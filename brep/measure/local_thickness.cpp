@@ -24,14 +24,16 @@
 namespace octotomy::brep {
 namespace {
 
-constexpr double search_share = 5e-3;  ///< of a radius, see InscribedBalls::touching()
-constexpr double coverage_99 = 2.576;  ///< standard errors of a normal distribution
+constexpr double search_share = 5e-3;  ///< largest error of a radius, as a share, see
+                                       ///< InscribedBalls::touching()
+constexpr double coverage_99 = 2.576;  ///< half-width of a 99 % interval, in standard errors of a normal
+                                       ///< distribution
 
 double rad(double deg) {
   return deg * std::numbers::pi / 180.0;
 }
 
-/// A point of the volume and its share.
+/// A point of the volume and the volume that it represents.
 struct VolumePoint {
   glm::dvec3 p_mm{0.0};
   double volume_mm3 = 0.0;
@@ -84,7 +86,7 @@ std::vector<VolumePoint> volume_points(const Solid& solid, std::size_t wanted) {
   return all;
 }
 
-/// Every n-th sample. Its area includes that of the samples left out up to the next one.
+/// Every n-th sample. Its area includes the areas of the samples that are left out after it.
 std::vector<LocalThicknessAt> surface_points(const Solid& solid, std::size_t wanted, double& reach_mm) {
   const auto spacing = std::sqrt(solid.measures().area_mm2 / static_cast<double>(wanted));
   const SurfaceSamples samples = sample_surface(
@@ -145,9 +147,9 @@ class Measurement {
     return found;
   }
 
-  /// Processes samples by the size of their own balls. A sample's thickness is at least its ball's diameter,
-  /// so the search ends at the first ball that is larger than the thinnest wall. Blocks are fixed, for any
-  /// number of threads.
+  /// Measures samples in the order of their own balls, the smallest ball first. A sample's thickness is at
+  /// least its ball's diameter, so the search ends at the first ball that is larger than the thinnest wall
+  /// found. Blocks are fixed, for any number of threads.
   ThinnestWall run_thinnest() {
     ThinnestWall found;
     std::vector<LocalThicknessAt> surface = surface_points(solid_, options_.samples, found.reach_mm);
@@ -192,7 +194,7 @@ class Measurement {
     if (options_.progress) options_.progress(share);
   }
 
-  /// The ball is a single point if the surface is not closed and the ray leaves it.
+  /// The ball is a single point if the ray meets no surface, because the surface is not closed.
   Ball ball_at(const glm::dvec3& p_mm, const glm::dvec3& normal, double ray_mm) const {
     return std::isfinite(ray_mm) ? inscribed_.touching(p_mm, normal, ray_mm, least_cosine_) : Ball{p_mm, 0.0};
   }
@@ -233,8 +235,8 @@ class Measurement {
   void summarise(LocalThickness& found) const {
     const LargestBall all(balls_);
     std::vector<Ball> some;
-    // Neighbours in the list are neighbours in space, so a multiplicative hash chooses the balls that are
-    // left out at random.
+    // Neighbours in the list are neighbours in space. Therefore a multiplicative hash, and not every n-th
+    // place, decides which balls are left out.
     for (std::size_t i = 0; i < balls_.size(); ++i)
       if ((static_cast<std::uint32_t>(i) * 2654435769U) >> 30 == 0) some.push_back(balls_[i]);
     const LargestBall fewer(std::move(some));
@@ -260,7 +262,8 @@ class Measurement {
     WeightedSums of_groups;
     for (const WeightedSums& group : groups)
       if (group.weight > 0.0) of_groups.add(group.mean(), 1.0);
-    // Balls four times as dense are half as far apart, and the error is of first order in that distance.
+    // With four times as many balls, neighbours are half as far apart, and the error is of first order in
+    // that distance.
     const double rise = sums.mean() - sums_of_fewer.mean();
     found.mean_mm = std::min(sums.mean() + rise, found.largest_mm);
     found.deviation_mm = sums.deviation();
@@ -279,14 +282,14 @@ class Measurement {
   InscribedBalls inscribed_;
   double least_cosine_;
   std::vector<VolumePoint> points_;
-  std::vector<Ball> balls_;  ///< at the surface's points, then at the feet of the volume's
+  std::vector<Ball> balls_;  ///< at the points of the surface, then at the feet of the volume's points
   std::size_t on_surface_ = 0;
 };
 
 void check(const Solid& solid, const LocalThicknessOptions& options) {
-  if (solid.empty()) throw InvalidInput("local thickness: a surface without triangles has no inside");
+  if (solid.empty()) throw InvalidInput("local thickness: the solid has no triangles");
   if (!(solid.size().volume_mm3 > 0.0))
-    throw InvalidInput("local thickness: the surface faces inward, so that it has no inside");
+    throw InvalidInput("local thickness: the surface faces inward: reverse its triangles");
   if (options.samples < 64) throw InvalidInput("local thickness: needs at least 64 samples");
   if (!(options.least_angle_deg >= 1.0 && options.least_angle_deg <= 120.0))
     throw InvalidInput("local thickness: the least angle of two sheets must be from 1 to 120 degrees");

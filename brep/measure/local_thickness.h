@@ -18,10 +18,10 @@ struct LocalThicknessOptions {
   /// Errors of the average fall with the square root of this number on solids with edges.
   std::size_t samples = 20000;
   double least_angle_deg = 30.0;  ///< as of ThicknessOptions
-  /// A point belongs to a wall if its ball touches the surface, within 2.5 % of its radius, at a second
-  /// place that is at least this angle from the point, seen from the ball's centre; 91..179. The two sides
-  /// of a wedge of angle a touch balls at 180 - a. So 150 excludes edges, sharp or blunt, but not walls
-  /// whose sides converge by up to 30 degrees.
+  /// A point belongs to a wall if its ball touches the surface, within 2.5 % of its radius, at a second place
+  /// that is at least this angle from the point, seen from the ball's centre; 91..179. The two sides of a
+  /// wedge of angle a touch a ball at places 180 - a apart. So 150 excludes edges, sharp or blunt, but not
+  /// walls whose sides converge by up to 30 degrees.
   double wall_angle_deg = 150.0;
   std::function<void(double)> progress = {};  ///< is called with 0..1, from the calling thread
   std::stop_token stop = {};
@@ -44,8 +44,8 @@ struct LocalThickness {
   double mean_mm = 0.0;
   double deviation_mm = 0.0, median_mm = 0.0, largest_mm = 0.0;  ///< over the balls, not extrapolated
   /// The mean is within this length of the true value for the given triangles, in 99 of 100 cases. The sum of
-  /// three terms: twice the change when three balls of four are left out, 2.6 standard errors of the points,
-  /// estimated from sums over every second one, and 0.5 % for the searches.
+  /// three terms: twice the change when three balls of four are left out, 2.6 standard errors, estimated from
+  /// the means of 16 groups of points, and 0.5 % for the searches.
   double mean_half_width_mm = 0.0;
   std::vector<LocalThicknessAt> surface;
   double reach_mm = 0.0;  ///< largest distance of any point of the surface from the nearest point in the list

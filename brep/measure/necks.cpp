@@ -28,7 +28,7 @@ struct Sides {
 /// parallel: a wave of a rim is no neck.
 constexpr std::array<Sides, 2> kinds_of_sides{Sides{30.0, 120.0}, Sides{90.0, 150.0}};
 
-/// Shorter edges, as shares of the spacing, are of slivers, whose normals may point anywhere.
+/// Edges shorter than this share of the spacing belong to slivers, whose normals may point anywhere.
 constexpr double least_edge_share = 0.1;
 
 double rad(double deg) {
@@ -62,7 +62,8 @@ std::vector<OnEdge> places_of(const Linked& surface, const NecksOptions& options
                      &to_mm = triangles.points_mm[surface.to(side)];
     const double length_mm = glm::distance(from_mm, to_mm);
     if (length_mm < least_edge_share * options.spacing_mm) continue;
-    // Along a side its own face lies to the left. On a reentrant edge the normals turn to the right.
+    // A triangle lies to the left of its side. At a reentrant edge, the normal turns clockwise about that
+    // side from this triangle to its neighbour.
     if (!(glm::dot(glm::cross(*here, *beside), to_mm - from_mm) < 0.0)) continue;
     const glm::dvec3 sum = *here + *beside;
     if (!(glm::length(sum) > 0.0)) continue;

@@ -10,11 +10,11 @@
 namespace octotomy::brep {
 
 struct NecksOptions {
-  double below_mm = 0.6;  ///< the width from which a neck is wide enough; above 0
+  double below_mm = 0.6;  ///< only necks narrower than this are returned; above 0
   /// Largest distance of the places that are measured on an edge; above 0.
   double spacing_mm = 0.2;
-  /// Edges count whose faces meet inside at an angle of at least 180 degrees and this; 1..170. Waves of a rim, as
-  /// level sets have them, turn by up to 30 degrees.
+  /// An edge counts if the angle between its faces, measured inside the solid, is at least 180 degrees plus
+  /// this; 1..170. Waves of a rim, as level sets have them, turn by up to 30 degrees.
   double reentrant_deg = 30.0;
   std::stop_token stop = {};
 };
@@ -25,11 +25,12 @@ struct Neck {
   double width_mm = 0.0;      ///< the ball's diameter
 };
 
-/// The necks of a solid at its reentrant edges, in the order of the edges: the narrow places of a union of wide
-/// balls, where two that overlap little meet. Balls touch an edge square to the bisector of its faces, and the other
-/// side at least 120 degrees from it, seen from their centres. Throws std::invalid_argument if the solid is empty
-/// or an option is out of its range; Stopped. The same bits on any number of threads. Cost: n log n for the tree,
-/// about log n a place; parallel.
+/// The necks of a solid at its reentrant edges, in the order of the edges: for example the narrow places of a
+/// union of wide balls, where two balls overlap little. Each ball touches an edge, with its centre opposite
+/// to the bisector of the faces' outward normals. It also touches the other side, at least 120 degrees from
+/// the edge as seen from its centre. Throws std::invalid_argument if the solid is empty or an option is out
+/// of its range; Stopped. The same bits on any number of threads. Cost: n log n for the tree, about log n a
+/// place; parallel.
 std::vector<Neck> necks(const Solid& solid, const NecksOptions& options);
 
 }  // namespace octotomy::brep

@@ -33,14 +33,14 @@ struct ThicknessOptions {
   std::stop_token stop = {};
 };
 
-/// The thickness at each point. Balls shrink from the ray's half until no other sheet lies in them; towards
-/// a sharp edge they shrink to nothing, because a ball there must touch both its sides. Rays are exact up
-/// to rounding; balls are as accurate as those of InscribedBalls::touching(). Precondition: a point lies on
-/// the surface. Throws std::invalid_argument if the solid is empty, the angle is out of its range, or a ray
-/// leaves without meeting the surface, naming the point; Stopped. The same bits on any number of threads.
-/// Cost: n log n for the tree, about log n a point; parallel. Source: Ma, Bae and Choi, "3D medial axis
-/// point approximation using nearest neighbors and the normal field", The Visual Computer 28, 2012, with
-/// triangles for points and all sheets at each step.
+/// The thickness at each point. A ball begins with the ray as its diameter and shrinks until no other sheet
+/// lies in it. Towards a sharp edge balls shrink to nothing, because a ball there touches both sides of the
+/// edge. Rays are exact up to rounding; balls are as accurate as those of InscribedBalls::touching().
+/// Precondition: a point lies on the surface. Throws std::invalid_argument if the solid is empty, the angle
+/// is out of its range, or a ray leaves without meeting the surface, naming the point; Stopped. The same bits
+/// on any number of threads. Cost: n log n for the tree, about log n a point; parallel. Source: Ma, Bae and
+/// Choi, "3D medial axis point approximation using nearest neighbors and the normal field", The Visual
+/// Computer 28, 2012, here with triangles instead of points, and with all sheets tested at each step.
 std::vector<Thickness> thickness(const Solid& solid, const std::vector<SurfacePoint>& points,
                                  const ThicknessOptions& options = {});
 

@@ -21,8 +21,8 @@ struct Component {
 
 /// The pieces of a closed mesh, largest volume first, pieces of equal volume by their first face. Shells are
 /// connected across edges. A shell of negative volume is a cavity of the smallest shell around it; without
-/// such a shell it is a component of its own with negative volume. Throws std::invalid_argument if the mesh
-/// is open. Cost: n log n, one ray per shell.
+/// such a shell it is a separate component with negative volume. Throws std::invalid_argument if the mesh is
+/// open. Cost: n log n, one ray per shell.
 std::vector<Component> components(const Mesh& mesh);
 
 /// The components of linked triangles. `tree` returns the triangles' search tree and is called only if there

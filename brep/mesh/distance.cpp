@@ -28,8 +28,8 @@ namespace octotomy::brep {
 namespace {
 
 constexpr std::uint32_t leaf_size = 4;
-/// Halving has at most 32 levels, plus 60 along a curve. Two levels form a node, and each node leaves at most
-/// three children on the stack.
+/// Halving makes at most 32 levels; splitting along a curve makes up to 60 more. A node combines two levels
+/// and leaves at most three of its children on the stack.
 constexpr std::size_t most_waiting = 3 * 46 + 4;
 
 struct Corners {
@@ -191,7 +191,7 @@ struct SurfaceTree::Tree {
                            ///< the origin loses no digits
   bool is_halved;          ///< nodes were split at the median centre
   std::vector<FourBoxes> boxes_of_leaf;    ///< boxes of each leaf's triangles; for segments only
-  std::vector<std::uint32_t> leaf_number;  ///< for each node, the index of a leaf in boxes_of_leaf; for
+  std::vector<std::uint32_t> leaf_number;  ///< by node: if it is a leaf, its index in boxes_of_leaf; for
                                            ///< segments only
 
   Tree(const Triangles& source, SurfaceTree::Build build) : is_halved(build != SurfaceTree::Build::Hasty) {
@@ -320,7 +320,7 @@ struct SurfaceTree::Tree {
   /// The side of a triangle on which a point lies: -1 inside, 1 outside; 0 where the point's foot is not
   /// clearly within the triangle, so that the triangle alone does not decide. Clearly means by more than
   /// 2^-30 of the largest coordinates, which is far above rounding. The segment to the foot meets no other
-  /// triangle, as this one is the nearest.
+  /// triangle, because this triangle is the nearest.
   int side_of(std::uint32_t number, const glm::dvec3& p) const {
     const Corners t = triangle(number);
     const glm::dvec3 most =

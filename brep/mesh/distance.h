@@ -19,7 +19,7 @@ bool is_inside(const glm::dvec3& p_mm, const Triangles& surface);
 /// A triangle that a ray towards +x crosses.
 struct Crossing {
   std::uint32_t face = 0;
-  bool leaving = false;  ///< from inside to outside, by the triangle's winding
+  bool leaving = false;  ///< the ray leaves the solid there, by the triangle's winding
 };
 
 /// The nearest point of a surface to a point.
@@ -45,9 +45,9 @@ class SurfaceTree {
  public:
   explicit SurfaceTree(const Mesh& mesh) : SurfaceTree(triangles_of(mesh)) {}
   explicit SurfaceTree(const Triangles& triangles);
-  /// Hasty: built in linear time along a curve, for few queries. Distances are the same up to rounding; among
-  /// equally near faces, feet() may return a different one. ForSegments: like Searched, but also for
-  /// meets_any(); about 45 bytes per triangle more.
+  /// Searched: built by halving, n log n. Hasty: built in linear time along a curve, for few queries. Its
+  /// distances are the same up to rounding; among equally near faces, feet() may return a different one.
+  /// ForSegments: as Searched, but also for meets_any(); about 45 bytes per triangle more.
   enum class Build { Searched, Hasty, ForSegments };
   SurfaceTree(const Triangles& triangles, Build build);
   ~SurfaceTree();

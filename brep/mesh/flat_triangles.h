@@ -8,7 +8,7 @@
 
 namespace octotomy::brep {
 
-/// Whether any triangle has exactly no area. Precondition: all points are finite. Cost: linear.
+/// Whether any triangle has an area of exactly 0. Precondition: all points are finite. Cost: linear.
 bool has_flat_triangles(const Triangles& triangles);
 
 /// The changes made by take_out_flat_triangles().

@@ -28,7 +28,7 @@ struct TreeBox {
   }
 };
 
-/// Floats that enclose a double.
+/// The nearest floats that are not above, or not below, a double.
 inline float rounded_down(double number) {
   const auto nearest = static_cast<float>(number);
   return static_cast<double>(nearest) <= number

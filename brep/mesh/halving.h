@@ -12,8 +12,8 @@
 namespace octotomy::brep {
 
 /// The number of nodes of a binary tree over `count` items, halved (first half smaller) down to leaves of at
-/// most `leaf_size`. By this number, halves have their places in preorder before they are built, so they can
-/// be built in parallel. Cost: log n.
+/// most `leaf_size`. With this number, the places of both halves in preorder are known before they are built,
+/// so they can be built in parallel. Cost: log n.
 inline std::uint32_t halving_nodes(std::uint32_t count, std::uint32_t leaf_size) {
   // Halves differ by at most one, so each level has only two sizes, `small` and `small` + 1.
   std::uint64_t nodes = 0, small = count, small_count = 1, large_count = 0;

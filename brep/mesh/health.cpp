@@ -107,7 +107,7 @@ void count_duplicates(const Triangles& triangles, const Side* begin, const Side*
   }
   if (thirds.size() < 2) return;
   std::sort(thirds.begin(), thirds.end());
-  // A triangle that repeats a point has an edge twice.
+  // A triangle that repeats a point has an edge twice, but is counted once.
   thirds.erase(std::unique(thirds.begin(), thirds.end()), thirds.end());
   std::size_t earlier = 0;
   for (std::size_t i = 1; i < thirds.size(); ++i) {

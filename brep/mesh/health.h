@@ -36,7 +36,7 @@ struct Health {
   std::size_t unused_vertices = 0;       ///< vertices in no triangle
   std::size_t components = 0;            ///< triangles connected at corners
   std::size_t shells = 0;                ///< triangles connected across edges
-  long euler = 0;                        ///< V - E + F of the vertices in use
+  long euler = 0;                        ///< V - E + F, where V counts only vertices in use
   std::size_t boundary_edges = 0;        ///< edges with one triangle
   std::size_t coincident_points = 0;     ///< points in use that coincide with an earlier one in use
   std::size_t unwelded_edges = 0;        ///< boundary edges that would close if coincident points were merged

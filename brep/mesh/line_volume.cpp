@@ -22,7 +22,8 @@ namespace octotomy::brep {
 namespace {
 
 constexpr std::int64_t rows_a_slab = 8;
-/// The crossings of a million lines with 64 layers. Surfaces with more layers are sampled by fewer lines.
+/// As many crossings as a million lines have with 64 layers. Surfaces with more layers are sampled by fewer
+/// lines.
 constexpr double most_crossings = 0x1p26;
 
 /// A crossing of a line of a row and a triangle.
@@ -62,7 +63,7 @@ Triangles turned(const Triangles& surface) {
 
 Lines lines_over(const Triangles& a, const Triangles& b, std::size_t count) {
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-  double passed_mm2 = 0.0;  // area crossed by all lines, each layer counted
+  double passed_mm2 = 0.0;  // total area of the triangles' projections along x
   for (const Triangles* surface : {&a, &b})
     for (const auto& face : surface->faces) {
       for (const std::uint32_t v : face) {

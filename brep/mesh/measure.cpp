@@ -216,8 +216,8 @@ SecondMoments second_moments(const Corners& t, const glm::dvec3& tip) {
   return moments;
 }
 
-/// The tensor about the centroid, at distance `arm` from the point about which the moments were computed
-/// (Steiner).
+/// The inertia tensor about the centroid, which lies at `arm` from the point about which the moments were
+/// computed (Steiner).
 glm::dmat3 inertia_of(SecondMoments moments, double volume, const glm::dvec3& arm) {
   assert(volume != 0.0);
   moments.squares -= volume * arm * arm;

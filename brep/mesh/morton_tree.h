@@ -57,7 +57,7 @@ struct OuterBox {
 /// Points in the order of a Morton curve through their box; points of one cell in order of number.
 struct MortonOrder {
   std::vector<std::uint32_t> numbers;
-  std::vector<std::uint64_t> cells;  ///< along the curve, ascending; 20 bits an axis, x lowest
+  std::vector<std::uint64_t> cells;  ///< Morton codes, ascending; 20 bits an axis, x in the lowest bit
 
   /// The position at which a run of two or more items is split: at the face of the largest cube that divides
   /// the run, or in the run's middle if all points are in one cell. Cost: log n.

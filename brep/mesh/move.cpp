@@ -92,7 +92,8 @@ Solid deformed(const Solid& solid, const glm::dmat4& deformed_from_still) {
   Triangles triangles = solid.triangles();
   for (glm::dvec3& p : triangles.points_mm) {
     p = glm::dvec3(m * glm::dvec4(p, 1.0));
-    if (!std::isfinite(p.x + p.y + p.z)) throw InvalidInput("deformed: a point leaves the range of numbers");
+    if (!std::isfinite(p.x + p.y + p.z))
+      throw InvalidInput("deformed: a coordinate leaves the range of doubles");
   }
   return trusted_solid(std::move(triangles), proof_of_image(solid.proof()));
 }

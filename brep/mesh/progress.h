@@ -11,7 +11,7 @@ namespace octotomy::brep {
 /// Reports progress of long work and stops it. Only the working function's own thread calls it.
 struct Progress {
   std::stop_token stop = {};
-  std::function<void(double fraction)> report = {};  ///< 0 to 1; may be empty
+  std::function<void(double fraction)> report = {};  ///< is called with 0 to 1; may be empty
 
   /// Reports the fraction done. Throws Stopped if a stop is requested.
   void at(double fraction) const {

@@ -15,7 +15,7 @@
 
 namespace octotomy::brep {
 
-/// The lines along x at one height that cross a triangle: those from low_y up to, not including, high_y.
+/// The lines along x at one z that cross a triangle: those at y from low_y up to, not including, high_y.
 struct RowCrossing {
   double low_y = 0.0, low_x = 0.0;    ///< the point at which the row meets the side of lower y
   double high_y = 0.0, high_x = 0.0;  ///< the point at which the row meets the other side

@@ -43,7 +43,8 @@ struct Grid {
 /// of a cell are at most half the spacing long, so its diameter is at most the spacing.
 struct Wedge {
   glm::dvec3 tip, foot, across;    ///< across: the short side, from the foot
-  double area_mm2, strips, cells;  ///< cells: those of the strip at the short side, furthest from the tip
+  double area_mm2, strips, cells;  ///< cells: number of cells in the strip at the short side, furthest from
+                                   ///< the tip
 
   double cells_at(double share) const { return std::max(1.0, std::ceil(share * cells)); }
 
@@ -109,8 +110,8 @@ struct Split {
   }
 };
 
-/// A grid's parts grow as the square of the longest side, a wedge's cells as the area: slivers, for which
-/// wedges need less than a quarter, are split into wedges.
+/// The number of a grid's parts grows as the square of the longest side, that of the wedges' cells as the
+/// area. A triangle is split into wedges if these have fewer than a quarter as many cells.
 Split split_of(const std::array<glm::dvec3, 3>& corners, double spacing_mm) {
   const auto& [a, b, c] = corners;
   const glm::dvec3 ab = b - a, ac = c - a;
@@ -190,8 +191,8 @@ double widened_spacing_mm(const Triangles& triangles, double spacing_mm, double 
     const double longest_mm = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
     if (longest_mm > spacing_mm) long_mm += longest_mm;
   }
-  // A triangle as thin as a needle is divided into two wedges, in which each spacing along the longest side
-  // takes about two strips of cells.
+  // A triangle as thin as a needle is divided into two wedges, with about two strips of cells for each
+  // spacing along the longest side.
   return std::max(spacing_mm, 4.0 * long_mm / most_samples);
 }
 

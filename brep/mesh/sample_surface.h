@@ -28,9 +28,9 @@ SurfaceSamples sample_surface(const Mesh& mesh, double spacing_mm);
 SurfaceSamples sample_surface(const Triangles& triangles, double spacing_mm,
                               std::size_t most_samples = std::size_t{1} << 26);
 
-/// The spacing, enlarged if long triangles, which may be slivers, would get more than about `most_samples`
-/// samples because of their length. Well-shaped triangles get samples by their area: pass several times that
-/// number of samples.
+/// The spacing, enlarged if long triangles, such as slivers, would otherwise get more than about
+/// `most_samples` samples. Pass several times the number of samples that well-shaped triangles get by their
+/// area.
 double widened_spacing_mm(const Triangles& triangles, double spacing_mm, double most_samples);
 
 }  // namespace octotomy::brep

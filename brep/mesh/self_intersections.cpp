@@ -27,7 +27,8 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-/// From this number of triangles on, a point is a hub. Fewer triangles form at most 32 pairs each.
+/// From this number of triangles on, a point is a hub. Around a point with fewer triangles there are at most
+/// 32 pairs for each triangle.
 constexpr std::uint32_t least_of_hub = 64;
 
 /// Tests whether two triangles meet outside the corners or the side that they share.
@@ -37,7 +38,7 @@ class MeetsElsewhere {
 
   bool operator()(std::uint32_t f, std::uint32_t g) const {
     const auto &a = triangles_.faces[f], &b = triangles_.faces[g];
-    // The corners that both share, and a corner of each that the other does not have.
+    // The number of shared corners, and a corner of each triangle that the other does not have.
     std::size_t shared = 0, own_a = 0, own_b = 0, shared_a = 0, shared_b = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const auto at = std::find(b.begin(), b.end(), a[i]);
@@ -273,7 +274,8 @@ struct EdgeUse {
   bool is_forward = false;
 };
 
-/// The edges of more than two triangles, as runs of one list.
+/// The sides of triangles whose two ends are points that had several numbers, sorted by edge. Sides of
+/// triangles without area are left out.
 std::vector<EdgeUse> uses_of_shared_edges(const Triangles& triangles,
                                           const std::vector<std::uint8_t>& is_copied,
                                           const std::vector<std::uint8_t>& degenerate) {

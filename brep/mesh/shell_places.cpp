@@ -15,7 +15,7 @@
 namespace octotomy::brep {
 namespace {
 
-/// The data by which a shell's place among the others is found.
+/// A shell's place among the others, with the point and the box from which the place is computed.
 struct Probe {
   ShellPlace place;
   /// The shell's point of largest x; if possible, one that no other shell shares.

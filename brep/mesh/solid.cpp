@@ -45,8 +45,8 @@ class Kept {
  public:
   template <typename Compute>
   const Value& get(const Compute& compute) {
-    // Isolated, because a thread that waits within compute() must not run other tasks that wait for this
-    // value.
+    // Isolated: a thread that waits within compute() must not run other tasks, because these may wait for
+    // this value.
     std::call_once(once_, [&] { tbb::this_task_arena::isolate([&] { value_.emplace(compute()); }); });
     return *value_;
   }

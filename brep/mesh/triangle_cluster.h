@@ -7,8 +7,8 @@
 
 namespace octotomy::brep {
 
-/// The moments and extent of triangles near each other, LPS millimetres: what sums of their solid angles need
-/// far from them.
+/// The moments and extent of triangles near each other, LPS millimetres. From these, the triangles' solid
+/// angle at far points can be computed.
 struct TriangleCluster {
   glm::dvec3 centre_mm{0.0};
   double radius_mm = 0.0;  ///< radius of a ball around the centre that contains all corners
@@ -17,7 +17,7 @@ struct TriangleCluster {
   glm::dmat3 moment{0.0};  ///< column j: sum of area vectors times coordinate j of (middle - centre)
 };
 
-/// Of single triangles. Precondition: there is one.
+/// The cluster of some triangles. Precondition: there is at least one.
 TriangleCluster cluster_of(std::span<const std::array<glm::dvec3, 3>> triangles);
 /// Of two clusters.
 TriangleCluster cluster_of(const TriangleCluster& a, const TriangleCluster& b);

@@ -109,8 +109,8 @@ std::vector<std::uint32_t> pair_sides(const Triangles& triangles) {
 bool has_closed_fans_alone(const Linked& linked) {
   std::atomic<bool> alone = true;
   PointShares(linked.triangles).visit([&](std::uint32_t first, std::uint32_t end, const auto& each) {
-    // For each point, 1 plus the corners still to come of one fan, that of the point's first corner; 0 before
-    // that corner.
+    // By point: 0 before its first corner was visited. Then 1 plus the number of corners that are still to
+    // come of the fan to which the first corner belongs.
     std::vector<std::uint32_t> to_come(end - first, 0);
     each([&](std::uint32_t f) {
       if (!alone.load(std::memory_order_relaxed)) return;

@@ -245,7 +245,8 @@ class Bisection {
     return level;
   }
 
-  /// Computes the distances at the centres of the numbered tetrahedra of a level, stored at their numbers.
+  /// Computes the distances at the centres of some tetrahedra of a level, given by their numbers, and stores
+  /// them at these numbers.
   void learn_centres(const std::vector<Open>& level, const std::vector<std::size_t>& numbers,
                      std::vector<double>& at_centres_mm) const {
     std::vector<glm::dvec3> centres(numbers.size());
@@ -255,7 +256,7 @@ class Bisection {
     for (std::size_t k = 0; k < numbers.size(); ++k) at_centres_mm[numbers[k]] = distances[k];
   }
 
-  /// Selects those of the given tetrahedra that satisfy a condition, in their order.
+  /// Those of the given tetrahedra for which a condition is true, in their order.
   template <typename Condition>
   static std::vector<std::size_t> those(const std::vector<std::size_t>& numbers, const Condition& condition) {
     const std::vector<std::uint8_t> is =
@@ -266,8 +267,8 @@ class Bisection {
     return kept;
   }
 
-  /// The tetrahedra of a level that the surface may pass. Corners on both sides prove it; only the others
-  /// need a distance at their centre.
+  /// The tetrahedra of a level that the surface may pass. Corners inside and outside prove that it does; only
+  /// other tetrahedra need the distance at their centre.
   std::vector<std::size_t> passed(const std::vector<Open>& level, std::vector<double>& at_centres_mm) const {
     std::vector<std::size_t> all(level.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
@@ -278,8 +279,8 @@ class Bisection {
     });
   }
 
-  /// Selects the tetrahedra in which distances seem linear. Most are not linear on the edge at which they
-  /// would be bisected: the other distances are computed only for the rest.
+  /// The tetrahedra in which distances seem linear. Most tetrahedra are not linear on the edge at which they
+  /// would be bisected; further distances are computed only for the rest.
   std::vector<std::size_t> linear(const std::vector<Open>& level, const std::vector<std::size_t>& numbers,
                                   std::vector<double>& at_centres_mm) {
     const std::vector<std::size_t> short_enough = those(numbers, [&](std::size_t i) {
@@ -315,7 +316,7 @@ class Bisection {
         made.push_back(half);
   }
 
-  /// Keeps the tetrahedra of a level that are fine enough, and returns the halves of the others.
+  /// Stores the tetrahedra of a level that are fine enough, and returns the halves of the others.
   std::vector<Open> refined(const std::vector<Open>& level) {
     check_count(level.size());
     std::vector<double> at_centres_mm(level.size());
@@ -358,7 +359,7 @@ class Bisection {
            });
   }
 
-  /// Bisects a tetrahedron, and its halves in turn, until no edge has a hanging node.
+  /// Bisects a tetrahedron and then its halves, until no edge has a hanging node.
   void bisect(const Simplex& simplex, std::vector<Simplex>& closed, std::vector<std::uint64_t>& added) {
     if (middles_.insert(middle_of(simplex), {})) added.push_back(middle_of(simplex));
     for (const Simplex& half : halves(simplex))

@@ -12,8 +12,8 @@
 #include "brep/shape/kuhn_cells.h"
 
 // A cube of six tetrahedra that are bisected where a surface passes, as finely as its shape needs: places
-// have integer coordinates 0 .. side, a power of two. Each triangle of the surface lies in a tetrahedron of
-// its own.
+// have integer coordinates 0 .. side, a power of two. Each triangle of the surface lies within one
+// tetrahedron; a tetrahedron contains at most two, which share a side.
 namespace octotomy::brep {
 
 /// A tetrahedron of the lattice. It is bisected between its corners 0 and `tag`.

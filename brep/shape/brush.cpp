@@ -48,8 +48,8 @@ Polyhedron polyhedron_of(const std::vector<Plane>& planes) {
         const glm::dvec3 corner_mm = (a.distance_mm * bc + b.distance_mm * glm::cross(c.normal, a.normal) +
                                       c.distance_mm * glm::cross(a.normal, b.normal)) /
                                      volume;
-        // Planes that do not meet at a corner pass it at a hundredth of its distance or more; rounding is far
-        // below that.
+        // A plane that does not meet at a corner passes the corner at a hundredth or more of the corner's
+        // distance from the origin. Rounding is far below that.
         const double slack_mm = 1e-9 * glm::length(corner_mm);
         if (std::all_of(planes.begin(), planes.end(), [&](const Plane& plane) {
               return glm::dot(plane.normal, corner_mm) <= plane.distance_mm + slack_mm;
@@ -131,7 +131,7 @@ Solid hull_of(const Polyhedron& polyhedron, const glm::dvec3& start_mm, const gl
     return found->second;
   };
   std::map<std::pair<std::uint32_t, std::uint32_t>, bool> looks_forward;  // by edge: whether the face on its
-                                                                          // left does
+                                                                          // left faces the line's end
   for (std::size_t f = 0; f < polyhedron.faces.size(); ++f) {
     const std::vector<std::uint32_t>& ring = polyhedron.faces[f];
     const bool forward = glm::dot(polyhedron.normals[f], end_mm - start_mm) > 0.0;
@@ -152,15 +152,15 @@ Solid hull_of(const Polyhedron& polyhedron, const glm::dvec3& start_mm, const gl
 
 void check(const BrushTrace& trace) {
   const auto is_length = [](double mm) { return std::isfinite(mm) && mm > 0.0; };
-  if (trace.points_mm.empty()) throw InvalidInput("brush_solid: a trace has no point");
+  if (trace.points_mm.empty()) throw InvalidInput("brush_solid: a trace has no points");
   if (!is_length(trace.radius_mm) || (trace.disc && !is_length(trace.disc->thickness_mm)))
-    throw InvalidInput("brush_solid: radius and thickness must be positive");
+    throw InvalidInput("brush_solid: radius and thickness must be above 0 mm and finite");
 }
 
 }  // namespace
 
 BooleanResult brush_solid(const std::vector<BrushTrace>& traces, const std::stop_token& stop) {
-  if (traces.empty()) throw InvalidInput("brush_solid: there is no trace");
+  if (traces.empty()) throw InvalidInput("brush_solid: there are no traces");
   std::vector<Solid> hulls;
   for (const BrushTrace& trace : traces) {
     check(trace);

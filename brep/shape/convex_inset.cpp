@@ -71,7 +71,8 @@ Triangles hull_of(const std::vector<glm::dvec3>& points_mm) {
   return hull;
 }
 
-/// Whether no edge bends inward by more than the slack. Linear; for most solids the test ends here.
+/// Whether no edge bends inward by more than the slack. Cost: linear. For most solids that are not convex,
+/// the test ends here.
 bool bends_outward(const Solid& solid, double slack) {
   const Triangles& surface = solid.triangles();
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> opposite;
@@ -112,7 +113,7 @@ std::vector<SidePlane> sides_of(const Triangles& hull) {
     const double area = glm::length(across);
     if (area > 0.0) by_area.push_back({area, {across / area, glm::dot(across / area, (a + b + c) / 3.0)}});
   }
-  // Large triangles have the best planes.
+  // The largest triangles define their planes most accurately.
   std::stable_sort(by_area.begin(), by_area.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<SidePlane> sides;
@@ -159,7 +160,7 @@ std::vector<Polygon> box_about(const Size& size) {
   return faces;
 }
 
-/// The points, each once, sorted by their directions from the middle of all.
+/// The points sorted by their directions from the middle of all, without repeated ones.
 Polygon ring_of(Polygon points, const glm::dvec3& normal, double slack) {
   glm::dvec3 middle(0.0);
   for (const glm::dvec3& p : points) middle += p / static_cast<double>(points.size());

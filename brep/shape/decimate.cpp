@@ -35,7 +35,7 @@ class CollapsedMesh : public Mesh {
   /// Returns a collapse's error; negative if it is too large.
   std::function<float(OpenMesh::HalfedgeHandle)> error_of;
 
-  /// The edge that is tested next begins a new turn around a vertex.
+  /// Makes the edge that is tested next begin a new turn around a vertex.
   void start_anew() { next_in_turn_.invalidate(); }
 
   /// The error of the collapse that was tested last.
@@ -89,9 +89,9 @@ struct Collapse {
   OpenMesh::VertexHandle from, to;
 };
 
-/// A collapse's error is at most that of this number of planes, of triangles of mean area, each as far from
-/// the vertex as the largest error. Most of the six planes about a vertex are nearer. The resulting surface
-/// is measured, see decimate().
+/// The largest error of a collapse is that of this number of planes, of triangles of mean area, each as far
+/// from the vertex as the largest distance allowed. Most of the six planes about a vertex are nearer. The
+/// resulting surface is measured, see decimate().
 constexpr double quadric_share() {
   return 4.0;
 }
@@ -216,7 +216,7 @@ Coarse round_of_collapses(const Mesh& mesh, double mean_mm2, const DecimateOptio
   else
     decimater.make_again(before);
 
-  // The library's own record of where vertices go is a map and slow.
+  // The library could record where vertices go, but in a map, which is slow.
   OpenMesh::VPropHandleT<OpenMesh::VertexHandle> was;
   coarse.add_property(was);
   for (std::size_t v = 0; v < coarse.n_vertices(); ++v) {
@@ -233,8 +233,8 @@ Coarse round_of_collapses(const Mesh& mesh, double mean_mm2, const DecimateOptio
   return {coarse, decimater.module(collapses).made, std::move(given)};
 }
 
-/// Locks the vertices that were merged into a corner of some triangles. Returns the number of newly locked
-/// ones.
+/// Locks the vertices that were merged into a corner of the given triangles of the coarse mesh. Returns the
+/// number of newly locked ones.
 std::size_t lock_what_went_into(const std::vector<std::uint32_t>& faces, const Coarse& coarse,
                                 std::vector<bool>& locked) {
   std::vector<bool> is_corner(locked.size(), false);
@@ -328,7 +328,8 @@ Mesh decimate(const Mesh& mesh, const DecimateOptions& options) {
     for (const auto& [a, b] : found.crossing)
       more += lock_about(coarse.mesh, a, mesh, locked) + lock_about(coarse.mesh, b, mesh, locked);
     if (intersections > 0 && more == 0) break;
-    // Repeated collapses would end above the requested number of faces.
+    // If a number of faces is requested, collapses are searched anew: repeating them would end above that
+    // number.
     if (!options.faces) before = std::move(coarse.collapses);
   }
   if (intersections == 0) return mesh;

@@ -10,7 +10,7 @@ namespace octotomy::brep {
 
 struct DecimateOptions {
   /// Largest distance of either surface from the other, above 0; infinite: no limit. With a third of the
-  /// spacing of a scan's samples, an isosurface loses two triangles of three.
+  /// spacing of a scan's samples, an isosurface loses two thirds of its triangles.
   double max_error_mm = 0.1;
   std::optional<std::size_t> faces;      ///< stops at this number of faces, if the other bounds do not stop
                                          ///< it earlier

@@ -29,14 +29,15 @@ struct Enclosed {
 
 /// The region where the winding number of arbitrary triangles exceeds 1/2: the inside of a surface even if
 /// the surface has holes, crosses itself, or has edges of one, three or inconsistent triangles. The result is
-/// a closed solid by Construction, because each of its triangles lies in a tetrahedron of its own. Its points
-/// lie on the given triangles or, across holes, where the winding number is 1/2; sharp edges are cut off
-/// within a cell. A surface that is inside out encloses nothing: orient it first. Triangles with points that
-/// are not finite count as holes. Throws std::invalid_argument if the cell is not above 0; Error (Geometry)
-/// if nothing is enclosed or `cell_mm` needs more than 2^25 lattice points near the surface; Stopped. The
-/// same bits on any number of threads. Cost: a winding number, about log n, for each lattice point near the
-/// surface. Source: Jacobson, Kavan, Sorkine-Hornung, "Robust inside-outside segmentation using generalized
-/// winding numbers", SIGGRAPH 2013; the surface between lattice points is found as by offset().
+/// a closed solid by Construction, because each of its triangles lies within one tetrahedron, and two in the
+/// same tetrahedron share a side. Its points lie on the given triangles or, across holes, where the winding
+/// number is 1/2; sharp edges are cut off within a cell. A surface that is inside out encloses nothing:
+/// orient it first. Triangles with points that are not finite count as holes. Throws std::invalid_argument if
+/// the cell is not above 0; Error (Geometry) if nothing is enclosed or `cell_mm` needs more than 2^25 lattice
+/// points near the surface; Stopped. The same bits on any number of threads. Cost: a winding number, about
+/// log n, for each lattice point near the surface. Source: Jacobson, Kavan, Sorkine-Hornung, "Robust
+/// inside-outside segmentation using generalized winding numbers", SIGGRAPH 2013; the surface between lattice
+/// points is found as by offset().
 Enclosed enclose(const Triangles& surface, const EncloseOptions& options = {});
 
 }  // namespace octotomy::brep

@@ -127,7 +127,7 @@ double FrontFaces::depth_of_cover(std::size_t cell, const std::vector<std::uint8
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::uint32_t side = 3 * begin[i] + k, beyond = surface_.opposite[side] / 3;
       if (is_front[beyond] != 0) {
-        // A triangle that is not in the cell has no edge in it.
+        // The triangle beyond has an edge in this cell only if it is in the cell itself.
         const auto found = std::lower_bound(begin, end, beyond);
         if (found != end && *found == beyond) sets.join(i, static_cast<std::uint32_t>(found - begin));
         continue;

@@ -14,8 +14,8 @@
 #include <vector>
 
 // A lattice of cells, each of six tetrahedra after Kuhn, and the surface between lattice points of different
-// sign. Each triangle lies in a tetrahedron of its own, so triangles do not intersect as long as their
-// corners stay inside their edges.
+// sign. Each triangle lies within one tetrahedron, and two in the same tetrahedron share a side. So triangles
+// do not intersect if their corners are inside the tetrahedra's edges.
 namespace octotomy::brep {
 
 using LatticePoint = glm::ivec3;

@@ -25,7 +25,7 @@ namespace octotomy::brep {
 namespace {
 
 /// Edge of the coarse cells in cells of the options. The distance at a coarse cell's middle bounds the
-/// distances at its points.
+/// distances at all points of the cell.
 constexpr double coarse_cells = 1.5;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 

@@ -129,7 +129,8 @@ void Mender::flip_flat() {
   if (!has_flat_triangles(repair_.surface)) return;
   with_mesh("flat", [&](Mesh& mesh) {
     const FlatTriangles done = take_out_flat_triangles(mesh);
-    replace(triangles_of(mesh), "flat", "cut along another diagonal, or taken out, about one without area");
+    replace(triangles_of(mesh), "flat",
+            "cut along another diagonal, or taken out, beside a triangle without area");
     if (done.left > 0) left("flat", std::to_string(done.left) + " triangles without area stay", {});
   });
 }
@@ -205,7 +206,7 @@ bool Mender::unite(const std::stop_token& stop) {
   split();
   std::optional<UnitedShells> united = united_shells(repair_.surface, stop);
   if (!united || !health(united->surface).solid()) return false;
-  replace(std::move(united->surface), "solid", "cut or taken out, as closed shells were united");
+  replace(std::move(united->surface), "solid", "cut or taken out when closed shells were united");
   change("solid", std::to_string(united->bodies) + " closed shells were united by a Boolean", {});
   for (const std::string& finding : united->findings) change("solid", "of the union: " + finding, {});
   return true;

@@ -7,7 +7,7 @@
 namespace octotomy::brep {
 
 struct OffsetOptions {
-  double by_mm = 1.0;  ///< above 0 outward, below 0 inward
+  double by_mm = 1.0;  ///< length of the offset: above 0 outward, below 0 inward
   /// Approximate edge length of the smallest triangles on parts that the offset rounds; above 0. Sharp edges
   /// get triangles of a quarter of this length, flat and gently curved parts larger triangles.
   double cell_mm = 1.0;
@@ -24,12 +24,12 @@ double offset_tolerance_mm(const OffsetOptions& options);
 /// the solid; empty if there are none. Walls and clefts thinner than a cell may be missed. Points lie within
 /// cell_mm / 1000 of that surface, and triangles between them within offset_tolerance_mm(); sharp edges are
 /// cut off within a quarter of a cell. The result is closed and manifold, and no triangles intersect, because
-/// each lies in a tetrahedron of its own: a solid by Construction. Throws std::invalid_argument if the solid
-/// is empty or an option is out of its range, std::length_error if a side would have more than 2^17 cells or
-/// the surface passes more than 2^22 tetrahedra, Stopped. The same bits on any number of threads. Cost: grows
-/// with the result's triangles, about ten distances of log n each for one triangle; parallel. Sources: see
-/// bisected_lattice.h. Tetrahedra far from the surface are skipped, because distances change by at most the
-/// distance between points.
+/// each lies within one tetrahedron, and two in the same tetrahedron share a side: a solid by Construction.
+/// Throws std::invalid_argument if the solid is empty or an option is out of its range, std::length_error if
+/// a side would have more than 2^17 cells or the surface passes more than 2^22 tetrahedra, Stopped. The same
+/// bits on any number of threads. Cost: grows with the result's triangles, about ten distances of log n each
+/// for one triangle; parallel. Sources: see bisected_lattice.h. Tetrahedra far from the surface are skipped,
+/// because distances change by at most the distance between points.
 Solid offset(const Solid& solid, const OffsetOptions& options);
 
 /// The wall around a surface of any kind, even open or crossing itself: all points within by_mm, above 0, of

@@ -64,10 +64,11 @@ void check_frame(const Prism& prism) {
   if (off(glm::length(prism.look), 1) || off(glm::length(prism.up), 1) || off(glm::length(right), 1) ||
       off(glm::distance(right, prism.right), 0))
     throw std::invalid_argument(
-        "a prism's look, up and right must be orthonormal with right = look x up; normalise them first");
+        "a prism's look, up and right must be orthonormal with right = look x up: make them so first");
   if (!std::isfinite(prism.from_mm) || !std::isfinite(prism.to_mm) || !(prism.from_mm < prism.to_mm))
     throw InvalidInput("a prism reaches from " + std::to_string(prism.from_mm) + " to " +
-                       std::to_string(prism.to_mm) + " mm; the second must be larger and both finite");
+                       std::to_string(prism.to_mm) +
+                       " mm; both depths must be finite, and the second larger");
   if (prism.polygons_mm.empty()) throw InvalidInput("a prism needs at least one polygon");
 }
 
@@ -120,7 +121,7 @@ void check_crossings(std::vector<Side> sides) {
     }
 }
 
-/// Fewer points are fast to insert in any order. They are inserted in the outline's order, which determines
+/// With fewer points than this, any order is fast. They are inserted in the outline's order, which determines
 /// the diagonals.
 constexpr std::size_t many_points = 2000;
 

@@ -10,7 +10,7 @@ namespace octotomy::brep {
 
 /// A region swept along a direction: closed polygons in the plane of `right` and `up` (a point is
 /// right * u + up * v, even-odd rule, so inner polygons are holes) from depth `from_mm` to `to_mm` along
-/// right x up's normal `look`. The three are orthonormal LPS vectors with right = look x up.
+/// `look`. The three are orthonormal LPS vectors with right = look x up.
 struct Prism {
   glm::dvec3 look{0, 1, 0}, up{0, 0, 1}, right{1, 0, 0};
   std::vector<std::vector<glm::dvec2>> polygons_mm;

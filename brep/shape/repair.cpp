@@ -37,8 +37,8 @@ void check(const Triangles& surface, const RepairOptions& options) {
       if (v >= surface.points_mm.size() ||
           (!options.solid && !std::isfinite(glm::dot(surface.points_mm[v], glm::dvec3(1.0)))))
         throw Error(ErrorCode::Input, "repair: triangle " + std::to_string(f) +
-                                          " refers to no point, or to one that is not finite; a solid can be "
-                                          "made without such triangles");
+                                          " refers to a point that does not exist or is not finite; --solid "
+                                          "makes a solid without such triangles");
 }
 
 /// The volume inside, for comparison; lines through holes are left out.
@@ -95,7 +95,8 @@ Solid wall_of(const Triangles& given, double wall_mm, const RepairOptions& optio
   return thickened(finite.surface(), {0.5 * wall_mm, wall_cell_mm(wall_mm, options), options.progress});
 }
 
-/// Advice to make a sheet a wall, a 50th of its extent thick, with the resulting volume. Empty if that fails.
+/// Advice to make a sheet a wall whose thickness is a 50th of the sheet's extent, with the resulting volume.
+/// Empty if that fails.
 std::string wall_way(const Triangles& given, double extent_mm, const RepairOptions& options) {
   const std::string wall = short_text(0.02 * extent_mm);
   try {

@@ -11,7 +11,7 @@ namespace octotomy::brep {
 struct RepairEffect {
   /// For solids, the exact sum over their triangles; for other surfaces, also open ones, by line_volumes().
   double volume_before_mm3 = 0.0, volume_after_mm3 = 0.0;
-  double open_line_share = 0.0;  ///< share of lines that the volume before leaves out
+  double open_line_share = 0.0;  ///< share of the lines that were left out of the volume before
   double area_before_mm2 = 0.0, area_after_mm2 = 0.0;
   /// Largest distance of the corners and middles of triangles of either surface from the other.
   double largest_distance_mm = 0.0;

@@ -19,7 +19,7 @@ glm::dvec2 left_of(const glm::dvec2& along) {
   return glm::dvec2(-along.y, along.x) / glm::length(along);
 }
 
-/// The line moved by `side` to its left; moved pieces meet at the corners.
+/// The line moved to its left by `side`; the moved pieces meet at the corners.
 std::vector<glm::dvec2> moved_aside(const std::vector<glm::dvec2>& line, double side) {
   assert(line.size() >= 2);
   std::vector<glm::dvec2> moved;
@@ -38,9 +38,9 @@ std::vector<glm::dvec2> moved_aside(const std::vector<glm::dvec2>& line, double 
 }  // namespace
 
 Solid saw_blade(const SawCut& cut) {
-  if (!(glm::length(cut.direction) > 0.0)) throw InvalidInput("saw_blade: there is no direction");
+  if (!(glm::length(cut.direction) > 0.0)) throw InvalidInput("saw_blade: the direction has length 0");
   if (!(cut.depth_mm > 0.0) || !(cut.kerf_mm > 0.0))
-    throw InvalidInput("saw_blade: depth and kerf must be positive");
+    throw InvalidInput("saw_blade: depth and kerf must be above 0 mm");
   Prism prism;
   prism.look = glm::normalize(cut.direction);
   // Any axis that is not parallel to the direction is suitable.

@@ -45,7 +45,7 @@ class NearPoints {
  public:
   explicit NearPoints(double cell_mm) : cell_mm_(cell_mm) {}
   void add(const glm::dvec3& p_mm) { cells_[cell_of(p_mm)].push_back(p_mm); }
-  /// At most the cell's edge.
+  /// The distance to the nearest point, or the cell's edge if that is less.
   double distance_mm(const glm::dvec3& p_mm) const {
     double least = cell_mm_;
     const auto [x, y, z] = cell_of(p_mm);
@@ -94,8 +94,8 @@ Triangles down_to(const Mesh& scan, const ScanBlendOptions& options, double dept
   return part;
 }
 
-/// Normals at points, weighted by area and averaged once over neighbours: noise turns small triangles over, whose
-/// own normals would put points on the wrong side.
+/// Normals at points, weighted by area and averaged once over neighbours: noise turns small triangles over,
+/// and their own normals would put points on the wrong side.
 std::vector<glm::dvec3> smooth_normals(const Triangles& surface) {
   std::vector<glm::dvec3> normals(surface.points_mm.size(), glm::dvec3(0.0));
   for (const auto& [a, b, c] : surface.faces) {
@@ -129,7 +129,7 @@ class Weight {
 
   double far_mm() const { return far_mm_; }
 
-  /// How far inside the depth and the chosen crowns a point lies.
+  /// How far inside the depth and the surroundings of the chosen crowns a point lies, mm; negative outside.
   double within_mm(const glm::dvec3& p_mm) const {
     double within = options_.depth_mm + options_.tips_mm - glm::dot(p_mm, options_.to_roots);
     if (options_.about_mm.empty()) return within;
@@ -229,7 +229,7 @@ class MixedField {
         inset_mm_(inset_mm),
         stop_(std::move(stop)) {}
 
-  /// Throws Stopped within a part of a second after a stop is requested.
+  /// The field's values at points. Throws Stopped less than a second after a stop is requested.
   std::vector<double> at(const std::vector<glm::dvec3>& points_mm) const {
     constexpr std::size_t part = 1 << 14;
     std::vector<double> values;

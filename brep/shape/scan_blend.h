@@ -19,8 +19,8 @@ struct ScanBlendOptions {
   /// Along this width the surface changes from the scan's to the solid's: at the depth, at the scan's borders
   /// and holes, and at `radius_mm`. Above 0.
   double blend_mm = 1.5;
-  /// The solid's surface within this distance of the scan is replaced, above 0. Streaks that stick out
-  /// farther stay.
+  /// The solid's surface within this distance of the scan is replaced, above 0. Streaks of the solid that
+  /// stick out farther stay.
   double reach_mm = 1.5;
   std::vector<glm::dvec3> about_mm =
       {};                  ///< replaces only within `radius_mm` of these points; empty: all that the scan

@@ -41,7 +41,7 @@ namespace octotomy::brep {
 namespace {
 
 using ViewKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-/// A point's info is its number, a face's the triangle seen first.
+/// A vertex's info is the number of its point, a face's info the triangle that is seen first.
 using ViewVertexBase = CGAL::Triangulation_vertex_base_with_info_2<std::uint32_t, ViewKernel>;
 using ViewFaceBase = CGAL::Constrained_triangulation_face_base_2<
     ViewKernel, CGAL::Triangulation_face_base_with_info_2<std::uint32_t, ViewKernel>>;

@@ -7,7 +7,7 @@ namespace octotomy::brep {
 
 struct SmoothOptions {
   int rounds = 10;         ///< rounds of one inward and one outward step, at least 1
-  double pass_band = 0.1;  ///< waves below it are preserved, 0..1: 0.1 preserves those longer than about 10
+  double pass_band = 0.1;  ///< waves below this are preserved, 0..1: 0.1 preserves those longer than about 10
                            ///< edges
   double max_volume_share = 0.01;  ///< largest share of the volume that may be gained or lost, above 0
 };

@@ -20,7 +20,7 @@
 namespace octotomy::brep {
 namespace {
 
-/// One shell's triangles with points of their own.
+/// The triangles of one shell, with their own points only.
 std::vector<Triangles> shells_apart(const Linked& whole) {
   std::vector<Triangles> apart;
   std::vector<std::uint32_t> number(whole.triangles.points_mm.size());

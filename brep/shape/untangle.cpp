@@ -58,7 +58,7 @@ Untangled untangle(const Mesh& mesh) {
     if (intersections == 0) break;
     Surface surface = surface_mesh_of<Kernel::Point_3>(untangled.surface);
     pmp::experimental::remove_self_intersections(surface, CGAL::parameters::preserve_genus(keeps_genus));
-    // CGAL's order may depend on addresses.
+    // Sorted, because CGAL's order may depend on addresses.
     Triangles tried = in_coordinate_order(mesh_of(triangles_of(surface)));
     const std::size_t still = health(tried).self_intersections;
     if (still >= intersections) continue;

@@ -127,7 +127,7 @@ class Painter {
     glm::dvec2 at(int column, int row) const {
       return (glm::dvec2(column, row + first_row) + 0.5) / static_cast<double>(points_per_px);
     }
-    /// The number of the first point at or beyond a position along an axis.
+    /// The number of the first sample point at or beyond a position along an axis.
     int from(double px) const {
       return static_cast<int>(std::ceil(std::clamp(px * points_per_px - 0.5, -1e9, 1e9)));
     }

@@ -11,7 +11,7 @@
 #include "brep/view/camera.h"
 #include "brep/view/lighting.h"
 
-// Surfaces as facets, lines, and pictures on planes, drawn together through one depth buffer (thesis 4.4.1).
+// Draws surfaces as facets, lines, and pictures on planes, all through one depth buffer (thesis 4.4.1).
 namespace octotomy::brep {
 
 /// Flat: one tone a triangle. Gouraud: tones of the corners, interpolated. Phong: normals of the corners,

@@ -81,7 +81,8 @@ void read_nodes(std::ifstream& in, Line& line, Tetrahedra& tetrahedra) {
   while (line.next(in) && !line.begins(" -3")) {
     const glm::dvec3 p_mm = line.vector();
     if (line.whole(node_at, node_width) != static_cast<long>(tetrahedra.nodes_mm.size()) + 1)
-      refuse(line.path, line.number, "nodes are not numbered from 1 on: only decks of octotomy are read");
+      refuse(line.path, line.number,
+             "nodes are not numbered from 1 on: only results of octotomy's decks can be read");
     tetrahedra.nodes_mm.push_back(p_mm);
   }
 }
@@ -148,7 +149,8 @@ std::vector<std::optional<glm::dvec3>> displacements_from(std::ifstream& in, Lin
       result[static_cast<std::size_t>(node - 1)] = displacement;
     }
   } while (line.next(in));
-  if (!found) refuse(line.path, "holds no displacements: did the solver end before its step did?");
+  if (!found)
+    refuse(line.path, "holds no displacements: the solver ended before it completed the step; see its log");
   line.progress.at(1.0);
   return result;
 }

@@ -31,7 +31,7 @@ void check_name(const std::filesystem::path& path, const std::string& what, cons
     refuse_to_write(
         path,
         what + " '" + name +
-            "' is no name that Abaqus and CalculiX accept: a letter, then letters, digits, '_', '-', at "
+            "' is not a name that Abaqus and CalculiX accept: a letter, then letters, digits, '_', '-', at "
             "most 80 in all");
 }
 
@@ -48,7 +48,7 @@ void check_nodes(const Tetrahedra& tetrahedra, const std::filesystem::path& path
       refuse_to_write(path,
                       "the surface names node " + std::to_string(node) + " of " + std::to_string(nodes));
   for (const glm::dvec3& p : tetrahedra.nodes_mm)
-    if (!std::isfinite(p.x + p.y + p.z)) refuse_to_write(path, "a node is not finite");
+    if (!std::isfinite(p.x + p.y + p.z)) refuse_to_write(path, "the position of a node is not finite");
   if (!tetrahedra.mid_nodes.empty() && tetrahedra.mid_nodes.size() != tetrahedra.tets.size())
     refuse_to_write(path, "nodes on sides are given for " + std::to_string(tetrahedra.mid_nodes.size()) +
                               " of " + std::to_string(tetrahedra.tets.size()) + " tetrahedra");
@@ -76,7 +76,7 @@ void check_materials(const Tetrahedra& tetrahedra, const std::filesystem::path& 
                               " of " + std::to_string(tetrahedra.tets.size()) + " tetrahedra");
   for (const std::uint32_t material : options.material_of_tet)
     if (material >= options.materials.size())
-      refuse_to_write(path, "a tetrahedron names a material that is not there");
+      refuse_to_write(path, "a tetrahedron names a material that does not exist");
 }
 
 void check_sets(const Tetrahedra& tetrahedra, const std::filesystem::path& path, const DeckOptions& options) {
@@ -86,13 +86,13 @@ void check_sets(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
     check_name(path, "node set", set.name);
     for (const std::uint32_t node : set.nodes)
       if (node >= tetrahedra.nodes_mm.size())
-        refuse_to_write(path, "set " + set.name + " names a node that is not there");
+        refuse_to_write(path, "set " + set.name + " names a node that does not exist");
   }
   for (const DeckSurface& surface : options.surfaces) {
     check_name(path, "surface", surface.name);
     for (const ElementFace& face : surface.faces)
       if (face.tet >= tetrahedra.tets.size() || face.opposite > 3)
-        refuse_to_write(path, "surface " + surface.name + " names a face that is not there");
+        refuse_to_write(path, "surface " + surface.name + " names a face that does not exist");
   }
   for (const ContactPair& pair : options.contacts) {
     check_name(path, "contact pair", pair.name);
@@ -100,14 +100,14 @@ void check_sets(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
       if (std::none_of(options.surfaces.begin(), options.surfaces.end(),
                        [&](const DeckSurface& surface) { return surface.name == name; }))
         refuse_to_write(path,
-                        "contact pair " + pair.name + " names a surface '" + name + "' that is not there");
+                        "contact pair " + pair.name + " names a surface '" + name + "' that does not exist");
   }
   for (const Prescribed& prescribed : options.prescribed) {
     const auto set = std::find_if(options.node_sets.begin(), options.node_sets.end(),
                                   [&](const NodeSet& s) { return s.name == prescribed.node_set; });
     if (set == options.node_sets.end())
       refuse_to_write(
-          path, "displacements are prescribed for a set '" + prescribed.node_set + "' that is not there");
+          path, "displacements are prescribed for a set '" + prescribed.node_set + "' that does not exist");
     if (!prescribed.displacement_mm.empty() && prescribed.displacement_mm.size() != set->nodes.size())
       refuse_to_write(path, "set " + set->name + " has " + std::to_string(set->nodes.size()) + " nodes and " +
                                 std::to_string(prescribed.displacement_mm.size()) + " displacements");
@@ -143,7 +143,8 @@ std::vector<Part> parts_of(const std::filesystem::path& path) {
             {with(".ele"), write_tetgen_ele},
             {with(".face"), write_tetgen_face}};
   }
-  refuse_to_write(path, "'" + extension + "' is no deck this program writes: " + deck_extensions());
+  refuse_to_write(path,
+                  "'" + extension + "' is not a deck that this program writes: use " + deck_extensions());
 }
 
 /// Whether a file begins like the TetGen files that write_deck() writes.
@@ -167,7 +168,7 @@ double bytes_about(const Tetrahedra& tetrahedra, const DeckOptions& options) {
          35.0 * static_cast<double>(tetrahedra.tets.size()) + 10.0 * static_cast<double>(entries);
 }
 
-/// The smallest size of a deck in any format: "1,0,0,0" a node, "1,1,2,3,4" an element.
+/// The smallest size of a deck in any format: "1,0,0,0" for a node, "1,1,2,3,4" for an element.
 std::uint64_t least_bytes(const Tetrahedra& tetrahedra) {
   return 8 * tetrahedra.nodes_mm.size() + 10 * tetrahedra.tets.size();
 }

@@ -58,7 +58,8 @@ struct DeckOptions {
   std::string element_set = "SOLID";
   std::string surface_node_set = "SURFACE";
   std::vector<DeckMaterial> materials{DeckMaterial{}};
-  std::vector<std::uint32_t> material_of_tet;  ///< by number in `materials`; empty: all are the first
+  std::vector<std::uint32_t> material_of_tet;  ///< for each element, the number of its material in
+                                               ///< `materials`; empty: all have the first
   std::vector<NodeSet> node_sets;
   std::vector<DeckSurface> surfaces;
   std::vector<ContactPair> contacts;
@@ -78,8 +79,8 @@ struct DeckOptions {
 ///       nodes, surfaces, materials with their sections, and a static step with the prescribed displacements.
 /// .feb  FEBio 4: the same, prescribed displacements as maps over node sets.
 /// .vtu  VTK unstructured grid of tetrahedra, appended raw data; points in double precision, the nodes of the
-///       surface marked by the point array `surface`, sets by arrays of their own; regions, materials and
-///       fields by elements, surfaces by bits of elements, bit i for the face opposite corner i.
+///       surface marked by the point array `surface`, each set by one array; regions, materials and fields by
+///       elements, surfaces by bits of elements, bit i for the face opposite corner i.
 /// .msh  Gmsh 4.1 or 2.2, text: a physical volume a region, a physical surface a surface.
 /// .node TetGen's .node, .ele and .face, the last with the whole surface; linear elements only.
 /// Throws as need_own_deck_files(). Throws std::invalid_argument for another extension, no tetrahedra, an

@@ -31,7 +31,7 @@ std::array<char, 32> deck_number(double value);
 /// All digits of a double.
 std::array<char, 32> full_number(double value);
 
-/// "REGION1", ... by the element's region.
+/// "REGION1", ... by the number of the element's region.
 std::string region_name(std::uint32_t region);
 /// One more than the largest region number.
 std::uint32_t region_count(const Tetrahedra& tetrahedra);

@@ -55,7 +55,7 @@ void write_set(const std::vector<std::uint32_t>& entries, std::ostream& out) {
   }
 }
 
-/// Calls f(number, elements) for each group that has any.
+/// Calls f(number, elements) for each group that has elements.
 template <typename GroupOf, typename F>
 void for_each_group(std::size_t tets, std::size_t groups, const GroupOf& group_of, const F& f) {
   std::vector<std::vector<std::uint32_t>> members(groups);
@@ -166,7 +166,7 @@ void write_step(const Tetrahedra& tetrahedra, const DeckOptions& options, std::o
             << deck_number(prescribed.displacement_mm[i][axis]).data() << "\n";
   }
   out << "*NODE FILE\nU, RF\n*EL FILE\nS\n";
-  // The force that holds or moves a set, in the .dat file.
+  // Requests the force that holds or moves a set, in the .dat file.
   for (const Prescribed& prescribed : options.prescribed)
     out << "*NODE PRINT, NSET=" << prescribed.node_set << ", TOTALS=YES\nRF\n";
   out << "*END STEP\n";

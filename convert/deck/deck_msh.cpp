@@ -77,7 +77,8 @@ void write_4_1(const Tetrahedra& tetrahedra, const DeckOptions& options, std::os
   write_names(tetrahedra, options, out);
   write_entities(tetrahedra, options, out);
   const std::size_t nodes = tetrahedra.nodes_mm.size();
-  // All nodes belong to the first volume, because nodes on an interface have no entity of their own.
+  // Lists all nodes under the first volume: the format lists each node once, and nodes on an interface belong
+  // to several volumes.
   out << "$Nodes\n1 " << nodes << " 1 " << nodes << "\n3 1 0 " << nodes << "\n";
   for (std::size_t i = 1; i <= nodes; ++i) out << i << "\n";
   for (const glm::dvec3& p : tetrahedra.nodes_mm) {

@@ -37,8 +37,9 @@ double checked_fade(double fade_mm, const std::vector<glm::dvec3>& displacement_
   return fade_mm;
 }
 
-/// Elements from a lattice leave many points exactly as far from one of their faces as from another, which moves
-/// otherwise. The nearest point is searched from a place this far away, so that rounding does not decide.
+/// In a lattice, many points are exactly as far from one face of the elements as from another one, which may
+/// move differently. The nearest point is searched from a place this far beside the point, so that rounding
+/// does not choose the face.
 constexpr glm::dvec3 tie_break_mm(1e-6, 0.618e-6, 0.382e-6);
 
 }  // namespace
@@ -74,7 +75,7 @@ DisplacementField::Bins DisplacementField::bins_of(const Tetrahedra& tetrahedra)
   const Box box = box_of(tetrahedra);
   bins.low_mm = box.low_mm;
   const glm::dvec3 extent_mm = box.high_mm - box.low_mm;
-  // About one bin an element. The limit along an axis bounds memory for any shape.
+  // About one bin for each element. The limit along an axis bounds memory for any shape.
   constexpr double most_a_side = 400.0;
   const double longest_mm = std::max({extent_mm.x, extent_mm.y, extent_mm.z});
   bins.side_mm = std::max(
@@ -124,9 +125,9 @@ double DisplacementField::fading(const glm::dvec3& p_mm) const {
 
 glm::dvec3 DisplacementField::faded(const glm::dvec3& p_mm, const glm::dvec3& displacement_mm) const {
   if (!is_inverse_) return fading(p_mm) * displacement_mm;
-  // The origin of a displaced point: the share s with s = fading(p + s d). The map from s to the right side
-  // is a contraction, because `fade_mm` is above least_fade_mm(). The error after all rounds is under the
-  // tolerance if the displacement is at most 95 % of the largest that `fade_mm` allows.
+  // Finds the share s of the displacement d that moves a displaced point p back to its origin: s = fading(p +
+  // s d). The iteration converges, because `fade_mm` is above least_fade_mm(). After all rounds, the error is
+  // under the tolerance if the displacement is at most 95 % of the largest that `fade_mm` allows.
   constexpr int most_rounds = 400;
   constexpr double tolerance = 1e-12;
   double share = fading(p_mm);

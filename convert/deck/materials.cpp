@@ -22,7 +22,8 @@ namespace {
 constexpr int most_points_an_edge = 9;
 
 /// Sample points of an element, equally weighted: barycentric coordinates (i + 1/4) / n that sum to 1, with n
-/// points an edge, about two a voxel along the longest edge. Corners are in the scan's voxel indices.
+/// points on each edge, about two for each voxel along the longest edge. Corners are in the scan's voxel
+/// indices.
 std::vector<glm::dvec3> points_over(const std::array<glm::dvec3, 4>& v) {
   double longest = 0.0;
   for (std::size_t i = 0; i < 4; ++i)
@@ -39,14 +40,14 @@ std::vector<glm::dvec3> points_over(const std::array<glm::dvec3, 4>& v) {
   return points;
 }
 
-/// Depths below the surface of elements.
+/// Moves points to a depth below the surface of the elements.
 class Depth {
  public:
   Depth(const Tetrahedra& tetrahedra, double depth_mm)
       : surface_(surface_of(tetrahedra)), tree_(surface_), depth_mm_(depth_mm) {}
 
-  /// Moves each point that is nearer to the surface than the depth away from the nearest surface point to the
-  /// depth. Returns false if no point was nearer.
+  /// Moves each point that is nearer to the surface than the depth: away from its nearest surface point, to
+  /// the depth. Returns false if no point was nearer.
   bool sink(std::vector<glm::dvec3>& points_mm) const {
     // A point within this share of the depth from the surface moves along the surface's normal.
     constexpr double too_near = 1e-6;
@@ -78,13 +79,13 @@ class Depth {
   double depth_mm_;
 };
 
-/// The mean over an element; none if no point of it is in the scan.
+/// The mean over an element; none if no point of the element is in the scan.
 std::optional<double> mean_over(const std::array<glm::dvec3, 4>& corners_mm, const ScanSampler& scan,
                                 const std::optional<Depth>& depth) {
   std::array<glm::dvec3, 4> v;
   for (std::size_t i = 0; i < 4; ++i) v[i] = scan.voxel(corners_mm[i]);
   const std::vector<glm::dvec3> points = points_over(v);
-  std::vector<double> below;  // the largest value at the depth
+  std::vector<double> below;  // by point: the largest of its values at the depth
   if (depth) {
     below.assign(points.size(), -std::numeric_limits<double>::infinity());
     std::vector<glm::dvec3> sunk_mm;

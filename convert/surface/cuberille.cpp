@@ -18,7 +18,7 @@
 //
 // 1 Every plane of corners counts its sheets; a running sum gives every plane its first point.
 // 2 Every layer of voxels, with the planes below and above it, writes the planes' points and the layer's
-//   faces. The plane below a layer is the layer's own.
+//   faces. The plane below a layer belongs to that layer.
 // 3 Faces on an edge that two sheets share between the same points wait until all points are numbered: then
 //   each such edge gets a point half way, which the later of the two sheets goes through.
 
@@ -203,7 +203,7 @@ class Cuberille {
   /// inside.
   void add_face(const std::array<CornerPlane*, 2>& planes, const glm::ivec3& v, int axis, bool upper_inside,
                 Layer& layer) const {
-    // Order the corners so that the normal is along -axis if the upper voxel is inside.
+    // Orders the corners so that the normal is along -axis if the upper voxel is inside.
     const int b = (axis + 1) % 3;
     const int c = (axis + 2) % 3;
     Quad quad{};

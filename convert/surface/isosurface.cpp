@@ -204,15 +204,15 @@ class GreySamples {
     return brick.samples[at / 64][at % 64];
   }
 
-  /// The contribution of a coordinate x within a brick to a sample's index: bricks store their samples in
-  /// leaves of 4^3.
+  /// How much a coordinate x within a brick adds to a sample's index: bricks store their samples in leaves of
+  /// 4^3.
   static constexpr std::array<int, 16> spread = {0,   1,   2,   3,   64,  65,  66,  67,
                                                  128, 129, 130, 131, 192, 193, 194, 195};
 
   void mark_block(const glm::ivec3& block, voxel::Window16 window, InsideBits& bits) const {
     const voxel::MinMax range = grey_.range(2, block);
     if (range.high < window.low || range.low > window.high) return;
-    // Rows of sixteen by y + 16 z.
+    // The rows of sixteen samples along x, at y + 16 z.
     std::array<std::uint16_t, 256> rows{};
     const voxel::BlockRef scan = meets_background_ ? grey_.scan().leaf_block(block) : voxel::BlockRef::full();
     if (scan.is_full() && range.low >= window.low && range.high <= window.high) {
@@ -254,7 +254,7 @@ void check_bounds(double low, double high) {
     throw voxel::InvalidInput("isosurface: a bound of the window is not a number");
 }
 
-/// Whether any bit of the first is set that the second has not.
+/// Whether any bit is set in the first that is not set in the second.
 bool any_beyond(const InsideBits& first, const InsideBits& second) {
   for (std::size_t i = 0; i < first.bits.size(); ++i)
     if ((first.bits[i] & ~second.bits[i]) != 0) return true;

@@ -40,8 +40,9 @@ namespace {
 
 using Key = std::uint64_t;
 
-/// Codes of points at a sample. 8 d + e: the face with the corners 0, d and e, or the edge if d = 0, where
-/// corners are offsets x + 2y + 4z. From first_tetrahedron_code on: the six tetrahedra.
+/// Codes of the points that have a given sample as their lowest one. 8 d + e: the face with the corners 0, d
+/// and e, or the edge from 0 to e if d = 0, where corners are offsets x + 2y + 4z. From
+/// first_tetrahedron_code on: the six tetrahedra.
 constexpr std::uint32_t code_count = 128, first_tetrahedron_code = 64;
 
 /// The codes that occur, in ascending order, and the place of each among them: 7 edges, 12 faces and 6
@@ -92,7 +93,7 @@ glm::dvec3 place_of(int corner) {
   return {corner & 1, (corner >> 1) & 1, corner >> 2};
 }
 
-/// A point of a tetrahedron by the corners that it lies between, in ascending order.
+/// A point of a tetrahedron, given by the corners between which it lies, in ascending order.
 struct Between {
   std::vector<int> corners;
   PointName name(int tetrahedron) const {
@@ -155,7 +156,8 @@ class Derivation {
     add(a[0], b[1], apex, between({a[0], b[1]}), across);
     add(a[1], b[0], apex, across, between({a[1], b[0]}));
   }
-  /// A cone from the point on the face of same[1], b and c. Two corners, in `same`, have the same label.
+  /// Three labels, one of which the two corners in `same` have: a cone from the point on the face of same[1],
+  /// b and c.
   void three_labels(const std::vector<int>& same, int b, int c) {
     const Between apex = between({same[1], b, c}), across = between({same[0], b, c});
     add(b, c, between({b, c}), across, apex);
@@ -164,7 +166,7 @@ class Derivation {
       add(same[1], other, between({same[1], other}), between({same[0], other}), apex);
     }
   }
-  /// A cone from the tetrahedron's own point.
+  /// Four labels: a cone from the tetrahedron's own point.
   void four_labels() {
     const Between apex = between({0, 1, 2, 3});
     for (int i = 0; i < 4; ++i)
@@ -254,7 +256,7 @@ class Extraction {
     });
   }
 
-  /// The binomial weights along an axis. A neighbour is weighted by their product over the axes.
+  /// The binomial weights along an axis. The weight of a neighbour is their product over the axes.
   void fill_weights() {
     weights_ = {1.0};
     for (int round = 0; round < 2 * options_.smooth_voxels; ++round) {
@@ -273,8 +275,8 @@ class Extraction {
     return {static_cast<int>(index % x), static_cast<int>(index / x % y), static_cast<int>(index / x / y)};
   }
 
-  /// Calls visit(cell, labels of its corners, pieces of a tetrahedron) for the six of each cell of a layer
-  /// where labels differ.
+  /// Calls visit(cell, labels of its corners, pieces of a tetrahedron) for the six tetrahedra of each cell of
+  /// a layer in which labels differ.
   template <typename Visit>
   void visit_layer(std::size_t z, const Visit& visit) const {
     for (int y = 0; y + 1 < size_.y; ++y)
@@ -314,7 +316,7 @@ class Extraction {
       throw voxel::Error(voxel::ErrorCode::Resource,
                          "the labels' surfaces would have " + std::to_string(count) +
                              " triangles, more than 32-bit numbers can name: crop or resample the label map");
-    // A surface has about half as many points as triangles, each with its key.
+    // There are about half as many points as triangles, and each point has a key.
     constexpr std::size_t face_bytes = sizeof(std::array<std::uint32_t, 3>) +
                                        sizeof(brep::PartedSurface::Sides) +
                                        (sizeof(glm::dvec3) + sizeof(Key)) / 2;
@@ -327,7 +329,7 @@ class Extraction {
     return static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y);
   }
 
-  /// The keys of plane z are named by the cells above and below it.
+  /// Lists the keys of each plane z, which the triangles of the cells above and below it name.
   void number_points(const voxel::Progress& progress) {
     keys_.resize(static_cast<std::size_t>(size_.z));
     voxel::SharedProgress done(progress, keys_.size());

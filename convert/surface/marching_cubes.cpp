@@ -8,7 +8,7 @@
 
 // Source: Lorensen and Cline, "Marching cubes", SIGGRAPH 1987. Departure: no printed table. Its holes come
 // from reducing cases by complement, which joins ambiguous faces differently on either side. Here each case
-// follows from one rule on faces, and cubes that share a face see the same rule.
+// follows from one rule on faces, and cubes that share a face apply the same rule.
 //
 // 1 On every face, each maximal run of inside corners is cut off by one segment, so two inside corners across
 //   a face's diagonal stay apart. Seen from outside the cube, the segment goes counter-clockwise with the run

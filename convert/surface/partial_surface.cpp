@@ -43,7 +43,7 @@ std::uint64_t key_of(const glm::ivec3& v) {
          static_cast<std::uint64_t>(v.z + bias);
 }
 
-/// A sum for each of some voxels.
+/// A sum for each voxel of a set.
 class VoxelSums {
  public:
   void add(const glm::ivec3& v, double value) { sums_[key_of(v)] += value; }
@@ -51,7 +51,7 @@ class VoxelSums {
     const auto found = sums_.find(key_of(v));
     return found != sums_.end() ? std::optional(found->second) : std::nullopt;
   }
-  /// Over the 27 voxels about one, in a fixed order.
+  /// The total of the sums of the 27 voxels around a voxel and itself, in a fixed order.
   double about(const glm::ivec3& v) const {
     double sum = 0.0;
     for (int z = -1; z <= 1; ++z)
@@ -137,8 +137,7 @@ void move_outward(const voxel::PartialOctree& partial, brep::Triangles& surface,
   for (std::size_t v = 0; v < surface.points_mm.size(); ++v) {
     const double length = glm::length(normal_mm2[v]);
     if (length == 0.0)
-      continue;  // all its triangles are flat, or their normals cancel: no direction is
-                 // outward
+      continue;  // all its triangles have no area, or their normals cancel: no direction is outward
     const glm::ivec3 voxel = voxel_of(surface.points_mm[v]);
     const double move_mm = std::clamp(lacks_mm3.about(voxel) / areas_mm2.about(voxel), -most_mm, most_mm);
     surface.points_mm[v] += move_mm / length * normal_mm2[v];

@@ -39,7 +39,8 @@ std::uint64_t crossed_x(const std::uint64_t* row, std::size_t word, std::size_t 
   return row[word] ^ ((row[word] >> 1) | (next << 63));
 }
 
-// Rows of the whole lattice take many megabytes, so threads fill them and nothing initialises them before.
+// Arrays over all rows of the lattice take many megabytes, so they are not initialised before threads fill
+// them.
 
 /// The words of a row, or of neighbouring rows, that may hold a crossed edge: the words with a bit, and the
 /// word before the first of them, because that word's last edge ends in it.
@@ -51,17 +52,17 @@ Words both(const Words& a, const Words& b) {
   return {std::min(a.begin, b.begin), std::max(a.end, b.end)};
 }
 
-/// Numbers of a row: crossed edges by direction, and cells with a crossed edge in the row of cells that
-/// begins here.
+/// Counts of a row, which number() replaces by first numbers: crossed edges by direction. Also the number of
+/// cells with a crossed edge in the row of cells that begins here.
 struct RowCount {
   std::array<std::uint32_t, 3> vertices;
   std::uint32_t cells;
 };
 
-/// A case as the inner loop reads it. Eight rows of edges run along a row of cells: along x at (y, z) = (0,
-/// 0), (1, 0), (0, 1), (1, 1), along y at z = 0, 1, along z at y = 0, 1. A cell's edges are, in order: along
-/// x in the first four rows, then the other edges at its lower x, then those at its upper x, which are the
-/// next cell's lower edges.
+/// A case in the form for the inner loop. Eight rows of edges run along a row of cells: along x at (y, z) =
+/// (0, 0), (1, 0), (0, 1), (1, 1), along y at z = 0, 1, along z at y = 0, 1. A cell's edges are, in order:
+/// along x in the first four rows, then the other edges at its lower x, then those at its upper x, which are
+/// the next cell's lower edges.
 struct FlatCase {
   std::array<std::uint32_t, 8> crossed{};  ///< 1 if the row's edge at the cell's lower x is crossed
   std::uint32_t count = 0;
@@ -175,7 +176,8 @@ class Extraction {
         crossed[i] = crossed_x(row[i], word, bits_.words);
       }
       const std::uint64_t along_y = here[0] ^ here[1], along_z = here[0] ^ here[2];
-      // If no edge at x is crossed, all eight corners are equal, and so are the far edges.
+      // If no edge along x and no edge at the lower x is crossed, all eight corners are equal, so no edge at
+      // the upper x is crossed either.
       const std::uint64_t any = crossed[0] | crossed[1] | crossed[2] | crossed[3] | along_y | along_z |
                                 (here[2] ^ here[3]) | (here[1] ^ here[3]);
       if (any == 0) continue;
@@ -201,7 +203,7 @@ class Extraction {
     return {vertices, static_cast<std::uint32_t>(plane.cells - before)};
   }
 
-  /// Turns counts into first numbers, of planes and then of their rows.
+  /// Replaces counts by first numbers, of planes and then of their rows.
   void number() {
     std::uint64_t vertices = 0, triangles = 0;
     for (Plane& plane : planes_) {
@@ -220,7 +222,7 @@ class Extraction {
           vertex += std::exchange(direction, vertex);
       });
     });
-    // New pages are half of the cost here.
+    // In parallel, because touching the new memory is half of the cost here.
     tbb::parallel_invoke([&] { surface_.points_mm.resize(vertices); },
                          [&] { surface_.faces.resize(triangles); });
   }

@@ -41,7 +41,7 @@ struct InsideBits {
   std::vector<std::uint64_t, voxel::LargeAllocator<std::uint64_t>> bits;
 };
 
-/// The voxels of an octree.
+/// The bits of an octree's voxels.
 InsideBits inside_bits(const voxel::Octree& octree);
 
 /// The edge of a lattice from a voxel to the next one along an axis. Exactly one of its ends is inside.

@@ -36,7 +36,7 @@ void for_each_corners(const Tetrahedra& tetrahedra, const Visit& visit) {
     ++face_count[next];
   }
   std::vector<Sided> faces;
-  std::vector<std::size_t> ends;  // of the faces of each smallest corner of the range
+  std::vector<std::size_t> ends;  // for each smallest corner of the range: where its faces end
   for (std::size_t first = 0, last = 0; first < face_count.size(); first = last) {
     ends.clear();
     std::size_t count = 0;

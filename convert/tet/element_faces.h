@@ -19,7 +19,7 @@ struct ElementFace {
 /// The faces that belong to only one element, in the elements' order. Cost: n log n, and one pass over all
 /// elements for each million of them; memory 80 MB and 4 bytes a node beside the result.
 std::vector<ElementFace> surface_faces(const Tetrahedra& tetrahedra);
-/// The surface faces as triangles, outward. Points are all nodes, inner ones included.
+/// The surface faces as triangles, outward. The points are all nodes, inner ones included.
 brep::Triangles surface_of(const Tetrahedra& tetrahedra);
 
 /// The faces between two regions, those of the first region's elements, outward.

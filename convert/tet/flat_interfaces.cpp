@@ -71,8 +71,8 @@ const LabelPlane* plane_of(const std::vector<LabelPlane>& planes, const Interfac
                        static_cast<std::uint8_t>(between.to + 1));
 }
 
-/// For each node, the sum of 1 if elements of the plane's lower region have it and 2 if elements of the
-/// higher region have it.
+/// For each node: 1 if an element of the plane's lower region has it, 2 if one of the higher region has it, 3
+/// if both, 0 if neither.
 std::vector<std::uint8_t> touched(const Tetrahedra& made, const LabelPlane& plane) {
   std::vector<std::uint8_t> touches(made.nodes_mm.size(), 0);
   for (std::size_t t = 0; t < made.tets.size(); ++t) {

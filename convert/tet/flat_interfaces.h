@@ -12,8 +12,8 @@
 
 namespace octotomy::convert {
 
-/// The plane of least squares through the points within `near_mm` of this plane. Found by iteration from a
-/// first plane.
+/// The plane of least squares through the points that lie within `near_mm` of that same plane. Found by
+/// iteration from `plane`.
 InterfacePlane fitted_plane(const std::vector<glm::dvec3>& points_mm, InterfacePlane plane, double near_mm);
 
 /// The plane between two labels; null if their interface is not flat.

@@ -103,7 +103,8 @@ class FaceNormals {
  public:
   explicit FaceNormals(const Tetrahedra& t) : t_(t), of_node_(t.nodes_mm.size()) {}
 
-  /// Faces between regions look to either side; a surface that looks both ways at a node is folded there.
+  /// On a face between regions, both directions of the normal count as one. On an outer surface, opposite
+  /// normals at a node show a fold.
   void add(const ElementFace& face, bool looks_outward) {
     constexpr std::size_t most = 4;
     const auto [a, b, c] = corners_of(t_, face);
@@ -134,7 +135,7 @@ class FaceNormals {
   }
 
  private:
-  /// Least value of six times the volume that three normals span: half that of a cube's corner.
+  /// Smallest accepted value of six times the volume that three normals span: half that of a cube's corner.
   static constexpr double least_corner() { return 0.5; }
 
   const Tetrahedra& t_;
@@ -242,7 +243,7 @@ class Improving {
     return shortest;
   }
 
-  /// Moves a node to a position where its flattest element is less flat. Returns false if it finds none.
+  /// Moves a node to a position where its flattest element is less flat. Returns false if none is found.
   bool move(std::uint32_t v) {
     if (play_mm_[v] <= 0.0) return false;
     glm::dvec3 best_mm = t_.nodes_mm[v];
@@ -288,14 +289,17 @@ int improve(Tetrahedra& tetrahedra, const ImproveOptions& options) {
     throw voxel::InvalidInput("improve: the dihedral angle to reach must be 0 to 60 degrees");
   if (!options.surface_play_mm.empty() && options.surface_play_mm.size() != tetrahedra.boundary_nodes.size())
     throw std::invalid_argument(
-        "improve: the list of distances that surface nodes may move must be empty or have one value for each "
-        "surface node");
+        "improve: the list of distances by which surface nodes may move must be empty or have one value for "
+        "each surface node");
   if (std::any_of(options.surface_play_mm.begin(), options.surface_play_mm.end(),
                   [](double play_mm) { return !(play_mm >= 0.0); }) ||
       options.rounds < 1)
-    throw std::invalid_argument("improve: the surface's play must not be negative, rounds at least 1");
+    throw std::invalid_argument(
+        "improve: distances by which surface nodes may move must not be negative, and rounds must be at "
+        "least 1");
   if (options.all_or_nothing && !options.surface_play_mm.empty())
-    throw std::invalid_argument("improve: a call with play of the surface cannot continue earlier rounds");
+    throw std::invalid_argument(
+        "improve: a call in which surface nodes may move cannot continue earlier rounds");
   return Improving(tetrahedra, options).run();
 }
 

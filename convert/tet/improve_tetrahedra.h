@@ -9,13 +9,13 @@
 namespace octotomy::convert {
 
 struct ImproveOptions {
-  double min_dihedral_deg = 8.0;  ///< goal for every element, 0..60; better ones stay as they are
+  double min_dihedral_deg = 8.0;  ///< goal for every element, 0..60; elements that reach it stay as they are
   /// How far each node of the surface may move, in the order of `boundary_nodes`. Empty: they stay, to the
   /// bit. With `keeps_flat` nodes of flat faces of the surface and between regions stay in their planes,
   /// nodes of straight edges stay on their lines, and corners do not move.
   std::vector<double> surface_play_mm{};
   bool keeps_flat = true;  ///< nodes of flat faces and straight edges stay in and on them
-  int rounds = 10;         ///< over all elements below the goal, at least 1
+  int rounds = 10;         ///< largest number of rounds over all elements below the goal, at least 1
   /// Stops after a round if the remaining rounds cannot mend every element, assuming that a round mends at
   /// most half of the remaining elements, or the last round's share if that is larger. Not allowed with
   /// `surface_play_mm`, which counts from the nodes' positions at the beginning of a call.

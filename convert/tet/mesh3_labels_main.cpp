@@ -101,7 +101,7 @@ struct Labels {
     return std::find(labels.begin(), labels.end(), label) != labels.end();
   }
 
-  /// For each label, the lowest label that planes connect it with.
+  /// For each label, the lowest label of its group: planes connect the labels of a group.
   std::array<std::uint8_t, 8> grouped(const std::array<std::uint8_t, 8>& labels) const {
     std::array<std::uint8_t, 8> groups = labels;
     for (const convert::LabelPlane& plane : planes) {
@@ -197,7 +197,7 @@ bool read(const MesherRequest& request, Labels& labels, LabelSizes& sizes) {
   return read_all(labels.of_voxel.data(), voxels);
 }
 
-/// A length under which nothing is refined.
+/// A length; facets and cells with only shorter sides are not refined.
 struct Least {
   double length_mm = 0.0;
 
@@ -217,7 +217,7 @@ Complex mesh(const Labels& labels, const LabelSizes& sizes) {
   const Domain domain(
       labels.start, label, box,
       CGAL::parameters::relative_error_bound = error_voxels * labels.spacing_mm[0] / diagonal_mm);
-  // Half a voxel, below which there is nothing but the corners of voxels.
+  // Half a voxel: below it, refinement would only follow the corners of voxels.
   constexpr double least_voxels = 0.5;
   const Least least{least_voxels * *std::min_element(labels.spacing_mm.begin(), labels.spacing_mm.end())};
   const convert::FacetsDownTo<Triangulation, Least> facets(

@@ -68,7 +68,7 @@ class SizeField {
   mutable double size_mm_ = 0.0;
 };
 
-/// A share of the field, up to a length, in the form that Mesh_3 requires.
+/// A share of the field, at most a given length, in the form that Mesh_3 requires.
 struct Sizes {
   using FT = Domain::FT;
   const SizeField& field;
@@ -81,7 +81,7 @@ struct Sizes {
   }
 };
 
-/// A share of the field. Nothing smaller is refined.
+/// A share of the field; facets and cells with only shorter sides are not refined.
 struct Least {
   const SizeField& field;
   double share = 1.0;
@@ -125,14 +125,14 @@ bool read(const MesherRequest& request, Request& read) {
 
 Complex mesh(const Request& request) {
   namespace p = CGAL::parameters;
-  // No thread is started, which the limit of memory might refuse.
+  // Starts no thread, because the memory limit might not allow one.
   using octotomy::brep::SurfaceTree;
   const SurfaceTree tree = tbb::task_arena(1).execute(
       [&] { return SurfaceTree(request.surface, SurfaceTree::Build::ForSegments); });
   const Domain domain(request.start, request.surface, tree);
   const Mesh3Sizes& sizes = request.sizes;
   const SizeField field(request.surface, tree, request.sizes_mm, sizes.grading);
-  // A twentieth of the elements' target size there.
+  // Least length, as a share of the size of elements at the same point.
   constexpr double least_share = 0.05;
   const Least least{field, least_share};
   const convert::FacetsDownTo<Triangulation, Least> facets(

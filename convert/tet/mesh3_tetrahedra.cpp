@@ -27,20 +27,20 @@ namespace {
 
 using voxel::rounded;
 
-/// The radius R of a ball whose largest inscribed tetrahedron, 8 R^3 / (9 sqrt 3), has 0.9 of a volume. Passes
-/// 2 and 3 may enlarge an element by the rest.
+/// The radius R of a ball whose largest inscribed tetrahedron, of the volume 8 R^3 / (9 sqrt 3), has 0.9
+/// times the given volume. The rest is left for passes 2 and 3, which may enlarge an element.
 double radius_of_volume(double mm3) {
   constexpr double before_moves = 0.9;
   return std::cbrt(before_moves * mm3 * 9.0 * std::sqrt(3.0) / 8.0);
 }
 
-/// The radius of a facet's ball for a side of 1 of the given triangles there: 1.5 times the radius for an
-/// equilateral triangle.
+/// The largest radius of a facet's ball, as a multiple of the side of the given triangles there: 1.5 times
+/// the radius that an equilateral triangle has.
 double facet_radius_by_side() {
   return 1.5 / std::sqrt(3.0);
 }
 
-/// The normals of the surface's nodes, not of unit length, and the areas of their triangles' thirds.
+/// For each node of the surface: its normal, not of unit length, and a third of the area of its triangles.
 struct NodeNormals {
   std::vector<glm::dvec3> normals;
   std::vector<double> area_mm2;
@@ -126,7 +126,8 @@ constexpr double misplaced_share() {
   return 0.1;
 }
 
-/// One try: its elements if there are any, their faults, and the points of the given surface that it lost.
+/// One try: how the mesher ended, its elements if there are any, and the points of the given surface that it
+/// lost.
 struct Try {
   MesherOutcome outcome;
   Tetrahedra made;
@@ -160,7 +161,7 @@ Shells shells_of(const MesherInput& surface) {
   return shells;
 }
 
-/// The given surface, and the sizes of facets at its points that bind every try.
+/// The given surface, and the largest sizes of facets at its points, which hold for every try.
 struct Given {
   const MesherInput& surface;
   double volume_mm3 = 0.0;
@@ -241,9 +242,9 @@ std::optional<std::string> lost_details(Try& t, const Given& given, const std::v
          rounded(first_mm) + " mm";
 }
 
-/// If a thin wall is lost between the given points, pass 2 has thickened the rest to the whole volume. So
-/// this measures the volume outside the given solid, by four points of each element, and returns a reason if
-/// it is too large.
+/// If a thin wall between the given points is lost, pass 2 has thickened the other parts until the volume is
+/// the given one. So this measures the volume outside the given solid, by four points of each element, and
+/// returns a reason if it is too large.
 std::optional<std::string> misplaced(const Tetrahedra& made, const Given& given) {
   // Each point of Hammer's formula for quadratic functions weighs one corner by `own` and the three others by
   // `others`.
@@ -310,10 +311,10 @@ std::optional<std::string> finish(Try& t, const Given& given, const TetOptions& 
       brep::SurfaceTree(surface_of(t.made)).distances_mm(given.surface.points_mm);
   const Apart own = apart(to_own_mm);
   const Apart nodes = apart(given.tree.distances_mm(boundary_mm(t.made)));
-  t.made.findings.push_back(
-      "Mesh_3 made a surface of its own: its nodes are within " + rounded(nodes.max_mm) +
-      " mm of the given one; 95 % of the given surface's points are within " + rounded(own.p95_mm) +
-      " mm of the new surface, all within " + rounded(own.max_mm) + " mm");
+  t.made.findings.push_back("Mesh_3 made a new surface: its nodes are within " + rounded(nodes.max_mm) +
+                            " mm of the given one; 95 % of the given surface's points are within " +
+                            rounded(own.p95_mm) + " mm of the new surface, all within " +
+                            rounded(own.max_mm) + " mm");
   if (std::optional<std::string> lost = lost_details(t, given, to_own_mm)) return lost;
   if (std::optional<std::string> lost = misplaced(t.made, given)) return lost;
   return fault;

@@ -20,7 +20,7 @@ struct Mesh3Filling {
   voxel::ErrorCode code = voxel::ErrorCode::Geometry;  ///< of the last failure
 };
 
-/// Fills a closed surface by CGAL's Mesh_3, in a process of its own. Mesh_3 makes its own surface with
+/// Fills a closed surface by CGAL's Mesh_3, in a separate process. Mesh_3 makes its own surface with
 /// triangles about as large as the given ones (surface_sizes.h); their middles are at most a tenth of a
 /// circumradius from the given surface. Nodes move to mend slivers; surface nodes move by no more than that
 /// distance. The surface moves along its normals until the volume is the given one. `surface.holes_mm` are

@@ -67,7 +67,7 @@ void run_mesher(bool (*answer)(const MesherTask&)) {
   try {
     if (!answer(task)) status = mesher_exit_protocol;
   } catch (int reason) {
-    // TetGen's exit reason, of which 1 means that it had no memory.
+    // TetGen's exit reason; 1 means that memory was exhausted.
     status = reason == 1 ? mesher_exit_memory : mesher_exit_base + (reason & 15);
   } catch (const std::bad_alloc&) {
     status = mesher_exit_memory;

@@ -159,7 +159,7 @@ struct Reason {
   voxel::ErrorCode code = voxel::ErrorCode::Geometry;
 };
 
-/// The numbers are those of TetGen 1.5's terminatetetgen().
+/// Statuses from mesher_exit_base on add the numbers of TetGen 1.5's terminatetetgen().
 Reason reason_of_status(int status, const MesherLimits& limits) {
   const std::string memory = std::to_string(limits.memory_bytes >> 20) + " MiB";
   if (WIFSIGNALED(status)) {
@@ -179,12 +179,12 @@ Reason reason_of_status(int status, const MesherLimits& limits) {
       return {"needs more than the memory limit of " + memory + ": raise it or coarsen the surface", true,
               voxel::ErrorCode::Resource};
     case mesher_exit_protocol:
-      return {"did not understand the request: octotomy-tetgen is of another build", false,
+      return {"did not understand the request: its executable is of another build than this program", false,
               voxel::ErrorCode::Resource};
     case mesher_exit_base + 2:
       return {"met an internal error"};
     case mesher_exit_base + 3:
-      return {"found the surface intersecting itself: look at its health, then repair or smooth it", false};
+      return {"found the surface intersecting itself: check its health, then repair or smooth it", false};
     case mesher_exit_base + 4:
       return {"found features too small for its tolerance: smooth or decimate the surface"};
     case mesher_exit_base + 5:
@@ -265,7 +265,7 @@ bool read_answer(const MemoryFile& file, MesherOutcome& outcome) {
          file.read_all(outcome.labels.data(), answer.labels * sizeof(std::uint32_t));
 }
 
-/// A mesher that runs in a process of its own.
+/// A mesher that runs in a separate process.
 struct Mesher {
   std::string executable;
   std::string name;  ///< in messages

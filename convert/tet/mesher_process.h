@@ -87,12 +87,12 @@ struct Mesh3Sizes {
 };
 inline constexpr const char* mesh3_switches = "%lg %lg %lg %lg";
 
-/// Runs TetGen once, in a process of its own. Throws voxel::Error (Resource) if that process cannot be
-/// started, voxel::Stopped.
+/// Runs TetGen once, in a separate process. Throws voxel::Error (Resource) if that process cannot be started,
+/// voxel::Stopped.
 MesherOutcome run_tetgen(const MesherInput& input, const std::string& switches, const MesherLimits& limits);
 
-/// Runs CGAL's Mesh_3, which makes a surface with points of its own. `holes_mm` holds points of the surface
-/// to start from, on each of its parts. Throws as run_tetgen().
+/// Runs CGAL's Mesh_3, which makes a new surface with other points. `holes_mm` holds points of the surface to
+/// start from, on each of its parts. Throws as run_tetgen().
 MesherOutcome run_mesh3(const MesherInput& input, const Mesh3Sizes& sizes, const MesherLimits& limits);
 
 /// A plane by a point and its unit normal.

@@ -274,7 +274,7 @@ void add_rim_starts(Labelled& labelled, double size_mm) {
         }
 }
 
-/// Pass 2. Counts each region in the same walk.
+/// Pass 2. In the same loop, counts each region's voxels and the area of their exposed faces.
 std::vector<Counted> add_starts(Labelled& labelled, double size_mm, std::size_t regions) {
   LabelImage& image = labelled.image;
   std::vector<Counted> counted(regions + 1);

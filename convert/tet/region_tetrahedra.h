@@ -23,7 +23,7 @@ struct RegionMeshOptions {
 
 /// Quality tetrahedra, in LPS millimetres, of several regions of one universe with smooth surfaces. Touching
 /// regions share the nodes of their interface. CGAL's Mesh_3 fills the image of the regions' labels in a
-/// process of its own. Two regions meet where their trilinear shares are equal: half-way between voxels, and
+/// separate process. Two regions meet where their trilinear shares are equal: half-way between voxels, and
 /// smooth across their steps. Two regions whose interface is flat within the voxels' resolution meet in its
 /// plane; a finding reports nodes that stay off it. A voxel in several regions belongs to the first.
 /// `region_of_tet` numbers regions in the order given. `boundary_nodes` are only those on the outside of all

@@ -15,8 +15,8 @@
 #include "convert/tet/element_faces.h"
 #include "convert/tet/split_sides.h"
 
-// Some meshers make a surface of their own with nodes on the given one; its triangles then cut off sharp
-// edges. Here such nodes move onto these edges, as Labelle and Shewchuk (isosurface_stuffing.h) move
+// Some meshers make a new surface with nodes on the given one; its triangles then cut off sharp edges. Here
+// such nodes move onto these edges, as Labelle and Shewchuk (isosurface_stuffing.h) move
 // lattice nodes onto the surface.
 
 namespace octotomy::convert {

@@ -80,8 +80,8 @@ class SurfaceDomain {
 
   static glm::dvec3 vector_of(const Point_3& p) { return {p.x(), p.y(), p.z()}; }
 
-  /// Its last corner comes first, as in CGAL's surface mesh, so intersection points are rounded in the same
-  /// way.
+  /// The triangle with its last corner first, as in CGAL's surface mesh, so that intersection points are
+  /// rounded in the same way.
   Triangle triangle(std::uint32_t face) const {
     const auto corner = [&](std::size_t i) {
       const glm::dvec3& p = surface_.points_mm[surface_.faces[face][i]];
@@ -96,7 +96,7 @@ class SurfaceDomain {
   }
   Ends ends_of(const Ray_3& ray) const { return ends_along(ray.source(), ray.to_vector(), 0.0); }
   Ends ends_of(const Line_3& line) const { return ends_along(line.point(), line.to_vector(), -1.0); }
-  /// The part of the line from `first` to 1, in units of a length that crosses the whole box from `from`.
+  /// The part of the line from `first` to 1; the unit is a length that crosses the whole box from `from`.
   Ends ends_along(const Point_3& from, const Vector_3& along, double first) const {
     const glm::dvec3 start = vector_of(from), way(along.x(), along.y(), along.z());
     const glm::dvec3 low(box_.xmin(), box_.ymin(), box_.zmin()), high(box_.xmax(), box_.ymax(), box_.zmax());

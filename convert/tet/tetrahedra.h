@@ -42,7 +42,7 @@ struct TetQuality {
   double min_volume_mm3 = 0.0;
   double min_dihedral_deg = 0.0;  ///< 70.53 for the regular tetrahedron, 0 for a flat one
   double max_dihedral_deg = 0.0;
-  double max_radius_edge = 0.0;  ///< circumradius by shortest edge; 0.612 for the regular tetrahedron
+  double max_radius_edge = 0.0;  ///< circumradius divided by shortest edge; 0.612 for the regular tetrahedron
   /// The number of elements by smallest dihedral angle: below each of `dihedral_steps_deg` but not below the
   /// one before; the last entry counts the rest.
   std::array<std::size_t, 6> by_dihedral{};

@@ -28,7 +28,7 @@
 // 3 TetGen runs, with fewer and fewer demands. Its answer counts only if all volumes are positive and their
 //   sum is the volume that the surface encloses: a wrong sum shows filled cavities and leaks.
 // 4 Nodes inside move to improve flat elements. If that is not enough and the surface need not be kept,
-//   Mesh_3 makes one of its own.
+//   Mesh_3 makes a new surface.
 // 5 Where Mesh_3 fails, too, or leaves elements too flat for a solver, a lattice's cells are cut to the
 // surface.
 
@@ -37,11 +37,11 @@ namespace {
 
 using voxel::rounded;
 
-/// The surface cannot be filled.
+/// Throws because the surface cannot be filled.
 [[noreturn]] void refuse_surface(const std::string& why) {
   throw voxel::Error(voxel::ErrorCode::Geometry, "tetrahedralise: " + why);
 }
-/// An option is out of its range.
+/// Throws because an option is out of its range.
 [[noreturn]] void refuse_option(const std::string& why) {
   throw voxel::InvalidInput("tetrahedralise: " + why);
 }
@@ -85,7 +85,7 @@ struct Bounds {
   }
 };
 
-/// The solid's faces for TetGen, without vertices that have no face: TetGen would mesh to them.
+/// The solid's faces for TetGen, without vertices that have no face: TetGen would connect these to the mesh.
 MesherInput surface_of(const brep::Mesh& solid) {
   MesherInput input;
   constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
@@ -231,8 +231,8 @@ std::vector<std::string> ladder(const TetOptions& options) {
   return switches;
 }
 
-/// Divides the triangles of a surface that TetGen keeps, in their planes, where a regular element on one
-/// would be larger than allowed. Returns the number of triangles before, if this changed it.
+/// Divides the triangles of a surface that TetGen keeps, in their planes, where a regular element on a
+/// triangle would be larger than allowed. Returns the number of triangles before, if any was divided.
 std::optional<std::size_t> divide_for_volume(MesherInput& surface, double max_volume_mm3) {
   constexpr double regular =
       0.75;  // halving leaves right triangles, whose elements are as large as those of equilateral triangles
@@ -303,8 +303,8 @@ double checked_volume_mm3(const MesherInput& surface, const std::vector<Part>& p
 struct Attempts {
   std::vector<std::string> findings;
   voxel::ErrorCode code = voxel::ErrorCode::Geometry;  ///< code of the last failure
-  int rounds_left = 0;                                 ///< rounds of improvement that TetGen's elements did
-                                                       ///< not get
+  int rounds_left = 0;                                 ///< rounds of improvement that remained for TetGen's
+                                                       ///< elements
 };
 
 ImproveOptions improve_options(const TetOptions& options) {
@@ -383,8 +383,8 @@ constexpr double stuffed_volume_tolerance() {
   return 0.05;
 }
 
-/// Smaller cells are tried until the volume's relative difference is at most this: a tenth of a voxel about a
-/// thick bone.
+/// Smaller cells are tried until the volume's relative difference is at most this, which is a tenth of a
+/// voxel about a thick bone.
 constexpr double stuffed_volume_goal() {
   return 0.01;
 }

@@ -15,11 +15,12 @@
 namespace octotomy::convert {
 
 /// TetGen keeps the surface, to the bit with `keep_boundary`. Mesh3 (CGAL's Mesh_3, mesh3_tetrahedra.h) makes
-/// a surface of its own and so has no flat elements. Stuffing (isosurface_stuffing.h) fills a lattice's
-/// cells: it succeeds on any triangles, and loses parts thinner than a cell. Best runs TetGen, and Mesh3 if
-/// TetGen fails or leaves a dihedral angle under `min_dihedral_deg`, and takes the answer whose smallest
-/// angle is larger; Stuffing if neither reaches fit_dihedral_deg(), or without trying them if the surface has
-/// over five triangles per millisecond of the time limit.
+/// a new surface and so has no flat elements. Stuffing (isosurface_stuffing.h) fills a lattice's cells: it
+/// succeeds on any triangles, and loses parts thinner than a cell. Best runs TetGen. If TetGen fails or
+/// leaves a dihedral angle under `min_dihedral_deg`, it also runs Mesh3 and returns the result whose smallest
+/// angle is larger. If neither reaches fit_dihedral_deg(), it also runs Stuffing. If the surface has more
+/// than five triangles per millisecond of the time limit, it runs Stuffing first, and the others only if
+/// Stuffing fails.
 enum class Mesher { TetGen, Mesh3, Stuffing, Best };
 
 struct TetOptions {
@@ -46,7 +47,7 @@ constexpr double fit_dihedral_deg() {
 /// Why elements are too flat for a solver, with the angle and the mesher; none if they are fit.
 std::optional<std::string> fault_in_shape(const Tetrahedra& tetrahedra);
 
-/// Fills a solid with tetrahedra. The mesher runs in a process of its own, so its crashes, loops and memory
+/// Fills a solid with tetrahedra. The mesher runs in a separate process, so its crashes, loops and memory
 /// stay there.
 ///
 /// If TetGen fails it runs again with fewer demands: with quality (-pYq), without (-pY), with new points on

@@ -13,7 +13,7 @@ namespace octotomy::convert {
 /// the edges with more triangles one way than the other, each as often as the excess. Points off the rim are
 /// moved by `offset_mm`, so that the cap of a flat hole does not lie in the hole's plane.
 /// The loops are halved: each is joined by a strip to a loop of half as many points, and so on, so that
-/// triangles are as large as the loop that they belong to, and trees over them part well.
+/// triangles of later loops are larger, and nodes of trees over all triangles overlap little.
 /// Cost: n log n for the rim; about three triangles per edge of it.
 std::vector<std::array<glm::dvec3, 3>> cap_of(const brep::Triangles& surface, const glm::dvec3& offset_mm);
 

@@ -31,7 +31,8 @@ struct SlabLists {
   std::vector<std::size_t> first;
   std::vector<std::uint32_t> triangles;
 };
-/// `layers_of` returns the layers that a triangle needs, first and end, within 0..side.
+/// `layers_of` returns the layers that a triangle needs, as the first one and the one after the last, within
+/// 0..side.
 SlabLists sort_into_slabs(const std::vector<Corners>& triangles, int side,
                           const std::function<std::pair<int, int>(const Corners&)>& layers_of);
 

@@ -105,8 +105,8 @@ void for_each_cell(const Polygon& polygon, int axis, int first, int end, const F
 struct RowContribution {
   std::uint32_t voxel = 0;  ///< x + 1 in a row of side + 1 places, rows y fastest; place 0 is before the row
   std::uint32_t touches = 0;
-  double area = 0.0;    ///< seen along x, positive if a line along x enters
-  double moment = 0.0;  ///< of that area about the voxel's lower x
+  double area = 0.0;    ///< projected along x; positive if a line along x enters the solid there
+  double moment = 0.0;  ///< the area times its mean distance from the voxel's lower x
 };
 
 /// Computes the polygon's area seen along x, and the product of this area and its mean distance from x0.

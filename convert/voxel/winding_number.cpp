@@ -37,7 +37,7 @@ constexpr int row_count = slab_layers * slab_layers;  // of a row of blocks
 /// voxel centres.
 constexpr glm::dvec3 cap_offset_voxels{0.2718281828, 0.3141592653, 0.1414213562};
 
-/// A crossing of a row with the closed surface, before voxel x.
+/// A crossing of a row with the closed surface: the winding number changes by `change` at voxel x.
 struct Crossing {
   std::int32_t x = 0;
   std::uint8_t row = 0;  ///< y + 16 z, of the row of blocks

@@ -43,7 +43,7 @@ double change_bound(const Triangle& triangle, const glm::dvec3& middle_mm, doubl
     double of_edge = length / squared;
     if (twice_area > 0.0)
       of_edge = std::min(of_edge, std::atan2(twice_area, glm::dot(from, to)) * length / twice_area);
-    // No point of the edge comes nearer than by this factor.
+    // The factor by which a point of the edge may be nearer to other points of the ball than to its middle.
     const double nearer = 1.0 / (1.0 - reach_mm / std::sqrt(squared));
     integral += of_edge * nearer * nearer;
   }
@@ -54,7 +54,7 @@ ThresholdNode node_of(const voxel::Universe& universe, const WindingThreshold& t
                       const std::stop_token& stop, const Cube& cube) {
   ThresholdNode node;
   if (glm::any(glm::greaterThanEqual(cube.origin, glm::ivec3(universe.side())))) {
-    node.number = 1;  // the cube has no voxel
+    node.number = 1;  // the cube contains no voxel of the universe
     return node;
   }
   voxel::Progress{stop, {}}.at(0.0);
@@ -124,9 +124,9 @@ std::optional<int> WindingThreshold::in_cube(const Cube& cube) const {
   return std::nullopt;
 }
 
-/// Sums clusters whose remainder is at most `tolerance` / 100, or that tolerance times their share of the
-/// cap's area, and triangles one by one where it is more. Stops where the error exceeds 1/2, which decides
-/// nothing.
+/// Sums a cluster as one term if its remainder is at most the larger of `tolerance` / 100 and `tolerance`
+/// times the cluster's share of the cap's area; otherwise its children, or its triangles one by one. Stops if
+/// the error exceeds 1/2: such an estimate decides nothing.
 WindingThreshold::Estimate WindingThreshold::estimate(const glm::dvec3& centre_mm, double reach_mm,
                                                       double tolerance) const {
   Estimate sum;
@@ -154,7 +154,7 @@ WindingThreshold::Estimate WindingThreshold::estimate(const glm::dvec3& centre_m
       }
       continue;
     }
-    // The nearer child is evaluated first: it may show that the ball must be divided.
+    // Evaluates the nearer child first: it may show that the ball must be divided.
     std::array<std::uint32_t, 2> children{cluster.first, index + 1};
     const auto gap = [&](std::uint32_t child) {
       return glm::distance(clusters_[child].centre_mm, centre_mm) - clusters_[child].radius_mm;

@@ -441,7 +441,8 @@ TEST(MeshConventions, TheAuditNamesTheProgramTheSizeAndThePolygons) {
   EXPECT_EQ(finding(file, "size").detail, "10 x 20 x 30 mm");
   EXPECT_EQ(finding(file, "polygons").detail, "12 triangles");
   const MeshFile unbuilt = read_row({"", "a.3mf", threemf(model(in_file("LPS", 1), "", ""))});
-  EXPECT_EQ(finding(unbuilt, "file").detail, "its build places no object: each is read untransformed");
+  EXPECT_EQ(finding(unbuilt, "file").detail,
+            "its build places no object: all objects are read untransformed");
   EXPECT_EQ(finding(unbuilt, "file").verdict, MeshVerdict::Warn);
   const MeshFile metres = read_row({"", "a.stl", stl(in_file("LPS", 1000), "")});
   EXPECT_EQ(finding(metres, "size").verdict, MeshVerdict::Warn);

@@ -85,8 +85,7 @@ TEST(ReadMesh, ObjNamesTheSurfacesLinesAndFilesThatItLeavesOut) {
     return found;
   };
   EXPECT_EQ(of_file("cstype bspline\ndeg 1 1\nsurf 0 1 0 1 1 2 3 3\nparm u 0 0 1 1\nparm v 0 0 1 1\nend\n"),
-            "WARN 1 free-form surface is left out, as only polygons are read: have its program export it as "
-            "triangles\n");
+            "WARN 1 free-form surface is left out, because only polygons are read: export triangles\n");
   EXPECT_NE(of_file("bzp 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1\nbsp 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1\n")
                 .find("WARN 2 free-form surfaces are"),
             std::string::npos);
