@@ -70,7 +70,7 @@ export function make_bar(host: HTMLElement): void {
   again();
 }
 
-/// Gives the page the layout of what its window may do.
+/// Adapts the page's layout to what its window may do: edit the plan or only show it, with all panes or one.
 export function follow_access(): void {
   const again = (): void => {
     document.body.classList.toggle("looks-only", !may_edit());
