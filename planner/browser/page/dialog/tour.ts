@@ -15,7 +15,7 @@ interface Stop {
   says: string;
   is_done(): boolean;
   show?(): void;  // chooses the tool
-  do_it(): void;  // does the stop's work for the person
+  do_it(): void;  // performs the stop's action for the person
 }
 
 const has = (test: (step: Step) => boolean): boolean => steps().some(test);
@@ -123,7 +123,7 @@ const stops: Stop[] = [
 ];
 let window_seen = false;
 
-/// Begins the tour on a new phantom.
+/// Opens a new phantom and begins the tour on it.
 export async function start_tour(): Promise<void> {
   audit_seen = window_seen = report_written = false;
   await open_plan({phantom: "head"});

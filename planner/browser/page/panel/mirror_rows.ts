@@ -8,7 +8,7 @@ import {Step} from "../protocol";
 import {state} from "../state";
 import {add, hundredths, scaled} from "../base/vector";
 
-/// Null for steps that mirror nothing.
+/// Shows the plane of a mirror step and how well it fits. Null for other steps.
 export function mirror_rows(step: Step): Child {
   if (step.do !== "mirror") return null;
   const plane = plane_of(step);
