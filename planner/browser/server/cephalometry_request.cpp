@@ -10,7 +10,7 @@
 namespace octotomy::planner::serve {
 namespace {
 
-/// Sides of the tracing: enough for a dialog over the whole page.
+/// Width and height of the tracing: enough for a dialog that fills the page.
 constexpr int tracing_px = 900;
 
 std::string tracing_of(const Objects& objects, const Cephalometry& definitions,

@@ -18,7 +18,8 @@ std::size_t changed_values(const PlanDifference& found) {
   return count;
 }
 
-/// The newest of the states from which a plan differs least.
+/// The state of the document's history from which another plan differs in the fewest values; the newest of
+/// several.
 std::int64_t nearest_state(const Document& document, const Plan& other) {
   std::int64_t nearest = document.history_json().at("edit");
   std::size_t least = changed_values(difference(*document.plan(), other));
