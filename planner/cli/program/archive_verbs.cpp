@@ -84,7 +84,8 @@ WebArchive web_archive(const ArchiveText& text) {
   return {text.address, text.tls, user == nullptr ? "" : user, text.timeout_s};
 }
 
-/// The DICOM files among the paths and in folders, sorted. Refuses a named file that is not DICOM.
+/// The DICOM files among the paths and below folders among them. Refuses a path that is a file but not DICOM.
+/// A file below a folder that is not DICOM is left out, with a finding.
 std::vector<OutgoingFile> files_to_send(const std::vector<fs::path>& paths,
                                         std::vector<std::string>& findings) {
   std::vector<OutgoingFile> files;
@@ -145,7 +146,7 @@ int send(const Program& program, const SendText& text) {
   return done;
 }
 
-/// A unique identifier of the command line (PS3.5, 9.1).
+/// Refuses an option's text if it is no unique identifier (PS3.5, 9.1).
 void need_uid(const std::string& uid, const char* option) {
   if (uid.empty() || uid.size() > 64 || uid.find_first_not_of("0123456789.") != std::string::npos)
     throw std::runtime_error(std::string(option) + " '" + uid +
@@ -162,7 +163,7 @@ std::string resource_of(const ReceiveText& text) {
   return resource + "/instances/" + text.instance;
 }
 
-/// First value of an attribute of DICOM's JSON (PS3.18, F.2); null if there is none.
+/// First value of an attribute in DICOM's JSON form (PS3.18, F.2); null if the attribute is absent or empty.
 Json first_value(const Json& found, const char* tag) {
   if (!found.contains(tag) || !found[tag].is_object() || !found[tag].contains("Value")) return nullptr;
   const Json& values = found[tag]["Value"];
@@ -317,7 +318,7 @@ void add_archive_verbs(Program& program) {
       [&program, got] { return receive(program, *got); });
   receives.add_option("-o,--out", got->out, "The folder");
   receives.add_option("--from", got->address, "http:// or https:// of a DICOMweb service");
-  receives.add_option("--study", got->study, "The study to fetch, its unique identifier");
+  receives.add_option("--study", got->study, "Unique identifier of the study to fetch");
   receives.add_option("--series", got->series, "Only this series of the study");
   receives.add_option("--instance", got->instance, "Only this instance of the series");
   receives.add_option("--find", got->find,

@@ -29,7 +29,7 @@ std::vector<voxel::SliceRange> slices_of(const std::string& text) {
   }
 }
 
-/// The result of `parse` for an option's text, if it is given.
+/// Parses the text of an option. None if it is empty. Throws CLI::ValidationError if it is invalid.
 template <typename Value>
 std::optional<Value> parsed(const char* option, const std::string& text, Value (*parse)(const std::string&)) {
   if (text.empty()) return std::nullopt;
