@@ -41,15 +41,16 @@ fs::path list_of(const fs::path& out) {
   voxel::refuse(path, why + ", or choose another OUT");
 }
 
-/// Refuses anything at a file's path that is not a regular file, because reading a pipe would block.
+/// Refuses a path at which there is something else than a regular file: reading a pipe, for example, would
+/// block.
 void need_file(const fs::path& path) {
   std::error_code ignored;
   if (fs::exists(fs::symlink_status(path)) && !fs::is_regular_file(path, ignored))
     refuse(path, "is no regular file: move it");
 }
 
-/// Refuses a path that should be a folder but is not. Tries to write into the folder, or into its nearest
-/// existing parent, because permissions alone do not guarantee that writing succeeds.
+/// Refuses a path that is not a folder or cannot be written. If it does not exist, checks its nearest
+/// existing parent. Creates a file as a test, because permissions alone do not show whether writing succeeds.
 void need_writable_folder(fs::path folder, const fs::path& out) {
   while (!fs::exists(fs::symlink_status(folder))) folder = folder.parent_path();
   std::error_code ignored;
@@ -69,7 +70,8 @@ std::string description_text(const std::string& version) {
   return description.dump(2) + "\n";
 }
 
-/// The state of the file at the description's path.
+/// Who has written the file dataset_description.json: this program, a person who edited it, or another
+/// program.
 enum class Description { None, Generated, Edited, Foreign };
 
 Description description_of(const fs::path& path) {
@@ -92,7 +94,7 @@ Description need_description(const fs::path& out) {
   const fs::path path = out / description_name;
   const Description found = description_of(path);
   if (found == Description::Foreign)
-    refuse(path, "describes a dataset that is not of octotomy cohort: move it");
+    refuse(path, "describes a dataset that octotomy cohort has not written: move it");
   return found;
 }
 
@@ -100,7 +102,7 @@ bool is_ours(const fs::path& out, const std::string& name) {
   const fs::path path = out / "code" / name;
   if (!fs::exists(fs::symlink_status(path))) return true;
   if (!fs::is_regular_file(path)) return false;
-  // GNU parallel adds to it.
+  // GNU parallel appends to its log, so the log has no fixed checksum.
   if (name == cohort_log) return voxel::file_bytes(path).starts_with("Seq\tHost\tStarttime");
   const std::string list = voxel::file_bytes(list_of(out));
   if (list.empty()) return description_of(out / description_name) != Description::None;
@@ -113,7 +115,8 @@ void need_ours(const fs::path& out, const std::string& name) {
     refuse(out / "code" / name, "is not Octotomy's, or was changed after Octotomy wrote it: move it");
 }
 
-/// The opened and locked list: the lock allows one process at a time to write to code/.
+/// The list `code/octotomy.sha256`, open and locked. Only one process at a time can hold the lock and write
+/// to code/.
 class LockedList {
  public:
   explicit LockedList(const fs::path& out)
@@ -171,7 +174,8 @@ void prepare_cohort_folder(const fs::path& out, const std::string& plan_text) {
   {
     const LockedList list(out);
     if (list.is_new()) {
-      // The folder was made before the list existed: its files are Octotomy's.
+      // A cohort's folder without the list is from an earlier version. Its files in code/ are taken to be
+      // Octotomy's.
       std::string lines;
       if (found != Description::None)
         for (const char* name : {plan_name, cohort_labels, cohort_participant_script, cohort_group_script})
