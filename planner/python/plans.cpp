@@ -17,7 +17,7 @@
 namespace octotomy::planner::python {
 namespace {
 
-/// A plan's result. Its parts that Python holds keep it alive.
+/// The result of a plan. Python objects that refer to a part of it keep the whole result alive.
 using SharedResult = std::shared_ptr<Result>;
 
 const Object& object_of(const Result& result, const std::string& id) {
