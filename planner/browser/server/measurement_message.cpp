@@ -93,7 +93,7 @@ std::optional<TableNumber> table_number(const Json& json) {
     return TableNumber{"flap_segments", Pointer("/donor_used_mm"), "mm", std::nullopt,
                        "Length of the donor's bone"};
   if (json.contains("doubts")) {
-    std::string says = "How wrong it can be";
+    std::string says = "Value under random errors";
     if (!json["doubts"].empty())
       says += ": " + spoken(json["doubts"][0], "what") + " of " + spoken(json["doubts"][0], "of");
     return TableNumber{"doubts", Pointer("/doubts/0/value"), "", Pointer("/doubts/0/half_width"), says};

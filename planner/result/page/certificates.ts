@@ -5,11 +5,11 @@ import {grouped, three_figures} from "../../browser/page/base/numbers";
 import {facts, gauge, list, pill, Row, section, soft, table, wide_row} from "./elements";
 import {Certificate, Finding, Result} from "./result";
 
-/// What a certificate states in words: reasons, whether the object is resolved, findings of the object.
+/// Remarks on a certificate: its reasons, whether the object is resolved, and the findings on the object.
 export const notes_of = (of: Certificate): string[] => [
   ...of.reasons, ...(of.resolved ? [] : [`not resolved: ${of.not_resolved_because ?? ""}`]), ...(of.findings ?? [])
 ];
-/// A difference beside the allowed difference, as numbers and as a bar.
+/// A difference, the allowed difference, and a bar with the share of one in the other.
 export function difference_of({difference_mm3, tolerance_mm3, verdict}: Certificate): Child {
   if (difference_mm3 === null || tolerance_mm3 === null) return "–";
   return [`${grouped(difference_mm3, 1)} / ${grouped(tolerance_mm3, 1)}`, gauge(difference_mm3, tolerance_mm3, verdict)];
