@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-// Replaces the parts of oneTBB and of the standard library's threads that the voxel kernel uses, on a
+// Replaces the parts of oneTBB and of the standard library's threads that the voxel kernel uses, for a
 // platform with one thread and a library without threads. The build includes it before every source. Loops
-// run in order; nothing is ever stopped.
+// run in order, and a stop is never requested.
 
 #include <algorithm>
 #include <cstddef>
