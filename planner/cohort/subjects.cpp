@@ -196,7 +196,7 @@ std::vector<Subject> subjects_of_folder(const fs::path& input, const Plan& plan)
   }
   if (subjects.empty())
     refuse(input.string() +
-           ": has no subject: it should hold folders sub-LABEL, or be a .csv or .tsv with the columns "
+           ": has no subject: it should contain folders sub-LABEL, or be a .csv or .tsv with the columns "
            "participant_id and scan");
   add_missing_subjects(input, subjects);
   return subjects;

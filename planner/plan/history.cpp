@@ -520,7 +520,8 @@ class PlanHistory::Database {
                           query("SELECT 1 FROM versions WHERE name = ?", name).next();
     if (is_taken) throw std::runtime_error("the name '" + name + "' is taken: choose another");
     if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0])))
-      throw std::runtime_error("the name '" + name + "' must not begin with a digit, as states' numbers do");
+      throw std::runtime_error("the name '" + name +
+                               "' must not begin with a digit, because numbers name states");
   }
 
   fs::path plan_, path_;

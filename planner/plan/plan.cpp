@@ -88,8 +88,8 @@ std::map<std::string, ScanSource> scans_of(const Keys& top) {
   if (value == nullptr) return scans;
   if (!value->is_object() || value->empty())
     refuse("scans",
-           "must name at least one scan, as {\"ct\": {\"path\": \"head.nrrd\"}}; a plan of imported meshes "
-           "and tiled contours alone leaves it out");
+           "must name at least one scan, for example {\"ct\": {\"path\": \"head.nrrd\"}}; leave it out if "
+           "the plan only imports meshes and tiles contours");
   for (const auto& [name, entry] : value->items()) {
     const Keys keys(entry, "scans, " + name,
                     {"path", "sha256", "series", "join", "slices", "frame", "unit", "spacing_mm", "raw",
@@ -218,7 +218,8 @@ Plan parse_plan(const std::string& json, const std::filesystem::path& folder) {
   const auto needs_no_scan = [](const Step& step) { return is_import(step.action) || is_tile(step.action); };
   if (plan.scans.empty() && std::none_of(plan.steps.begin(), plan.steps.end(), needs_no_scan))
     refuse("scans",
-           "must name at least one scan, as {\"ct\": {\"path\": \"head.nrrd\"}}, where no step imports a "
+           "must name at least one scan, for example {\"ct\": {\"path\": \"head.nrrd\"}}, unless a step "
+           "imports a "
            "mesh or tiles contours");
   plan.landmarks = scope.landmarks();
   plan.lps_from_head = scope.lps_from_head();

@@ -74,7 +74,7 @@ Octree read_octree(const std::filesystem::path& path) {
   if (auto* octree = std::get_if<Octree>(&file.tree)) return std::move(*octree);
   if (const auto* partial = std::get_if<voxel::PartialOctree>(&file.tree)) return partial->inside;
   throw voxel::Error(voxel::ErrorCode::Input,
-                     path.string() + ": holds grey samples and no object: use a scan's window");
+                     path.string() + ": contains grey samples, not an object: use a scan's window");
 }
 
 /// A region of a mask: a view, and polygons in the view's millimetres.

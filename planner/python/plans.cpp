@@ -67,7 +67,7 @@ void add_plans(py::module_& module) {
             for (const Object& object : result.evaluation.objects) names.push_back(object.id);
             return names;
           },
-          "The names of its objects, in the order of their steps.")
+          "The names of the result's objects, in the order of their steps.")
       .def_property_readonly("universe", [](const Result& result) { return result.evaluation.universe; })
       .def(
           "octree",

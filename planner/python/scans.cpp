@@ -158,7 +158,8 @@ void add_scans(py::module_& module) {
             });
           },
           py::arg("path"),
-          "Writes .nrrd, .nii, .nii.gz or .mha as the name ends. The names of the labels of a label map that "
+          "Writes .nrrd, .nii, .nii.gz or .mha, by the name's extension. The names of the labels of a label "
+          "map that "
           "was read from a file are written beside it, as .tsv.");
 
   module.def("read_scan", &read_scan, py::arg("path"), py::arg("series") = "",

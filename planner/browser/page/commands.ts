@@ -245,12 +245,12 @@ export function all_commands(): Command[] {
     {name: "Save", key: "ctrl+s", run: () => void save()},
     {
       name: "Merge with another plan",
-      says: "Takes over what somebody else has changed in a copy of this plan.",
+      says: "Takes over the changes that somebody else has made in a copy of this plan.",
       run: () => dialogs.merge()
     },
     {
       name: "Signatures",
-      says: "Who has approved the plan, what has changed since, and a new signature.",
+      says: "Shows who has approved the plan and what has changed since, and adds a signature.",
       run: () => dialogs.sign()
     },
     {

@@ -37,7 +37,7 @@ export interface ScanState {
   range?: [number, number];
   unit?: string;
   window_suggestion?: [number, number]|null;
-  bone_low?: number|null;  // where bone begins in this scan's own samples
+  bone_low?: number|null;  // lower bound of bone in this scan's samples
   patient?: Patient|null;  // null: the scan states none
 }
 /// A patient as a scan states it. Attributes that the scan does not state are null.

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-// Access control of the server: only pages that were opened with the token.
+// Access control of the server: it answers only pages that were opened with its token.
 namespace octotomy::planner::serve {
 
 /// A request's target: "/file/a%20b.stl?token=1" is the path "/file/a b.stl" and the query token = 1.

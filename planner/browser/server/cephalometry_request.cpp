@@ -39,7 +39,7 @@ Json cephalometry(Session& session, const Json&, const Watched& watched) {
         "example, under these names");
   Json findings = Json::array();
   for (const auto& [step, why] : made.errors)
-    findings.push_back("'" + step + "' is left out, so what it moves counts as unmoved: " + why);
+    findings.push_back("'" + step + "' failed, so the objects that it moves count as unmoved: " + why);
   return {{"table", planner::to_json(found, {})},
           {"cephalogram", tracing_of(objects, definitions, landmarks, watched)},
           {"findings", findings}};

@@ -27,8 +27,8 @@ class Document {
   /// A state of the history as a plan. Throws as parsed() does, and std::runtime_error if the history has no
   /// such state.
   Plan plan_at(std::int64_t edit) const;
-  /// The plan of another file, for a comparison. Throws as read_plan() does; voxel::Error, Input, if it reads files in no open
-  /// folder.
+  /// The plan of another file, for a comparison. Throws as read_plan() does; voxel::Error, Input, if the plan
+  /// reads a file in no open folder.
   Plan other(const std::filesystem::path& path) const;
   /// Parses JSON as a plan in this document's folder, without recording it. Throws as parse_plan() does;
   /// voxel::Error, Input, if a scan or a file of a step is in no open folder.

@@ -30,7 +30,7 @@ struct SurfaceQuestion {
 const SurfaceQuestion* surface_question(const Json& measured) {
   using Pointer = nlohmann::json::json_pointer;
   static const SurfaceQuestion questions[] = {
-      {"along", Pointer("/length_mm"), "mm", "Way along the surface of "},
+      {"along", Pointer("/length_mm"), "mm", "Path along the surface of "},
       {"section", Pointer("/area_mm2"), "mm2", "Area of the section of "},
       {"thickness", Pointer("/ball/mean_mm"), "mm", "Mean thickness of "},
       {"curvature", Pointer("/mean/mean_per_mm"), "per_mm", "Mean curvature of "}};

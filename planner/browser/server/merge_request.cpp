@@ -85,8 +85,9 @@ Json merge_plan(Session& session, const Json& said, const Watched&) {
     for (const MergeConflict& conflict : made.merged.conflicts)
       conflicts += (conflicts.empty() ? "" : "; ") + conflict.text();
     if (!conflicts.empty())
-      throw voxel::Error(voxel::ErrorCode::Input, "both plans changed the same values: " + conflicts +
-                                                      "; make one of them agree and merge again");
+      throw voxel::Error(voxel::ErrorCode::Input,
+                         "both plans changed the same values: " + conflicts +
+                             "; change one plan to the other's values and merge again");
     Json said_of_it = described(document, made);
     document.record(Json::parse(made.merged.text), "merged with " + plain_stem(path));
     return said_of_it;

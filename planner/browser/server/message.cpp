@@ -47,7 +47,7 @@ Message refusal_to(std::int64_t id, const std::exception& error, const LineOf& l
   // error number, which are removed.
   if (dynamic_cast<const Json::exception*>(&error) != nullptr) {
     said = error.what();
-    said = "the request lacks a value or has one of another type: " + said.substr(said.find(']') + 1);
+    said = "a value of the request is missing or has the wrong type: " + said.substr(said.find(']') + 1);
     fault = Fault::Input;
   }
   // The code "changed" makes the page offer to reload the file.

@@ -165,9 +165,10 @@ Json certify(Session& session, const Json& said, const Watched& watched) {
   const Json json = session.object_json(made, id);
   if (!json.contains("certificate"))
     return {{"verdict", nullptr},
-            {"sentence", json.value("findings", Json::array()).empty()
-                             ? "There is no certificate: '" + id + "' only helps to make others."
-                             : json["findings"].front().get<std::string>()},
+            {"sentence",
+             json.value("findings", Json::array()).empty()
+                 ? "There is no certificate: '" + id + "' is a tool, which only helps to make other objects."
+                 : json["findings"].front().get<std::string>()},
             {"place", nullptr},
             {"detection_limit", nullptr},
             {"rows", Json::array()}};
@@ -258,7 +259,7 @@ Json try_steps(Session& session, const Json& said, const Watched& watched) {
   const Json& steps = said.at("steps");
   std::vector<std::string> wanted;
   for (const Json& step : steps) wanted.push_back(step.at("id"));
-  if (wanted.empty()) refuse("steps: name at least one");
+  if (wanted.empty()) refuse("steps: name at least one step");
   const Evaluation made = session.evaluate(
       session.with_document([&](const Document& document) { return document.with_steps(steps); }), wanted,
       false, watched);
@@ -374,7 +375,7 @@ Plan with_answers(const Snapshot& made, std::vector<voxel::Finding>& findings) {
     const bool is_own = made.errors.contains(step.id);
     findings.push_back(
         {"step", voxel::Verdict::Fail,
-         is_own ? "'" + step.id + "' is left out, because it failed:  " + made.errors.at(step.id)
+         is_own ? "'" + step.id + "' is left out, because it failed: " + made.errors.at(step.id)
                 : "'" + step.id + "' is left out, because it needs '" + failed->first + "', which failed"});
     return true;
   });

@@ -14,7 +14,7 @@
 
 namespace octotomy::planner::serve {
 
-/// A pane of a window.
+/// Identifies a pane: the number of its window, and its number within the window.
 struct PaneName {
   std::uint64_t window = 0;
   int pane = 0;

@@ -13,7 +13,7 @@
 #include <utility>
 
 #ifndef _LIBCPP_HAS_NO_THREADS
-#error "this library has threads of its own"
+#error "this library has threads: do not include one_thread.h"
 #endif
 
 namespace std {  // NOLINT(cert-dcl58-cpp): these names are free where the library has no threads

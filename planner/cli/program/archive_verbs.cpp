@@ -158,12 +158,13 @@ std::string resource_of(const ReceiveText& text) {
   std::string resource = "studies/" + text.study;
   if (!text.series.empty()) need_uid(text.series, "--series"), resource += "/series/" + text.series;
   if (text.instance.empty()) return resource;
-  if (text.series.empty()) throw std::runtime_error("--instance needs --series: give it");
+  if (text.series.empty()) throw std::runtime_error("--instance needs --series: add --series UID");
   need_uid(text.instance, "--instance");
   return resource + "/instances/" + text.instance;
 }
 
-/// First value of an attribute in DICOM's JSON form (PS3.18, F.2); null if the attribute is absent or empty.
+/// First value of an attribute in DICOM's JSON form (PS3.18, F.2); null if the attribute is absent, empty or
+/// no text or number. Of a person's name, its alphabetic group.
 Json first_value(const Json& found, const char* tag) {
   if (!found.contains(tag) || !found[tag].is_object() || !found[tag].contains("Value")) return nullptr;
   const Json& values = found[tag]["Value"];
@@ -231,7 +232,7 @@ void listen(Program& program, const ReceiveText& text, ReceivedFiles& folder) {
 int receive(Program& program, const ReceiveText& text) {
   if (!text.port && text.address.empty())
     throw std::runtime_error("give --port N to wait for objects, or --from URL to fetch them");
-  if (text.port && !text.address.empty()) throw std::runtime_error("give one of --port and --from");
+  if (text.port && !text.address.empty()) throw std::runtime_error("give only one of --port and --from");
   if (!text.address.empty() && !is_web(text.address))
     throw std::runtime_error(text.address + ": objects are fetched by DICOMweb: give http:// or https://");
   if (!text.find.empty()) {

@@ -43,7 +43,7 @@ void need_used(const ConvertText& text, bool writes_dicom, bool writes_segments)
   need(!text.source.empty(), "--source", writes_dicom, "DICOM (a folder or .dcm)");
   need(text.other_identity, "--other-identity", writes_dicom, "DICOM (a folder or .dcm)");
   if (text.other_identity && text.source.empty())
-    throw std::runtime_error("--other-identity needs --source: give it, or leave both out");
+    throw std::runtime_error("--other-identity needs --source: add --source, or leave --other-identity out");
 }
 
 voxel::DicomSegKind kind_of(const ConvertText& text) {
@@ -142,7 +142,7 @@ std::optional<int> convert_as(const Program& program, const ConvertText& text) {
     throw std::runtime_error(text.out.string() +
                              ": is one DICOM object, not a series of images: leave --dicom out");
   if (text.other_identity && text.source.empty())
-    throw std::runtime_error("--other-identity needs --source: give it, or leave both out");
+    throw std::runtime_error("--other-identity needs --source: add --source, or leave --other-identity out");
   need_folder_of(text.out);
   if (is_report && !text.as.empty())
     throw std::runtime_error(text.in.string() + ": is a PDF, which has one form in DICOM: leave --as out");

@@ -58,13 +58,13 @@ std::vector<voxel::PlanPicture> pictures_of(const fs::path& result, const Json& 
     }
   }
   if (pictures.empty())
-    refuse(result.string(), "holds no views: give a folder that octotomy run wrote, as --pictures");
+    refuse(result.string(), "contains no views: give a folder that octotomy run wrote, as --pictures");
   return pictures;
 }
 
 void need_result(const fs::path& result) {
   if (!fs::is_regular_file(result / "result.json"))
-    refuse(result.string(), "holds no result.json: give a folder that octotomy run wrote, as --pictures");
+    refuse(result.string(), "contains no result.json: give a folder that octotomy run wrote, as --pictures");
 }
 
 /// Refuses options of convert that do not apply to a plan.
@@ -74,7 +74,7 @@ void need_plan_words(const ConvertText& text) {
   if (text.dicom || !text.as.empty())
     refuse(text.in.string(), "is a plan, which has one form in DICOM: leave --dicom and --as out");
   if (text.other_identity && text.source.empty())
-    refuse("", "--other-identity needs --source: give it, or leave both out");
+    refuse("", "--other-identity needs --source: add --source, or leave --other-identity out");
   need_folder_of(text.out, OutputKind::Folder);
   if (!text.pictures.empty()) need_result(text.pictures);
   if (fs::file_size(text.in) > most_plan_bytes) refuse(text.in.string(), "is larger than any plan");

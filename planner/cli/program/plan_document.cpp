@@ -59,7 +59,7 @@ int merge_plans(const Program& program, const Paths& paths) {
   if (!merged.conflicts.empty()) {
     if (program.json) program.say(json, "");
     warn("nothing was written, because both plans changed the same values: " + conflicts +
-         "; make one of them agree and merge again");
+         "; change one plan to the other's values and merge again");
     return bad_input;
   }
   voxel::write_whole(paths.out, merged.text);

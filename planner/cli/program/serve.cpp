@@ -138,10 +138,9 @@ void add_serve(Program& program) {
                   "Stores the address's token in this file: with the same --port, open pages reconnect to a "
                   "restarted server");
   verb.add_flag("--open", text->open, "Opens the desktop's browser");
-  verb.add_flag(
-      "--share", text->share,
-      "Prints a second address, with a token of its own, whose pages show the open plan as it changes "
-      "and change nothing. With --token-file FILE, its token is stored in FILE.view");
+  verb.add_flag("--share", text->share,
+                "Also prints a second address, whose pages show the open plan and every change of it but "
+                "cannot change it. It has another token, which --token-file FILE stores in FILE.view");
   verb.add_option("--listen", text->options.address,
                   "Address of another interface, so that other machines reach the server; default 127.0.0.1");
 }

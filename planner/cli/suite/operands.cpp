@@ -62,7 +62,7 @@ voxel::Octree labelled(const Program& program, const fs::path& path, Timings& ti
     if (octree == nullptr)
       throw std::runtime_error(
           path.string() +
-          ": holds grey values: make a binary octree of its scan first (octotomy octree SCAN --window "
+          ": contains grey values: make a binary octree of its scan first (octotomy octree SCAN --window "
           "LOW:)");
     lattice = octree->universe().lattice();
     if (octree->is_empty() && !may_be_empty) throw std::runtime_error(path.string() + ": holds no voxel");
@@ -177,7 +177,7 @@ Answered of_mesh_and_set(Program& program, const Question& asked, const VerifyTe
   verify::MeshOperationOptions options{text.operand_voxel_mm, {}, {program.stop.get_token(), {}}};
   if (asked.answer && !is_mesh(*asked.answer) && !holds(set.universe, mesh))
     throw std::runtime_error(mesh_file.string() + ": reaches beyond the voxels of " + set_file.string() +
-                             ", so that voxels cannot hold the answer: give the answer as a mesh");
+                             ", so that voxels cannot represent the answer: give the answer as a mesh");
   if (text.operand_voxel_mm && asked.answer && !is_mesh(*asked.answer))
     throw CLI::ValidationError("--voxel", "the answer's voxels are those of " + set_file.string());
   if (!text.operand_voxel_mm) {
@@ -240,7 +240,7 @@ std::vector<verify::Certificate> judged(const fs::path& answer, const verify::Ke
 Answered answered(Program& program, const Question& asked, const VerifyText& text, Timings& timings) {
   const bool a_is_mesh = is_mesh(asked.a), b_is_mesh = is_mesh(asked.b);
   if (!a_is_mesh && !b_is_mesh && text.operand_voxel_mm)
-    throw CLI::ValidationError("--voxel", "label maps and octrees have voxels of their own");
+    throw CLI::ValidationError("--voxel", "label maps and octrees have voxels already: leave --voxel out");
   Answered found = a_is_mesh != b_is_mesh ? of_mesh_and_set(program, asked, text, timings)
                    : a_is_mesh            ? of_meshes(program, asked, text, timings)
                                           : of_label_maps(program, asked, timings);
@@ -325,9 +325,10 @@ std::vector<Question> questions_of_folder(const fs::path& folder) {
         all.push_back({entry.filename().string() + " " + operation, *a, *b, operation, std::move(answer)});
   }
   if (all.empty())
-    refuse(folder.string(),
-           "holds no question: give .json files with operands, operation and result, or folders with files "
-           "a, b and union, intersection or difference");
+    refuse(
+        folder.string(),
+        "contains no question: give .json files with operands, operation and result, or folders with files "
+        "a, b and union, intersection or difference");
   return all;
 }
 

@@ -68,7 +68,7 @@ void add_scan_options(CLI::App& verb, ScanIn& in, const std::string& heading) {
       ->group(heading);
   verb.add_flag("--join", in.join,
                 "Join all DICOM series of the folder, of one patient and modality: for an export in which "
-                "each image has a series, study or frame of reference of its own. The audit then has a FAIL")
+                "each image states another series, study or frame of reference. The audit then has a FAIL")
       ->group(heading);
   verb.add_option("--slices", in.slices,
                   "FROM:TO of the DICOM series' images to keep, 1 the lowest along their normal, for example "

@@ -71,7 +71,7 @@ std::vector<std::string> procedures();
 /// The procedure with the values and steps of these options, in the order of its file. Throws
 /// std::runtime_error, with the most similar name, for an unknown option.
 Procedure with_options(const Procedure& procedure, const std::vector<std::string>& names);
-/// The procedure with all its options.
+/// The procedure with the values and steps of all its options.
 Procedure with_all_options(const Procedure& procedure);
 
 /// Compares the scans that are given besides the patient's with those that the procedure uses. Throws

@@ -63,7 +63,7 @@ std::vector<MovedObject> pieces_of(const Objects& objects) {
       *same = piece;
   }
   if (pieces.empty())
-    throw std::runtime_error("the plan moves nothing rigidly, so that there is no outcome to judge");
+    throw std::runtime_error("the plan moves no object rigidly, so that there is no outcome to compare");
   return pieces;
 }
 

@@ -55,7 +55,7 @@ export function certificates({objects, certificates}: Result): Child {
          "computed beforehand."),
       table(["Object", "Verdict", "#voxel, mm³", "#mesh, mm³", "#difference / allowed, mm³",
              "#symmetric difference / allowed, mm³", "#centroids / allowed, mm", "#Hausdorff 95, mm"], rows),
-      soft("Symmetric difference: volume of the voxels that only one kernel holds. Hausdorff 95: the larger of the two " +
+      soft("Symmetric difference: volume of the voxels that only one kernel's answer contains. Hausdorff 95: the larger of the two " +
            "directed 95th percentiles of distance between voxel faces and triangles."));
 }
 

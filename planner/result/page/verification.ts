@@ -80,7 +80,7 @@ function quantities(certificates: Certificate[]): Child {
   return rows.length ? section("Observed against allowed", table(
       ["Quantity", "difference / allowed, from 0.001 to 10; green: all that is allowed, red: a failure", "#compared",
        "#median", "#99 %", "#largest", ""], rows),
-      soft("Bars are as tall as the root of their number. Objects that voxels do not resolve are left out.")) : null;
+      soft("The height of a bar is the square root of its count. Objects that voxels do not resolve are left out.")) : null;
 }
 
 const worst_pictures = ({worst}: Verification): Child => worst && section(
@@ -138,7 +138,7 @@ function not_covered({counts, answer, not_covered: lines}: Verification): Child 
     ...(answer.not_recomputed ?? []).map((gap) => `${gap.where}: ${gap.why}`),
     ...[...shared].sort(([a], [b]) => a < b ? -1 : 1).map(
         ([entry, count]) => `both answers of ${plural(count, "certificate")} share ${entry}`),
-    "parts that every certificate takes from one place: how scans are read, which whole samples a window holds, plans' names " +
+    "parts that all certificates share and so cannot check: reading scans, choosing a window's whole samples, plans' names " +
         "and motions' matrices, convert::voxelise, which decides which points lie inside a mesh, and whether a window is the " +
         "tissue that it is meant for"
   ]));

@@ -134,7 +134,7 @@ ResultList need_earlier_result(const fs::path& folder, const fs::path& named) {
   if (fs::is_empty(folder)) return {};
   ResultList list = result_list(folder);
   if (list.empty())
-    refuse(named.string() + ": holds files but no list of an earlier result (" + list_name +
+    refuse(named.string() + ": contains files but no list of an earlier result (" + list_name +
            "), so they may be yours: choose another -o, or move them");
   for (const auto& [name, sum] : list)
     if (is_there(folder / name) && !unchanged(folder / name, sum))
@@ -163,10 +163,10 @@ void need_free(const fs::path& folder, const ResultList& list, const fs::path& n
 /// As need_result_folder(), for a path without links. Returns the list of the earlier result.
 ResultList need_place(const fs::path& place, const fs::path& named, const std::vector<fs::path>& names) {
   if (lies_in(fs::current_path(), fs::weakly_canonical(place)))
-    refuse(
-        named.string() +
-        ": is the working folder or holds it, and a result replaces its folder: choose a folder in it, as -o "
-        "report");
+    refuse(named.string() +
+           ": is the working folder or contains it, and a result replaces its folder: choose a folder in it, "
+           "as -o "
+           "report");
   constexpr std::size_t longest_beside = 20;  // "." before it, ".octotomy-" with six letters and "~" after
   if (place.filename().native().size() + longest_beside > NAME_MAX)
     refuse(named.string() + ": is too long a name: choose a shorter -o");

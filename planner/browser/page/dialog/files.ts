@@ -204,7 +204,7 @@ const sent_at_once = 4;
 export async function send(given: Given[]): Promise<void> {
   const files = given.filter(({path}) => !/(^|\/)(\.|DICOMDIR$|Thumbs\.db$)/i.test(path));
   const bytes = files.reduce((sum, {file}) => sum + file.size, 0);
-  if (!files.length) return notify("The dropped data hold no file.", "warning");
+  if (!files.length) return notify("No file was dropped: drop files or a folder.", "warning");
   if (files.length > most_files)
     return notify(
         `These are ${files.length} files; at most ${
@@ -241,8 +241,8 @@ export async function send(given: Given[]): Promise<void> {
   }
 }
 
-/// Name of a folder for files that are sent together. The time of day to the second makes a repetition
-/// unlikely.
+/// Name of a folder for files that are sent together. It contains the date and the time to the second, so
+/// that a repetition is unlikely.
 function folder_name(files: Given[]): string {
   const top = files[0]!.path.includes("/") ? files[0]!.path.split("/")[0]! : "series";
   const time = new Date().toISOString().slice(0, 19).replace(/[-:]/g, "").replace("T", "-");

@@ -38,7 +38,7 @@ function start(): Child {
     return el(
         "main", {class: "start"},
         el("header", {}, el("h1", {}, el("span", {class: "logo"}), "Octotomy"),
-           el("p", {role: "status"}, "No plan is open. This page shows one as soon as it is opened.")));
+           el("p", {role: "status"}, "No plan is open. This page will show the next plan that is opened.")));
   const is_opening = state.jobs.some((job) => job.what === "Opening");
   return el(
       "main", {class: "start"},

@@ -70,7 +70,7 @@ const stops: Stop[] = [
   },
   {
     title: "Refine it from the left",
-    says: "Draw the same jaw in the left view: the mask holds the points inside both regions.",
+    says: "Draw the same jaw in the left view: the mask contains the points inside both regions.",
     is_done: () => views_of(mask()) >= 2,
     show: () => {
       set({selected: mask()?.id ?? null});

@@ -22,8 +22,7 @@ on_leaving_plan(() => {
 
 export async function fetch_movement(): Promise<void> {
   const plan = state.plan;
-  // The rows depend on the edit and on the evaluated pieces. They stay until both are the same again as at
-  // the last request.
+  // The rows are requested again only if the plan was edited or evaluated since the last request.
   const present = `${plan?.edit} ${state.evaluations}`;
   if (!plan || state.right_tab !== "movement" || fetched === present) return;
   fetched = present;

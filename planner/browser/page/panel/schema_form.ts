@@ -118,8 +118,8 @@ function choice(
       all.map((name) => el("option", {value: name, selected: value === name}, name.replace(/_/g, " "))));
 }
 
-// A text field for points, lists and records. It contains JSON and is read when the person leaves it. A
-// button sets a point from the cross-hair.
+// A text field for points, lists and records. It contains JSON, a name, or numbers separated by commas, and
+// is read when the person leaves it. A point also has a button that sets it to the cross-hair.
 function structured(
     shared: {[name: string]: string}, value: Json|undefined, about: Schema,
     set_value: (value: Json|undefined) => void): Child {

@@ -275,7 +275,7 @@ function history(): Child {
            [icon("branch", 15), "New branch"],
            "New branch. Changes go to a new branch; the present plan stays on this one", () => void new_branch()),
        button("Name version", "Names this state, so that you find it again", () => void name_version()),
-       button("Merge", "Merge with another plan. Takes over what somebody else has changed", () => dialogs.merge()),
+       button("Merge", "Merge with another plan. Takes over the changes that somebody else has made", () => dialogs.merge()),
        button("Sign", "Sign. Shows who has approved the plan, and what has changed since", () => dialogs.sign())),
     plan.branches.length > 1 && may_edit() ?
         el("label", {class: "field"}, el("span", {}, "Branch"),

@@ -253,7 +253,7 @@ function panel(): Child {
        choice<Mode>("Erase", "A stroke removes material from the object", mode, "erase", (value) => mode = value),
        choice<Mode>("Paint", "A stroke adds to the object", mode, "paint", (value) => mode = value)),
     el("div", {class: "presets", role: "group", "aria-label": "Shape of the brush"},
-       choice<Shape>("Ball", "Reaches as deep as it is wide", shape, "ball", (value) => shape = value),
+       choice<Shape>("Ball", "A ball, as deep as it is wide", shape, "ball", (value) => shape = value),
        choice<Shape>("Slab", "A disc that faces you, as thick as you set it", shape, "slab", (value) => shape = value)),
     size("Radius", radius_mm, 30, "brush-radius", set_radius),
     shape === "slab" ? size("Depth", thickness_mm, 60, "brush-thickness", (mm) => {

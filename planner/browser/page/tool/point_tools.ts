@@ -112,7 +112,7 @@ async function finish(kind: string, points: Vec3[]): Promise<void> {
   if (kind === "surface_distance") {
     const object = step && step.do !== "measure" && step.do !== "landmarks" ? step.id : undefined;
     if (!object)
-      return notify("Select the object on whose surface the way runs, then click its two ends.", "warning");
+      return notify("Select the object on whose surface the path runs, then click both ends of the path.", "warning");
     await add_step({id, do: "measure", object, along: points.map((p) => [...p])}, `way along ${object}`);
   } else {
     await add_step({id, do: "measure", points_mm: points.map(named)}, kind);
