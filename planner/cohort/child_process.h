@@ -42,8 +42,8 @@ struct ChildEnd {
   std::string said;  ///< the first line that it wrote to standard output
 };
 
-/// Runs a program and waits for its end. It uses this process's standard input and error. If a stop is
-/// requested, sends SIGTERM to the program, waits for its end and throws Stopped. Throws voxel::Error
+/// Runs a program and waits for its end. The program uses this process's standard input and error. If a stop
+/// is requested, sends SIGTERM to the program, waits for its end and throws Stopped. Throws voxel::Error
 /// (Resource) if the program cannot be started.
 ChildEnd run_child_process(const ChildProcess& child, const std::stop_token& stop);
 

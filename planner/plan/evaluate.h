@@ -65,7 +65,7 @@ struct EvaluateOptions {
 /// (planner/operation), without access to the other kernel's answer, and the agreement of both answers is
 /// certified. A moved object stores its motion, so that after several motions the original object is sampled
 /// only once. If an object reaches out of the universe, the universe grows by whole voxels, to at most four
-/// times its side (room.h); it does not grow with `only_look_up` and without `meshes`.
+/// times its side (room.h); it does not grow if `only_look_up` is true and `meshes` is false.
 ///
 /// If the mesh kernel has no answer, the object has its voxels, no mesh and a finding; so have objects that
 /// are made from it. Throws std::runtime_error with step and reason if a scan cannot be read or has another

@@ -9,7 +9,7 @@ namespace octotomy::planner::serve {
 /// {"view", "position_mm", "seed_mm", "scan", "tolerance" or "low" and "high"} -> {"polygons_mm", "sample"}:
 /// in a slice of a scan, the contours of the region around a seed, its outline first and then its holes, in
 /// the view's millimetres. With "object" in place of scan and seed: the contours in which the slice cuts the
-/// object's surface. "thin_mm" is the largest distance of left-out points.
+/// object's surface. Points within "thin_mm" of the remaining contour may be left out.
 Json trace_contours(Session& session, const Json& said, const Watched& watched);
 
 }  // namespace octotomy::planner::serve

@@ -115,7 +115,7 @@ LabelObjects read_label_objects(const Program& program, const ConvertText& text,
                                 std::vector<std::string>& findings) {
   ScanIn in = text.scan;
   if (!text.source.empty() && voxel::volume_format(text.in)) {
-    // A volume file has only one series, so --series names a series of the source.
+    // A volume file has only one series, so --series, --slices and --join apply to the source.
     in.series.clear();
     in.slices.clear();
     in.join = false;

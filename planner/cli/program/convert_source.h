@@ -44,7 +44,7 @@ std::vector<glm::dvec3> corners_of(const voxel::Lattice& lattice);
 
 /// Compares points of the output, in LPS millimetres, with the images of --source. Refuses points that all
 /// lie outside of the images, unless --other-identity is given: the input was made from another scan, or its
-/// frame is wrong. Adds a finding if some points lie outside.
+/// frame is wrong. Adds a finding if some points lie outside by more than a voxel.
 void need_on_source(const ConvertText& text, const voxel::DicomSource& source,
                     const std::vector<glm::dvec3>& points_mm, std::vector<std::string>& findings);
 

@@ -45,8 +45,8 @@ std::string in_options(std::string text, const std::string& operation, const std
   return text;
 }
 
-/// Removes a field's name at the beginning of an error message. If the message does not quote the words of
-/// the option, puts them before it, in quotes.
+/// Removes a field's name at the beginning of an error message. If the message does not contain the last of
+/// the option's words, puts the words before it, in quotes.
 std::string with_words(std::string text, const Field& field, const std::vector<std::string>& words) {
   if (text.starts_with(field.name + ": ")) text.erase(0, field.name.size() + 2);
   if (text.find(words.back()) != std::string::npos) return text;

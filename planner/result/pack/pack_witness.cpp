@@ -74,8 +74,8 @@ std::optional<CellSamples> cell_at(const voxel::Scene& scene, const glm::dvec3& 
   return found;
 }
 
-/// Chooses up to `most_samples` voxels. At most half of them are at the beginning of runs: first voxels, and
-/// the voxels before them. The others are random.
+/// Chooses `most_samples` voxels. At most half of them are at the beginning of runs: first voxels, and the
+/// voxels before them. The others are random.
 std::vector<glm::ivec3> chosen_voxels(const Rows& runs, int side) {
   std::vector<glm::ivec3> voxels;
   const std::size_t count = runs.size() / 4, quarter = most_samples / 4;

@@ -16,7 +16,7 @@ interface Entry {
 /// series.
 const whole_files = /\.(nii|nii\.gz|nrrd|nhdr|mha|mhd|raw|octree|stl|ply|obj|off|vtp|vtk|glb)$/i;
 
-/// Opens the folder picker. The server lists only the folders with which it was started. The chosen path goes
+/// Opens the folder picker. The server lists only the folders that are open to the page. The chosen path goes
 /// to `take`, which opens it by default.
 export function open_picker(
     title = "Open a scan or plan", take: (path: string) => void = (path) => void open_found(path)): void {
