@@ -48,7 +48,7 @@ std::vector<char*> pointers_to(Words& words) {
   return pointers;
 }
 
-/// What the forked process needs. It is prepared before the fork, because afterwards that process must not
+/// Data of the forked process. They are prepared before the fork, because afterwards that process must not
 /// allocate memory: another thread's lock would never be released.
 struct ReadyProgram {
   Words words, environment;

@@ -9,7 +9,7 @@
 
 namespace octotomy::planner {
 
-/// What a command will write into a cohort's folder.
+/// The files and folders that a command will write into a cohort's folder.
 struct CohortNeeds {
   std::string plan_text;             ///< text to be stored as cohort_plan(); empty: the stored plan stays
   std::vector<std::string> files;    ///< files that engines write into code/, such as "subjects.txt"

@@ -13,7 +13,7 @@
 
 namespace octotomy::planner {
 
-/// What is known of a subject's answer. Stored in subject.json in the subject's folder.
+/// The state of a subject's answer. Stored in subject.json in the subject's folder.
 struct SubjectRecord {
   /// Done and Doubtful have an answer; Doubtful: the audit of a scan has a FAIL. Changed: a file of the
   /// answer was changed after it was written, so its numbers are not used. Failed and Missing have none.

@@ -96,8 +96,8 @@ class Request {
  private:
   template <typename Value>
   void set(CURLoption option, Value value) {
-    // An option that an older libcurl does not know is an error, because the safety of the request may depend
-    // on it.
+    // An option that an older libcurl does not support is an error, because the safety of the request may
+    // depend on it.
     if (const CURLcode code = curl_.easy_setopt(handle_.get(), option, value); code != CURLE_OK)
       throw voxel::Error(voxel::ErrorCode::Resource, "libcurl refuses option " + std::to_string(option) +
                                                          ": " + curl_.easy_strerror(code) +

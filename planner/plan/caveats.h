@@ -12,7 +12,7 @@
 // measured, parts outside of the universe, and caveats of the objects from which it was made.
 namespace octotomy::planner {
 
-/// What an object was made from: its action, and the objects and scans that the action may use.
+/// The inputs of an object: its action, and the objects and scans that the action may use.
 struct MadeOf {
   const Action& action;
   const Objects& objects;                  ///< all earlier objects

@@ -27,8 +27,8 @@ std::set<std::string> needing_meshes(const Plan& plan, const std::set<std::strin
 /// A key for each step, by id: the SHA-256 of everything that determines the step's answer. Steps with equal
 /// keys have equal answers, also in different plans. A key covers the operation and its values, the keys of
 /// used steps and scans, the positions of landmarks, the head's orientation, and the contents of files that
-/// the step reads. `scan_key` returns the key of a scan of the plan. `common` describes what all answers
-/// depend on, such as the universe. Cost: linear in the number of steps; reads the files.
+/// the step reads. `scan_key` returns the key of a scan of the plan. `common` describes the common inputs of
+/// all answers, such as the universe. Cost: linear in the number of steps; reads the files.
 std::map<std::string, std::string> step_keys(
     const Plan& plan, const std::string& common,
     const std::function<std::string(const std::string& scan)>& scan_key);

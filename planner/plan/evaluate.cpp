@@ -219,7 +219,7 @@ class Evaluator {
   }
 
   /// The boxes of all imported meshes and tiled contours of the plan, even of steps that are not wanted, so
-  /// that the universe does not depend on what is wanted.
+  /// that the universe does not depend on the wanted steps.
   std::vector<voxel::Box> boxes_of_steps() {
     const Stopwatch watch(result_.timings, "read");
     std::vector<voxel::Box> boxes;
@@ -301,8 +301,8 @@ class Evaluator {
     if (!(scan.grey.universe() == result_.universe)) load(name, scan.scene());
   }
 
-  /// A text that covers what all answers depend on: the universe, by its size and place or by the first scan,
-  /// and whether objects are certified.
+  /// A text that covers the common inputs of all answers: the universe, by its size and place or by the first
+  /// scan, and whether objects are certified.
   std::string common_key() const {
     const glm::dvec3& low = box_.low_mm;
     const std::string place =
@@ -477,8 +477,8 @@ class Evaluator {
   bool grows() const { return options_.meshes || !options_.only_look_up; }
 
   /// For an evaluation by voxels alone, adds a finding if an object ends at the universe's border: there is
-  /// no mesh that shows what lies beyond it. Adds none if an operand ends there too, for example because the
-  /// scan does.
+  /// no mesh that extends beyond it. Adds none if an operand ends there too, for example because the scan
+  /// does.
   void add_border_finding(const Step& step, Object& object) const {
     if (options_.meshes || object.is_tool || !object.ends_with_universe || object.kind == "combine") return;
     const auto touches = [](const Object& each) {

@@ -38,8 +38,8 @@ class ObjectCache {
     const std::uint64_t bytes = bytes_of(scan);
     scans_.keep(key, std::make_shared<const Scan>(std::move(scan)), bytes, *this);
   }
-  /// Memory of a result, including what is computed only when needed. Memory that several results share
-  /// counts in each.
+  /// Memory of a result, including parts that are computed only when needed. Memory that several results
+  /// share counts in each.
   static std::uint64_t bytes_of(const Object& object);
   static std::uint64_t bytes_of(const Scan& scan);
   /// The stored SHA-256 of a scan's files. None if it is not stored for this `state`, which contains the

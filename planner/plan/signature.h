@@ -19,8 +19,8 @@ struct Signature {
   std::map<std::string, std::string> scans_sha256;  ///< by the names of the scans in the plan
 };
 
-/// SHA-256 of what a plan states: its JSON with sorted keys, without signatures and without paths of scans.
-/// It depends neither on the layout of the text nor on the folder.
+/// SHA-256 of a plan's content: its JSON with sorted keys, without signatures and without paths of scans. It
+/// depends neither on the layout of the text nor on the folder.
 std::string sum_of_plan(const std::string& text);
 
 /// The signatures in a plan's text, in their order. Throws std::runtime_error, with the place in the text, if
@@ -38,8 +38,8 @@ std::string with_signature(const std::string& text, const Signature& signature);
 /// scans.
 std::map<std::string, std::string> sums_of_scans(const Plan& plan);
 
-/// What has changed after a signature, such as "the plan" or "scan ct". Empty: the signature is valid. `sums`
-/// are checksums of the present scans; a scan that it lacks counts as unchanged.
+/// The parts that have changed after a signature, such as "the plan" or "scan ct". Empty: the signature is
+/// valid. `sums` are checksums of the present scans; a scan that it lacks counts as unchanged.
 std::vector<std::string> changed_since(const Signature& signature, const std::string& text,
                                        const std::map<std::string, std::string>& sums);
 

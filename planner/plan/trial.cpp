@@ -101,7 +101,7 @@ class Through {
       errors.landmarks_mm[landmark.name] = some(asked.landmark_mm);
     for (const Object& object : objects_) {
       if (object.kind == "saw") errors.kerf_mm[object.id] = asked.kerf_mm * chance.normal();
-      // Scaling is not done to a real piece, so it adds no error of its own.
+      // A real piece is not scaled, so scaling adds no error.
       if (object.moved && is_rigid(object.moved->motion)) {
         const glm::dvec3 by_mm = some(asked.seating_mm);
         errors.seating[object.id] = {by_mm, some(glm::radians(asked.seating_deg))};

@@ -9,8 +9,8 @@ const bone = ["#ede3cc", "#d9c7a0", "#cfd3d6"];
 const moved = ["#e08a3c", "#3fa7a0", "#a678de", "#d0649b", "#7fae3e"];
 export const mask_colour = "#5b9dff";
 export const overlap_colour = "#e5484d";
-// Colours of the difference between a dragged piece and another object: what only the piece contains, what
-// only the other object contains, and what both contain.
+// Colours of the difference between a dragged piece and another object: the part only in the piece, the part
+// only in the other object, and the common part.
 export const only_moved_colour = "#e08a3c";
 export const only_other_colour = "#5b9dff";
 export const common_colour = "#cfd3d6";

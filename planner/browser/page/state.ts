@@ -209,7 +209,7 @@ export function hide_patient(hides_patient: boolean): void {
 }
 
 const plan_leavers: (() => void)[] = [];
-/// Registers a function that is called when the window leaves a plan. It must clear what a file of the page
+/// Registers a function that is called when the window leaves a plan. It must clear the values that its file
 /// stores about the plan, so that no patient's value reaches the next plan.
 export function on_leaving_plan(call: () => void): void {
   plan_leavers.push(call);

@@ -54,7 +54,7 @@ class Document {
   void go_to(const std::string& where);
   void begin_branch(const std::string& name);
   void name_version(const std::string& name);
-  /// What differs between the states of two edits: to_json() of the PlanDifference, and in "rows" its text
+  /// The differences between the states of two edits: to_json() of the PlanDifference, and in "rows" its text
   /// line by line.
   Json difference_of(std::int64_t a, std::int64_t b) const;
 

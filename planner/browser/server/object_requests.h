@@ -25,8 +25,8 @@ Json part(Session& session, const Json& said, const Watched& watched);
 /// {"steps"} -> {"objects": [{"id", "mm3"}], "scans": [{"id", "details", "findings"}]}: the results of steps
 /// as if they stood at the end of the plan, by the voxel kernel. Does not change the plan.
 Json try_steps(Session& session, const Json& said, const Watched& watched);
-/// {"path", "frame", "unit"} -> {"audit"}: what a mesh file states about its frame and unit, and how its size
-/// and position fit the plan's first scan. The path is relative to the plan's folder.
+/// {"path", "frame", "unit"} -> {"audit"}: the frame and unit that a mesh file states, and how its size and
+/// position fit the plan's first scan. The path is relative to the plan's folder.
 Json mesh_audit(Session& session, const Json& said, const Watched& watched);
 /// {"object"} -> {"rows"}: the rows of the movement table that belong to an object; all rows if "object" is
 /// absent.

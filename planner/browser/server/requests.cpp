@@ -397,8 +397,8 @@ Json chosen_bone(const Procedure& procedure, const Json& plan) {
   return nullptr;
 }
 
-/// Returns what the procedure's form shows: the object on which the procedure would act, and the options and
-/// values of its steps in the plan.
+/// Returns the contents of the procedure's form: the object on which the procedure would act, and the options
+/// and values of its steps in the plan.
 Json acts_on(Session& session, const Json& said, const Watched& watched) {
   const Procedure procedure = known_procedure(said);
   const auto [whole, folder] = session.with_document([](Document& document) {

@@ -8,8 +8,8 @@
 #include "planner/browser/server/message.h"
 #include "planner/browser/server/session.h"
 
-// What a page can request, one function per kind of request. Exceptions of the functions that they call pass
-// through.
+// The kinds of requests that a page can send, with one function for each. Exceptions of the functions that
+// they call pass through.
 namespace octotomy::planner::serve {
 
 /// The thread that runs a request. Separate threads let edits run during long tasks; in some lanes a newer

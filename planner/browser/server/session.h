@@ -21,8 +21,8 @@
 
 namespace octotomy::planner::serve {
 
-/// What a task needs besides its request: a stop token, a function that receives its progress, and the access
-/// of the window that sent it.
+/// The surroundings of a task: a stop token, a function that receives its progress, and the access of the
+/// window that sent it.
 struct Watched {
   std::stop_token stop;
   std::function<void(const std::string& doing, double share)> progress;

@@ -22,7 +22,7 @@ struct ConvertText {
   ScanIn scan;
   bool dicom = false, other_identity = false;
   std::string identity = "keep";
-  /// What source_of() has changed in the patient's identity, one sentence each.
+  /// The changes that source_of() has made to the patient's identity, one sentence each.
   std::shared_ptr<std::vector<std::string>> changes = std::make_shared<std::vector<std::string>>();
   std::filesystem::path pictures;  ///< a plan's result folder
 

@@ -204,7 +204,7 @@ int run_chosen(Program& program) {
   }
 }
 
-/// Refuses an empty output path, as an unset variable in a script gives.
+/// Refuses an empty output path, which can come from an unset variable in a script.
 void need_named_outputs(const CLI::App& verb) {
   for (const CLI::Option* option : verb.get_options())
     if (option->check_sname("o") && option->count() > 0 && option->results().back().empty())

@@ -331,7 +331,7 @@ class OperationRun {
   Timings timings_;
   voxel::Universe universe_;
   bool has_octree_ = false, has_mesh_ = false;
-  std::vector<std::string> mended_;  ///< what was repaired in meshes that are not solids
+  std::vector<std::string> mended_;  ///< repairs of meshes that are not solids
   std::vector<std::string> beyond_;  ///< meshes that the octree's universe cuts off
   std::vector<Object> inputs_;
   Objects objects_;

@@ -132,8 +132,8 @@ bool is_tooth_scan(const PhantomText& text) {
   return text.kind == "upper_teeth" || text.kind == "lower_teeth";
 }
 
-/// Writes a mesh of teeth as a scanner in the mouth shows them. The JSON contains what the operation
-/// tooth_scan needs to place it on the head phantom.
+/// Writes a mesh of teeth as a scanner in the mouth shows them. The JSON contains the fields with which the
+/// operation tooth_scan places it on the head phantom.
 int teeth(const Program& program, const PhantomText& text) {
   need_mesh_extension(text.out);
   Timings timings;

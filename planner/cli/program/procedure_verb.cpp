@@ -45,7 +45,8 @@ Json json_of(const std::vector<ProcedureValue>& values,
   return json;
 }
 
-/// Prints what a procedure needs, or the names of all procedures if none is named. Returns the exit status.
+/// Prints the inputs of a procedure, or the names of all procedures if none is named. Returns the exit
+/// status.
 int explain(const Program& program, const ProcedureText& text) {
   Json json = answer({});
   if (text.name.empty()) {

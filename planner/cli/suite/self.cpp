@@ -109,7 +109,7 @@ constexpr Part parts[] = {{"octotomy-tetgen", "tetrahedra by TetGen", tetgen_fil
                           {"octotomy_dicom_codec", "compressed DICOM", codec_decompresses},
                           {"octotomy_image_io.so", "pictures", image_is_encoded}};
 
-/// What is wrong with a part of the installation; empty if nothing is. Sets `path` to the part's file.
+/// The fault of a part of the installation; empty if the part works. Sets `path` to the part's file.
 std::string trouble_of(const Part& part, std::filesystem::path& path) {
   try {
     path = voxel::helper_file(part.file);
@@ -141,7 +141,7 @@ std::optional<bool> decoder_is_confined() {
   }
 }
 
-/// A line on a known fault of a library: what it can do in this installation.
+/// A line on a known fault of a library and its effect in this installation.
 std::string meaning_of(const KnownFault& fault, const Json& versions, bool is_confined) {
   std::string text = fault.library;
   if (versions.contains(fault.library)) text += " " + versions[fault.library].get<std::string>();

@@ -37,7 +37,7 @@ struct VerifyText : PlanIn {
   std::filesystem::path failures = "disagreements";
 };
 
-/// What a suite has found. The JSON output consists of the certificates, their counts and the members of
+/// The results of a suite. The JSON output consists of the certificates, their counts and the members of
 /// `more`.
 struct SuiteAnswer {
   Timings timings;

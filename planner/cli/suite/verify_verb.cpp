@@ -135,7 +135,7 @@ SuiteAnswer chosen(Program& program, VerifyText& text, const std::vector<CLI::Op
   return verify_plan(program, text);
 }
 
-/// What is verified, in the words of the command line.
+/// The subject of the verification, in the words of the command line.
 std::string subject_of(const VerifyText& text, const std::vector<CLI::Option*>& named) {
   std::string subject;
   for (const std::string& word : text.subject) subject += (subject.empty() ? "" : " ") + word;

@@ -4,7 +4,7 @@
 #include "planner/cli/verb/verb.h"
 #include "planner/operation/file/octree_in.h"
 
-// What verbs that write an .octree file print.
+// Printed output of verbs that write an .octree file.
 namespace octotomy::planner::cli {
 
 /// Prints an answer to standard output and its findings to standard error. If the answer has no rows of its
@@ -12,7 +12,7 @@ namespace octotomy::planner::cli {
 /// finding is a FAIL, else `done`.
 int say(const Program& program, const FileAnswer& made, const Timings& timings);
 
-/// Prints what `octotomy info` states about an .octree file. Returns the exit status.
+/// Prints the facts of an .octree file, for `octotomy info`. Returns the exit status.
 int info_of_octree(const Program& program, const std::filesystem::path& path);
 
 }  // namespace octotomy::planner::cli

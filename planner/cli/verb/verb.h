@@ -18,7 +18,7 @@ namespace CLI {
 class App;
 }  // namespace CLI
 
-// What all verbs of the command line share.
+// Common parts of all verbs of the command line.
 namespace octotomy::planner::cli {
 
 /// Exit statuses. The last is EX_SOFTWARE of sysexits.h: a mistake in the program.

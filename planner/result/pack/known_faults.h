@@ -10,7 +10,7 @@ namespace octotomy::planner {
 /// A published fault of a library that reads data of unknown origin, and its effect on this program.
 struct KnownFault {
   std::string library, name;  ///< for example GDCM, CVE-2024-22373
-  std::string effect;         ///< what data of an attacker can do
+  std::string effect;         ///< the damage that an attacker's data can do
   std::string repaired_in;    ///< first version without the fault; empty if none is known
   /// Where the faulty code is: in a library that is not linked; in a linked library, but never called; called
   /// in the confined process that decodes; called in the program itself, which is not confined.

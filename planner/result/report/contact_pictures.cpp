@@ -24,7 +24,7 @@ std::string view_onto(const glm::dvec3& normal, const glm::dmat3& lps_from_head)
   return best;
 }
 
-/// The part of an object near its contacts, without what lies above them and would hide them.
+/// The part of an object near its contacts, without bone above them that would hide them.
 voxel::Octree part_about(const voxel::Octree& octree, const std::vector<glm::dvec3>& places_mm,
                          const glm::dvec3& towards_reader) {
   voxel::Box box{places_mm.front(), places_mm.front()};

@@ -7,8 +7,8 @@
 namespace octotomy::planner {
 
 /// Lists which checks of a run support which of its numbers, in the terms of ASME V&V 40-2018. Uses only
-/// result_json(). A check that the run has not made is a gap. What only the user can state (the question, the
-/// model's influence, the decision's consequence) is null. Keys of the result:
+/// result_json(). A check that the run has not made is a gap. Facts that only the user can state (the
+/// question, the model's influence, the decision's consequence) are null. Keys of the result:
 /// - context_of_use, question_of_interest, model_risk: a description of the run, and nulls for the user to
 ///   fill in.
 /// - credibility_factors: the standard's thirteen factors, each with the run's evidence or the reason why

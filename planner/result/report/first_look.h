@@ -14,9 +14,8 @@ struct LookOptions {
   /// Hounsfield units; otherwise thresholds_of() the scan, with a finding.
   std::optional<double> bone_low, skin_low;
   EvaluateOptions evaluation;
-  /// Called after about a fifth of the time with what the voxel kernel has computed: audit, pictures, parts
-  /// and volumes. A finding in it states that the mesh kernel's answers and the certificates are still
-  /// missing.
+  /// Called after about a fifth of the time with the results of the voxel kernel: audit, pictures, parts and
+  /// volumes. A finding in it states that the mesh kernel's answers and the certificates are still missing.
   std::function<void(Result first)> seen = nullptr;
   voxel::ReadOptions read = {};  ///< which series to read, and facts that the file does not state
 };

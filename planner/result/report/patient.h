@@ -8,13 +8,13 @@
 
 namespace octotomy::planner {
 
-/// What a scan states about its patient: {"name", "number", "issuer", "birth_date", "sex", "study_date"}, in
+/// A scan's facts about its patient: {"name", "number", "issuer", "birth_date", "sex", "study_date"}, in
 /// readable form, with names such as "Doe, Jane" and dates such as "1970-01-31". A value that is not stated
 /// or not readable is null. Null if the scan states neither name nor number nor birth date.
 nlohmann::ordered_json patient_json(const voxel::Identity& identity);
 
 /// patient_json() as a line, such as "Doe, Jane, number 17, born 1970-01-31, female, study of 2020-02-01".
-/// Leaves out what is not stated; empty if patient_json() is null.
+/// Leaves out values that are not stated; empty if patient_json() is null.
 std::string patient_text(const voxel::Identity& identity);
 
 /// Lines on the patients of all scans, for the head of a report: one for each different patient, with the
@@ -26,8 +26,8 @@ std::vector<std::string> patient_lines(const Evaluation& evaluation);
 /// because it quotes files that the result does not store. Names of files stay.
 void leave_out_patients(Result& result);
 
-/// The text of a plan without its name, the paths of its scans and its signatures. Adds what it has removed
-/// to `changes`. The names of steps stay.
+/// The text of a plan without its name, the paths of its scans and its signatures. Adds a line for each
+/// removed attribute to `changes`. The names of steps stay.
 std::string plan_without_names(const std::string& text, std::vector<std::string>& changes);
 
 /// Removes from an evaluated result everything that may name a person. In addition to leave_out_patients(),

@@ -57,7 +57,7 @@ std::string cut_by(const Plan& plan, const std::string& mask) {
   return last;
 }
 
-/// What is visible: the objects in colour, and the piece that is drawn pale around them.
+/// The visible objects: those in colour, and the piece that is drawn pale around them.
 struct Seen {
   std::vector<std::string> objects;
   std::string context;

@@ -34,7 +34,7 @@ using voxel::Octree;
 
 constexpr const char* scans_prefix = "octotomy-random-";
 
-/// The system's folder for temporary files. First removes from it what killed runs have left behind.
+/// The system's folder for temporary files. First removes leftovers of killed runs from it.
 std::filesystem::path cleared_temporary_folder() {
   std::filesystem::path folder = std::filesystem::temp_directory_path();
   voxel::remove_abandoned(folder, scans_prefix);

@@ -21,7 +21,7 @@ struct Parts {
   std::vector<double> volumes_mm3;
 };
 
-/// A signature, and what has changed since it was made.
+/// A signature, and the changes since it was made.
 struct SignatureCheck {
   Signature signature;
   std::vector<std::string> changed;

@@ -5,7 +5,7 @@
 
 namespace octotomy::planner {
 
-/// The data of a report's page: result_json(), and what only the page contains, such as patients and
+/// The data of a report's page: result_json(), and data that only the page contains, such as patients and
 /// pictures. The members are those of the interface Report in planner/result/page/result.ts.
 nlohmann::ordered_json report_data(const Result& result);
 

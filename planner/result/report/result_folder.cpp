@@ -304,8 +304,7 @@ void exchange_in_steps(const fs::path& staged, const fs::path& place) {
   fs::rename(old, staged);
 }
 
-/// Removes what killed runs have left beside the place. An earlier result that exists only there is moved
-/// back.
+/// Removes leftovers of killed runs beside the place. An earlier result that exists only there is moved back.
 void discard_leftovers(const fs::path& place) {
   const std::string prefix = hidden_prefix(place).string();
   std::vector<fs::path> found;
@@ -452,7 +451,7 @@ void ResultFolder::put_in_place(const std::function<void()>& then) {
   try {
     discard(old, final_, true);
   } catch (const std::exception&) {
-    // The new result is in place. The next run removes what remains of the old one.
+    // The new result is in place. The next run removes the rest of the old one.
   }
 }
 

@@ -61,9 +61,9 @@ class ResultFolder {
   void publish();
   /// Whether there is anything at the place but an empty folder.
   bool replaces() const;
-  /// Puts a first part of the result at its place; its page states what is still missing. Does nothing and
-  /// returns null if replaces(), because an earlier complete result is worth more. The returned object
-  /// removes these files again, unless a later result has replaced them.
+  /// Puts a first part of the result at its place; its page lists the missing parts. Does nothing and returns
+  /// null if replaces(), because an earlier complete result is worth more. The returned object removes these
+  /// files again, unless a later result has replaced them.
   std::unique_ptr<voxel::Undo> publish_early();
 
  private:

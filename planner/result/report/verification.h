@@ -12,7 +12,7 @@
 
 namespace octotomy::planner {
 
-/// What was verified, and the results.
+/// The subject and the results of a verification.
 struct Verification {
   std::string subject;  ///< a plan, two files with an operation, or a suite
   VerdictCounts counts;
@@ -23,7 +23,7 @@ struct Verification {
 };
 
 /// One HTML page: verdicts, differences as shares of their tolerances, pictures of the worst object, the
-/// suite's own tables, and what has no certificate.
+/// suite's own tables, and the requests without a certificate.
 std::string verification_html(const Verification& verification);
 
 /// Writes a folder with report.html and result.json, which appears only when it is complete. Precondition and

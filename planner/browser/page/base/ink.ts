@@ -16,7 +16,8 @@ export const ink = {
   faint: "rgba(255,255,255,.55)",
 };
 
-// Boxes, in canvas pixels, of what is drawn in the pane so far. label() places new labels beside them.
+// Boxes, in canvas pixels, around the labels and lines in the pane so far. label() places new labels beside
+// them.
 let labelled: {low: Vec2; high: Vec2}[] = [];
 
 // Whether the pane's background is white, as in views on a light page. Words are then dark with a light

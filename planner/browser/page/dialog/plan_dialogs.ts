@@ -107,7 +107,7 @@ export async function write_report(): Promise<void> {
   if (answer.left_out.length)
     notify(`The report lacks the parts that failed: ${answer.left_out.join(", ")}. Its findings state the reasons.`, "warning");
   void evaluate(true);  // the report has certified every object, so the badges can be updated
-  // The sandbox gives the report's script an own origin, so that it cannot access this page.
+  // In the sandbox the report's script has another origin than this page, so that it cannot access the page.
   const frame = el("iframe", {src: file_url(answer.file), title: "Report", sandbox: "allow-scripts"});
   const follow = (event: MessageEvent): void => {
     if (event.source === frame.contentWindow && event.data === "Escape") dialog.close();

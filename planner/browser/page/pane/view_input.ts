@@ -80,7 +80,7 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
     last = start = at_of(event);
     has_moved = false;
     if (fingers.size > 1) {
-      // The second finger begins a pinch, so what the first one did is undone.
+      // The second finger begins a pinch, so the action of the first finger is undone.
       const tool = active_tool();
       if (drag === "tool" && tool?.cancel)
         tool.cancel();

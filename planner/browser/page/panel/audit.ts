@@ -17,8 +17,8 @@ const marks = {
   FAIL: "✕"
 } as const;
 
-/// The sentence of a line. If the patient is hidden, the lines that compare identities do not quote what the
-/// files state about the patient.
+/// The sentence of a line. If the patient is hidden, a line that compares identities does not quote the
+/// files.
 function sentence_of(row: AuditRow): string {
   const quotes = /^(identity|patient(?!_position|_orientation).*)$/.test(row.check ?? "");
   return state.hides_patient && quotes && row.verdict !== "PASS" ?

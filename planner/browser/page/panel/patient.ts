@@ -28,7 +28,7 @@ export function patient_button(): Child {
       {class: "ghost small patient", "aria-label": `${words}. ${state.hides_patient ? "Show" : "Hide"} the patient`});
 }
 
-/// What a scan states about its patient, one fact in a line.
+/// A scan's facts about its patient, each on its own line.
 export function patient_facts(scan: ScanState): Child {
   const fact = (name: string, value: string): Child => [el("dt", {}, name), el("dd", {}, value)];
   if (state.hides_patient) return fact("Patient", hidden);

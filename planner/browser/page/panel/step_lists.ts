@@ -107,7 +107,7 @@ function objects(): Child {
   });
 }
 
-/// What a step does, in one line, such as its expression or the object that it changes.
+/// A short description of a step, such as its expression or the object that it changes.
 export function step_words(step: Step): string {
   const list = (value: Json|undefined): string =>
       (Array.isArray(value) ?
