@@ -26,7 +26,8 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// This process's environment, with the variables of `added` replaced or added.
+/// The variables of this process's environment, each as "NAME=value"; those in `added` are added or take the
+/// place of others.
 Words environment_with(const Words& added) {
   Words all = added;
   for (char** each = environ; *each != nullptr; ++each) {
@@ -39,7 +40,7 @@ Words environment_with(const Words& added) {
   return all;
 }
 
-/// Pointers to the words in the form for exec. The words must outlive them.
+/// Pointers to the words, followed by a null pointer, as exec() requires. The words must outlive them.
 std::vector<char*> pointers_to(Words& words) {
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
@@ -47,8 +48,8 @@ std::vector<char*> pointers_to(Words& words) {
   return pointers;
 }
 
-/// The data for the forked process, created before the fork: after it, locks held by other threads are never
-/// released.
+/// Data of the forked process. They are prepared before the fork, because afterwards that process must not
+/// allocate memory: another thread's lock would never be released.
 struct ReadyProgram {
   Words words, environment;
   std::vector<char*> arguments = pointers_to(words), variables = pointers_to(environment);
@@ -57,12 +58,13 @@ struct ReadyProgram {
   pid_t parent = getpid();
 };
 
-/// Replaces the forked process by the program, or writes the reason for a failure to `failure`.
+/// Replaces the forked process by the program. If that fails, writes the system's error number to `failure`
+/// and ends the process.
 [[noreturn]] void become(const ReadyProgram& program, int output, int failure) {
-  // Resets the handler, which until the exec would treat the signal as a request to this process.
+  // The parent's handler would treat a signal before exec() as a request to the parent.
   std::signal(program.signal_at_parents_end, SIG_DFL);
   prctl(PR_SET_PDEATHSIG, program.signal_at_parents_end);
-  // The parent may have ended before prctl().
+  // If the parent ended before prctl(), no signal will arrive.
   if (getppid() != program.parent) _exit(0);
   dup2(output, STDOUT_FILENO);
   if (program.inherited_file >= 0) fcntl(program.inherited_file, F_SETFD, 0);
@@ -72,7 +74,8 @@ struct ReadyProgram {
   _exit(0);
 }
 
-/// Starts the program with `output` as its standard output.
+/// Starts the program with `output` as its standard output. Returns its process id. Throws voxel::Error
+/// (Resource) if the program cannot be started.
 pid_t started(const ChildProcess& child, int output) {
   const ReadyProgram program{.words = child.words,
                              .environment = environment_with(child.environment),

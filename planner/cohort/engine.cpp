@@ -22,13 +22,13 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-/// Exit status of a process that ran out of time, memory or disk.
+/// Exit status of an `octotomy` process that ran out of time, memory or disk.
 constexpr int out_of_resources = 3;
 
-/// The environment variable that passes a descriptor's number to participants of GNU parallel: a pipe into
-/// which only this process can write. The system closes that end when this process ends for any reason, and
-/// the participants watch it. A signal at the end of a parent would not reach them, because their parent is a
-/// shell.
+/// The environment variable with the number of a pipe's reading end, for participants that GNU parallel
+/// starts. Only this process has the writing end. The system closes it when this process ends for any reason,
+/// and the participants notice that. They cannot rely on a signal at the end of their parent, because their
+/// parent is a shell.
 constexpr const char* pipe_variable = "OCTOTOMY_ENGINE_PIPE";
 
 Words with_label(const EngineRequest& request, const std::string& label) {
@@ -37,7 +37,7 @@ Words with_label(const EngineRequest& request, const std::string& label) {
   return words;
 }
 
-/// The words, quoted for a shell.
+/// The words as one command line, quoted for a shell.
 std::string shell_text(const Words& words) {
   std::string text;
   for (const std::string& word : words) {
@@ -60,7 +60,8 @@ fs::path write_labels(const EngineRequest& request) {
   return code_path(request, cohort_labels);
 }
 
-/// The number that `sbatch --parsable` prints, before a ";" and the cluster's name.
+/// Submits a script and returns the job's number. `sbatch --parsable` prints it before a ";" and the
+/// cluster's name.
 std::string submit(const EngineRequest& request, const Words& options, const Words& script) {
   Words words{"sbatch", "--parsable"};
   words.insert(words.end(), options.begin(), options.end());
@@ -76,7 +77,8 @@ std::string submit(const EngineRequest& request, const Words& options, const Wor
   return job;
 }
 
-/// Whether GNU parallel's log lists a process that ended with out_of_resources; the status is in the seventh column.
+/// Whether GNU parallel's log lists a process with the exit status out_of_resources. The status is in the
+/// seventh column.
 bool log_tells_end_of_resources(const fs::path& log) {
   std::ifstream file(log);
   bool tells = false;
@@ -96,7 +98,7 @@ void end_with_engine() {
   const int file = text == nullptr ? -1 : std::atoi(text);
   struct stat of_file {};
   if (file < 0 || fstat(file, &of_file) != 0 || !S_ISFIFO(of_file.st_mode)) return;
-  // Never joined: the thread waits until this process ends.
+  // Detached: the thread waits until the engine's process or this one ends.
   std::thread([file] {
     pollfd engine{file, 0, 0};
     while (poll(&engine, 1, -1) < 0 && errno == EINTR) continue;
@@ -124,18 +126,18 @@ bool run_parallel(const EngineRequest& request) {
   words.push_back(shell_text(request.program) + " --participant-label {} >/dev/null");
   const Pipe pipe;
   run_child_process({.words = words,
-                     // The user's shell may close the pipe, as csh does.
+                     // Another shell of the user may close the pipe, as csh does.
                      .environment = {"PARALLEL_SHELL=/bin/sh",
                                      std::string(pipe_variable) + "=" + std::to_string(pipe.reading())},
                      .inherited_file = pipe.reading(),
-                     // GNU parallel ignores SIGTERM at its start and would process the whole list.
+                     // Early after its start, GNU parallel ignores SIGTERM and would process the whole list.
                      .signal_at_our_end = SIGKILL},
                     request.stop);
   return log_tells_end_of_resources(code_path(request, cohort_log));
 }
 
 std::vector<std::string> submit_slurm(const EngineRequest& request) {
-  constexpr std::size_t array_size = 1000;  // Slurm's default limit is 1,001
+  constexpr std::size_t array_size = 1000;  // Slurm's default largest size is 1001
   const fs::path labels = write_labels(request);
   const fs::path logs = code_path(request, "logs");
   fs::create_directories(logs);
@@ -145,7 +147,7 @@ std::vector<std::string> submit_slurm(const EngineRequest& request) {
   };
   const fs::path participant = code_path(request, cohort_participant_script);
   write_cohort_file(request.out, cohort_participant_script,
-                    head("octotomy") + "# $1 subjects lie before the array's first.\n" +
+                    head("octotomy") + "# $1: number of subjects before the first one of this array\n" +
                         "label=$(sed -n \"$((SLURM_ARRAY_TASK_ID + $1))p\" " + shell_text({labels.string()}) +
                         ")\nexec " + shell_text(request.program) +
                         " --participant-label \"$label\" >/dev/null\n");

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The rows of a subject whose record has an answer.
+/// The rows of a subject that has an answer, read from its rows.csv.
 std::vector<ResultRow> rows_in(const fs::path& out, const Subject& subject) {
   const fs::path path = out / subject.folder() / "rows.csv";
   try {
@@ -31,8 +31,9 @@ std::vector<ResultRow> rows_in(const fs::path& out, const Subject& subject) {
   }
 }
 
-/// The findings of the scans' audits over a cohort: every line of a subject with a FAIL, and the other
-/// subjects' WARNs by their checks, because a WARN about an export occurs in each of its subjects.
+/// Collects findings of the subjects' audits for the whole cohort. Lists every finding of subjects with a
+/// FAIL. Of the others' WARNs it lists one for each check, with the number of further ones, because a fault
+/// of the exporting program occurs in many subjects.
 class AuditFindings {
  public:
   void add(const std::string& label, const SubjectRecord& record) {
@@ -69,7 +70,7 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// Pairs of the two kernels' values in a column, from which the difference mesh minus voxel is computed.
+/// For each subject with both, the values of the two kernels in a column: first voxel, then mesh.
 std::vector<std::pair<double, double>> of_kernels(const CohortColumn& column) {
   std::vector<std::pair<double, double>> answers;
   for (const CohortValue& value : column.values)
@@ -77,7 +78,7 @@ std::vector<std::pair<double, double>> of_kernels(const CohortColumn& column) {
   return answers;
 }
 
-/// For each subject that both observers have: this observer's number, then the other's.
+/// For each subject that both observers have, this observer's number and then the other's.
 std::vector<std::pair<double, double>> of_observers(const CohortColumn& column, const CohortTable& other) {
   std::map<std::uint32_t, double> others;
   for (const CohortColumn& its : other.columns())
@@ -96,17 +97,17 @@ Json agreement_json(const Agreement& agreement) {
           {"limits_of_agreement", {agreement.low, agreement.high}}};
 }
 
-/// "mm³" for a table's "mm3".
+/// A unit as the page shows it, such as "mm³" for "mm3".
 std::string shown_unit(const std::string& unit) {
   if (unit == "mm3") return "mm³";
   return unit == "mm2" ? "mm²" : unit;
 }
 
-/// One number over a cohort, with its plots.
+/// One number over a cohort, with its summary and plots.
 struct GroupColumn {
   std::string name, unit;
   Json summary;
-  std::vector<std::pair<std::string, std::string>> plots;  ///< a kind, and its SVG
+  std::vector<std::pair<std::string, std::string>> plots;  ///< kind of each plot, and its SVG
 };
 
 Json to_json(const GroupColumn& column) {
@@ -115,7 +116,7 @@ Json to_json(const GroupColumn& column) {
   return {{"name", column.name}, {"unit", column.unit}, {"summary", column.summary}, {"plots", plots}};
 }
 
-/// The numbers, plots and outliers of a column.
+/// Summarises a column: its statistics, its outliers and its plots.
 GroupColumn summarised(const CohortColumn& column, const std::vector<Subject>& subjects,
                        const std::optional<CohortTable>& other) {
   const std::string unit = shown_unit(column.unit);
@@ -164,7 +165,8 @@ GroupColumn summarised(const CohortColumn& column, const std::vector<Subject>& s
   return made;
 }
 
-/// Reports the progress and checks for a stop, at a few of the subjects.
+/// Reports progress and throws if a stop is requested. Does so only for some of the subjects, because most
+/// take little time.
 void look_up(const GroupOptions& options, std::size_t subject, std::size_t count) {
   if (subject % 256 != 0) return;
   if (options.stop.stop_requested()) throw voxel::Stopped("stopped before the group was written");

@@ -31,7 +31,8 @@ namespace fs = std::filesystem;
 constexpr int picture_px = 240;
 constexpr const char* report_folder = "report";
 
-/// The exclusive claim of one process on a subject. Released when that process ends for any reason.
+/// A process's exclusive claim on a subject, by a lock that ends with the process. `is_ours()`: this process
+/// has the claim.
 class Claim {
  public:
   Claim(const fs::path& out, const Subject& subject) {
@@ -53,8 +54,8 @@ class Claim {
 };
 
 std::string key_of(const Plan& plan, const Subject& subject) {
-  // Includes the version of the format of subject.json and rows.csv: answers in another format are computed
-  // again.
+  // The 2 is the version of the format of subject.json and rows.csv: answers in an earlier format are
+  // computed again.
   std::string text = OCTOTOMY_VERSION " 2\n" + plan_sha256(Json::parse(plan.text)) + "\n";
   for (const auto& [name, path] : subject.scans) text += name + " " + sha256_of_path(path) + "\n";
   for (const Step& step : plan.steps)
@@ -63,14 +64,14 @@ std::string key_of(const Plan& plan, const Subject& subject) {
   return sha256_of(text);
 }
 
-/// The bytes of a file; none if it is not a regular file, because reading a pipe would block.
+/// The bytes of a file. Empty if it is not a regular file, because reading a pipe would block.
 std::string bytes_of_regular(const fs::path& path) {
   std::error_code ignored;
   return fs::is_regular_file(path, ignored) ? voxel::file_bytes(path) : "";
 }
 
-/// The record of a subject if a file of its answer is missing or changed. None if the file agrees with
-/// `list`, the folder's list of written files.
+/// Checks a file of a subject's answer against `list`, the list of files in its folder. None if it agrees.
+/// Otherwise a record with the state Missing or Changed.
 std::optional<SubjectRecord> record_of_loss(const fs::path& path, const ResultList& list) {
   const auto listed = list.find(path.filename().string());
   if (listed != list.end() && listed->second == sha256_of(bytes_of_regular(path))) return std::nullopt;
@@ -108,7 +109,7 @@ Json to_json(const SubjectRecord& record, const Subject& subject) {
           {"peak_mb", record.peak_mb}};
 }
 
-/// A small picture of the plan's final scene; empty if the scene is empty.
+/// A small PNG of the plan's final scene; empty if there is nothing to show.
 std::vector<std::uint8_t> picture_of(const Plan& plan, const Evaluation& evaluation) {
   const FinalScene scene = final_scene(plan, evaluation);
   PictureGroup group{"picture", "", scene.after, {}};
@@ -116,7 +117,8 @@ std::vector<std::uint8_t> picture_of(const Plan& plan, const Evaluation& evaluat
   return group.pictures.empty() ? std::vector<std::uint8_t>{} : group.pictures.front().png;
 }
 
-/// The plan with the subject's own files where its steps read files that are not beside it.
+/// The plan for one subject: files that its steps read, and that are not beside the plan, are replaced by the
+/// subject's own.
 Plan of_subject(const Plan& plan, const Subject& subject) {
   std::map<fs::path, fs::path> places;
   for (const Step& step : plan.steps)
@@ -127,18 +129,18 @@ Plan of_subject(const Plan& plan, const Subject& subject) {
   return with_files(plan, places);
 }
 
-/// Evaluates the plan and writes into `folder`. Returns the findings of the scans' audits.
+/// Evaluates the plan and writes the answer into `folder`. Returns the findings of the scans' audits.
 ScanAudits answer(const Plan& plan, const Subject& subject, const ParticipantOptions& options,
                   const fs::path& folder) {
   Result result;
   result.plan = plan;
-  result.anonymous = true;  // subjects of a cohort are identified by labels only
+  result.anonymous = true;  // only labels identify the subjects of a cohort
   for (auto& [name, scan] : result.plan.scans) scan.path = subject.scans.at(name);
   result.evaluation = evaluate(result.plan, {options.stop, options.progress, true});
   Json json;
   if (options.reports) {
     result.pictures = plan_pictures(result.plan, result.evaluation);
-    // `folder` appears with its complete contents, and its list includes the report's files.
+    // The report needs no list of its own: its files are listed with those of `folder`.
     voxel::create_folders_in(folder, report_folder);
     json = write_result_files(result, folder / report_folder, {options.stop, options.progress});
   } else {
@@ -154,7 +156,7 @@ ScanAudits answer(const Plan& plan, const Subject& subject, const ParticipantOpt
   return scan_audits_of(json);
 }
 
-/// Paths in a subject's folder that its result needs.
+/// Names of the files in a subject's folder that its answer consists of, relative to the folder.
 std::vector<fs::path> needed_names(const Plan& plan, const ParticipantOptions& options) {
   std::vector<fs::path> names{"rows.csv", "result.json", "picture.png", "subject.json"};
   if (options.reports)
@@ -162,8 +164,9 @@ std::vector<fs::path> needed_names(const Plan& plan, const ParticipantOptions& o
   return names;
 }
 
-/// Runs the work unless the subject has failed before. Records an exception of the work as the subject's
-/// failure. Rethrows stops and a lack of memory, disk or time, because these are not the subject's.
+/// Runs the work, unless an earlier one has failed for this subject. An exception is stored in the record as
+/// the subject's failure. Stops, and errors of the system, memory, disk or time, are rethrown, because the
+/// subject is not their cause.
 template <typename Work>
 void attempt(SubjectRecord& record, const Work& work) {
   if (!record.reason.empty()) return;

@@ -13,24 +13,25 @@
 
 namespace octotomy::planner {
 
-/// The state of a subject, as recorded in its folder's subject.json.
+/// The state of a subject's answer. Stored in subject.json in the subject's folder.
 struct SubjectRecord {
-  /// Doubtful: there is an answer, and the audit of a scan has a FAIL. Changed: a file of the answer was
-  /// changed after it was written, so the subject's numbers are not used.
+  /// Done and Doubtful have an answer; Doubtful: the audit of a scan has a FAIL. Changed: a file of the
+  /// answer was changed after it was written, so its numbers are not used. Failed and Missing have none.
   enum class State { Done, Doubtful, Failed, Missing, Changed };
 
   State state = State::Missing;
   std::string reason;  ///< why there is no answer
-  /// The kind of the error that ended the evaluation of a subject. Internal: a mistake in the program.
+  /// The kind of error that ended the evaluation; none if there was none. Internal is a mistake in the
+  /// program.
   std::optional<Fault> fault = {};
-  /// Every WARN and FAIL of the audits of its scans, as ScanAudits has them.
+  /// Each WARN and FAIL of the scans' audits, worded as in ScanAudits.
   std::vector<std::string> audit_findings = {};
-  std::string key;  ///< key of the plan, the program's version and the scans; equal keys mean equal answers
+  std::string key;  ///< covers plan, scans and the program's version; equal keys mean equal answers
   double seconds = 0.0;
   double peak_mb = 0.0;             ///< the process's largest memory
   std::uint64_t scan_bytes = 0;     ///< total size of the scans' files
-  bool was_kept = false;            ///< an earlier run's answer with the same key was kept
-  bool is_another_at_work = false;  ///< nothing was done, because another process works on the subject
+  bool was_kept = false;            ///< this run used an earlier answer with the same key
+  bool is_another_at_work = false;  ///< this run did nothing, because another process works on the subject
 
   bool has_answer() const { return state == State::Done || state == State::Doubtful; }
 };
@@ -40,21 +41,21 @@ std::string to_string(SubjectRecord::State state);
 struct ParticipantOptions {
   std::stop_token stop;
   std::function<void(const std::string& doing, double fraction)> progress;
-  bool again = false;    ///< also evaluates subjects that are done
-  bool reports = false;  ///< writes each subject's report and files as well
+  bool again = false;    ///< evaluates subjects again whose answer has the same key
+  bool reports = false;  ///< also writes each subject's report and files
 };
 
-/// Evaluates the plan on a subject's scans into out/sub-LABEL: subject.json, rows.csv (the long table's
-/// rows), result.json and picture.png; with `reports` the whole result in report/. The folder appears
-/// completely or not at all, so after a kill the earlier folder remains. A subject that is done with the same
-/// key is kept. A changed subject is not evaluated; its record has the state Changed. A failure is also
-/// recorded, with its reason. Throws Stopped, and voxel::Error if the answer cannot be written to disk.
+/// Evaluates the plan on a subject's scans and writes the answer into out/sub-LABEL: subject.json, rows.csv
+/// (the subject's rows of the long table), result.json and picture.png; with `reports` also the whole result,
+/// in report/. The folder is replaced as a whole when the answer is complete. An answer with the same key is
+/// used again. A subject in the state Changed is not evaluated. If the evaluation fails, the record states
+/// the reason. Throws Stopped, and voxel::Error if the answer cannot be written.
 SubjectRecord run_participant(const Plan& plan, const Subject& subject, const std::filesystem::path& out,
                               const ParticipantOptions& options = {});
 
-/// The record of a subject's folder. Missing if there is none or a file of the answer is absent. Changed if
-/// subject.json, rows.csv or result.json does not agree with the folder's list. Never blocks on a pipe. Cost:
-/// reads these files.
+/// Reads the record of a subject. Its state is Missing if there is none or a file of the answer is missing,
+/// and Changed if subject.json, rows.csv or result.json differs from the folder's list. Does not block on
+/// pipes. Cost: reads these files.
 SubjectRecord subject_record(const std::filesystem::path& out, const Subject& subject);
 
 }  // namespace octotomy::planner

@@ -20,17 +20,17 @@ std::string number(double value) {
   return text.data();
 }
 
-/// The label of a tick, with a true minus sign.
+/// The text of a tick, with the sign − for negative numbers.
 std::string tick_label(double value) {
   return value < 0.0 ? "−" + number(-value) : number(value);
 }
 
-/// An axis: maps numbers to pixels.
+/// An axis of a plot, which converts numbers to pixels.
 struct Axis {
   double low, high, from_px, to_px;
 
   double at(double value) const { return from_px + (value - low) / (high - low) * (to_px - from_px); }
-  /// Round numbers from low to high, about five.
+  /// About five round numbers between both ends of the axis.
   std::vector<double> ticks() const {
     const double rough = (high - low) / 5.0;
     const double power = std::pow(10.0, std::floor(std::log10(rough)));
@@ -61,7 +61,7 @@ std::string line(double x1, double y1, double x2, double y2, const std::string& 
          "' " + more + "/>";
 }
 
-/// Adds title, axes, ticks and names around `inside`.
+/// A plot with title, axes, ticks and names of the axes; `inside` is the SVG of its content.
 std::string framed(const std::string& title, const Axis& x, const Axis& y, const std::string& x_name,
                    const std::string& y_name, const std::string& inside) {
   std::string svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 " + number(width) + " " +

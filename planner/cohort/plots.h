@@ -6,15 +6,16 @@
 
 #include "planner/cohort/statistics.h"
 
-// Plots as SVG, in colours that follow the page around them: light or dark.
+// Plots as SVG, in the colours of the surrounding page, light or dark.
 namespace octotomy::planner {
 
-/// The distribution of numbers: a histogram with its median, and ticks below for outliers. `unit` as shown to
-/// users. Precondition: there are numbers, all finite.
+/// A histogram of the numbers with their median, and below it a tick for each outlier. `unit` is written as
+/// given, such as "mm³". Precondition: at least one number, all finite.
 std::string distribution_svg(const std::string& title, const std::string& unit,
                              const std::vector<double>& numbers);
 
-/// Differences over means, with bias and limits of agreement. Precondition: there are points, all finite.
+/// Differences of two methods against their means, with bias and limits of agreement. Precondition: at least
+/// one point, all finite.
 std::string agreement_svg(const std::string& title, const std::string& unit, const Agreement& agreement);
 
 }  // namespace octotomy::planner

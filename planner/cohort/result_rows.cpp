@@ -20,7 +20,7 @@ const std::vector<std::string> columns = {"subject", "measurement", "object",   
 
 constexpr std::array<const char*, 3> verdicts{"PASS", "WARN", "FAIL"};  ///< most severe last
 
-/// The more severe of two verdicts; an empty or unknown text is ignored.
+/// The more severe of two verdicts. A text that is no verdict counts as less severe than PASS.
 std::string graver(const std::string& a, const std::string& b) {
   const auto rank = [](const std::string& verdict) {
     const auto at = std::find(verdicts.begin(), verdicts.end(), verdict);
@@ -39,7 +39,8 @@ std::optional<double> number_at(const Json& object, const std::string& key) {
   return found != object.end() && found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
 }
 
-/// "volume_mm3" is a volume in mm3; none for keys of another form and for keys that describe another number.
+/// Splits a key such as "volume_mm3" into quantity and unit. None for a key without a unit, and for one that
+/// describes another number, such as a half-width.
 std::optional<std::pair<std::string, std::string>> quantity_and_unit(const std::string& key) {
   static constexpr std::array<const char*, 6> units{"mm3", "mm2", "mm", "degrees", "deg", "percent"};
   for (const char* tells : {"half_width", "difference", "tolerance"})
@@ -50,7 +51,8 @@ std::optional<std::pair<std::string, std::string>> quantity_and_unit(const std::
   return std::nullopt;
 }
 
-/// The most severe verdict of the objects that a measurement names.
+/// The most severe verdict of the certificates of all objects that a measurement names; empty if they have
+/// none.
 std::string verdict_of(const Json& measurement, const Json& result) {
   std::string gravest;
   const auto certificates = result.find("certificates");
@@ -71,7 +73,8 @@ std::optional<double> kernel_answer(const Json& measurement, const char* kernel,
   return number_at(*found, quantity + "_" + unit);
 }
 
-/// The number that a key of a measurement holds, if it holds one.
+/// The number under a key of a measurement, with its unit, half-width and both kernels' answers. None if the
+/// key has no number.
 std::optional<ResultRow> row_at(const Json& measurement, const std::string& key, const Json& value) {
   ResultRow row;
   if (value.is_object() && value.contains("value") && value.contains("unit")) {
@@ -137,7 +140,7 @@ std::vector<ResultRow> rows_of(const Json& result, const std::string& subject) {
   const auto measurements = result.find("measurements");
   if (measurements == result.end()) return rows;
   for (const Json& measurement : *measurements) {
-    std::set<std::string> told;  // numbers that were added with their interval; skipped under their plain key
+    std::set<std::string> told;  // quantities already added; those with an interval come first
     std::vector<ResultRow> own;
     for (const bool with_interval : {true, false})
       for (const auto& [key, value] : measurement.items()) {

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
   throw voxel::Error(voxel::ErrorCode::Input, message);
 }
 
-/// The name without the extension of a scan; empty if it is not a scan.
+/// A file's name without the extension of a scan. Empty if the file has no such extension.
 std::string stem_of_scan(const std::string& name) {
   static constexpr std::array<const char*, 6> extensions{".nii.gz", ".nii", ".nrrd", ".nhdr", ".mha", ".mhd"};
   for (const std::string extension : extensions)
@@ -45,14 +45,14 @@ std::string without_prefix(const std::string& said) {
   return label.starts_with("sub-") ? label.substr(4) : label;
 }
 
-/// Whether a name has a BIDS suffix of files that are drawn on a scan.
+/// Whether a name ends in a BIDS suffix of label maps and masks, which are drawn on a scan.
 bool is_drawn(const std::string& stem) {
   const std::string end = stem.substr(stem.rfind('_') + 1);
   return end == "dseg" || end == "probseg" || end == "mask" || end == "seg" || end == "label" ||
          end == "labels" || end == "roi";
 }
 
-/// Whether a name has, after its last underscore, a BIDS suffix of images that are not CT.
+/// Whether a name ends in a BIDS suffix of images other than CT.
 bool is_of_another_modality(const std::string& stem) {
   static const std::set<std::string> suffixes{
       "T1w",        "T2w",      "T2star", "FLAIR",  "PDw",     "PDT2",  "bold",  "cbv",
@@ -61,7 +61,8 @@ bool is_of_another_modality(const std::string& stem) {
   return suffixes.contains(stem.substr(stem.rfind('_') + 1));
 }
 
-/// The first file that names a different subject than its folder; none if all agree.
+/// The first file whose name begins with another subject's label than its folder has; none if there is no
+/// such file.
 std::optional<fs::path> file_of_another(const std::string& label, const std::vector<fs::path>& files) {
   const std::string own = "sub-" + label.substr(0, label.find("_ses-"));
   for (const fs::path& file : files) {
@@ -71,8 +72,8 @@ std::optional<fs::path> file_of_another(const std::string& label, const std::vec
   return std::nullopt;
 }
 
-/// The files below a subject's folder. Files of sessions, which are subjects of their own, are included only
-/// if the folder is a session.
+/// The files below a subject's or a session's folder. Sessions in a subject's folder are left out, because
+/// each is a subject itself.
 std::vector<fs::path> files_below(const fs::path& folder) {
   std::vector<fs::path> files;
   auto at = fs::recursive_directory_iterator(folder);
@@ -86,7 +87,8 @@ std::vector<fs::path> files_below(const fs::path& folder) {
   return files;
 }
 
-/// The subject of a folder, with the file for each of the plan's scans.
+/// Makes a subject from a folder: finds a file for each scan of the plan. Sets `trouble` if one is missing or
+/// ambiguous.
 Subject subject_of_folder(const std::string& label, const fs::path& folder, const Plan& plan) {
   Subject subject{label, {}};
   subject.place = fs::absolute(folder).lexically_normal();
@@ -130,7 +132,7 @@ std::vector<fs::path> folders_in(const fs::path& folder, const std::string& pref
   return found;
 }
 
-/// Adds a subject for each session, and one for files outside sessions.
+/// Adds a subject for each session in a folder, and one for scans outside of sessions.
 void add_subject(const std::string& label, const fs::path& folder, const Plan& plan,
                  std::vector<Subject>& subjects) {
   const std::vector<fs::path> sessions = folders_in(folder, "ses-");
@@ -140,7 +142,7 @@ void add_subject(const std::string& label, const fs::path& folder, const Plan& p
   if (sessions.empty() || !own.scans.empty()) subjects.push_back(std::move(own));
 }
 
-/// A subject in a table without a folder.
+/// A subject that a table lists but that has no folder. Its `trouble` states this.
 Subject missing_subject(const std::string& label, const fs::path& table) {
   Subject subject{label, {}};
   subject.place = fs::absolute(table).parent_path() / ("sub-" + label);
@@ -160,7 +162,7 @@ std::vector<std::vector<std::string>> rows_of_table(const fs::path& input) {
   }
 }
 
-/// The column of this name or, if there is none, one whose name differs only in case.
+/// The index of the column with this name or, if there is none, of a column whose name differs only in case.
 std::optional<std::size_t> column_of(const std::vector<std::string>& header, const std::string& name) {
   auto found = std::find(header.begin(), header.end(), name);
   if (found == header.end())
@@ -170,7 +172,7 @@ std::optional<std::size_t> column_of(const std::vector<std::string>& header, con
   return found == header.end() ? std::nullopt : std::optional<std::size_t>(found - header.begin());
 }
 
-/// Subjects that BIDS's participants.tsv lists and that have no folder.
+/// Adds subjects that BIDS's participants.tsv lists although they have no folder.
 void add_missing_subjects(const fs::path& input, std::vector<Subject>& subjects) {
   const fs::path table = input / "participants.tsv";
   if (!fs::is_regular_file(table)) return;
@@ -194,14 +196,14 @@ std::vector<Subject> subjects_of_folder(const fs::path& input, const Plan& plan)
   }
   if (subjects.empty())
     refuse(input.string() +
-           ": has no subject: it should hold folders sub-LABEL, or be a .csv or .tsv with the columns "
+           ": has no subject: it should contain folders sub-LABEL, or be a .csv or .tsv with the columns "
            "participant_id and scan");
   add_missing_subjects(input, subjects);
   return subjects;
 }
 
-/// BIDS's table of participants names no scans; the subjects are then the folders beside it. None if a column
-/// names scans or no subject has a folder.
+/// Reads BIDS's table of participants, which names no scans: its subjects are the folders beside it. None if
+/// a column names scans, or if no subject has a folder.
 std::optional<std::vector<Subject>> folders_of_rows(const std::vector<std::vector<std::string>>& rows,
                                                     std::size_t id, const fs::path& input, const Plan& plan) {
   const std::vector<std::string>& header = rows.front();
@@ -297,7 +299,7 @@ std::vector<Subject> find_subjects(const fs::path& input, const Plan& plan) {
 std::vector<std::string> doubts_of_cohort(const fs::path& input, const Plan& plan,
                                           const std::vector<Subject>& subjects) {
   std::vector<std::string> doubts;
-  std::map<fs::path, std::set<std::string>> labels;  // by the file to which a path resolves
+  std::map<fs::path, std::set<std::string>> labels;  // labels of the subjects whose scan is this file
   for (const Subject& subject : subjects)
     for (const auto& [name, path] : subject.scans) {
       std::error_code none;
@@ -324,7 +326,7 @@ std::vector<std::string> doubts_of_cohort(const fs::path& input, const Plan& pla
     if (!at && plan.scans.size() == 1) at = column_of(header, "scan");
     if (at) read.insert(*at);
   }
-  if (read.size() == ids) return doubts;  // the columns describe people, not scans
+  if (read.size() == ids) return doubts;  // no column names scans, so the columns describe people
   std::string passed_over;
   for (std::size_t i = 0; i < header.size(); ++i)
     if (!read.contains(i)) passed_over += (passed_over.empty() ? "'" : ", '") + header[i] + "'";
@@ -357,7 +359,7 @@ std::vector<Subject> chosen_subjects(std::vector<Subject> subjects, const std::v
   for (const Subject& subject : subjects) known.push_back(subject.label);
   for (const std::string& said : labels) {
     const std::string label = without_prefix(said);
-    // Engines request one subject by its complete label.
+    // Engines pass the complete label of one subject, which must not also choose its sessions.
     const bool is_whole = std::binary_search(known.begin(), known.end(), label);
     bool is_there = is_whole;
     for (const std::string& each : known)

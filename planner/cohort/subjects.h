@@ -11,44 +11,44 @@
 
 namespace octotomy::planner {
 
-/// A person of a cohort in one session.
+/// A subject of a cohort: a person, or a person in one session.
 struct Subject {
   std::string label;  ///< "01", or "01_ses-2" if there are sessions; letters, digits, _ and -
-  std::map<std::string, std::filesystem::path> scans;  ///< by their names in the plan
-  std::string trouble = {};                            ///< why its scans are unknown; empty: they are known
-  std::filesystem::path place = {};  ///< the BIDS folder with its files; empty: a table names its scans
+  std::map<std::string, std::filesystem::path> scans;  ///< files of the scans, by the plan's names of scans
+  std::string trouble = {};                            ///< why a scan could not be found; empty if all were
+  std::filesystem::path place = {};  ///< the subject's BIDS folder; empty if a table names the scans
 
   std::string folder() const { return "sub-" + label; }
-  /// Total size of its scans' files, including all files in folders.
+  /// Total size of the files of its scans; for a scan that is a folder, of all files in it.
   std::uint64_t scan_bytes() const;
 };
 
-/// The subjects of a cohort, by label. `input` is
-/// - a BIDS folder: sub-LABEL, optionally with ses-LABEL in it. If a subject has sessions and also scans
-///   outside them, these form one more subject. A plan's scan NAME is the file of a subject that ends in
-///   _NAME before its extension, or the subject's only scan; label maps (_dseg, _mask, ...) are not counted
-///   as scans there;
-/// - a .csv, or a .tsv of tabs: a column participant_id (or subject), and one column per scan of the plan; a plan's
-///   only scan may have the column `scan`. Paths are relative to the table. For BIDS's participants.tsv, which has no
-///   columns of scans, the subjects are the folders beside it. Throws voxel::Error (Input) with path and reason: a
-///   path that is neither a folder nor a file; no subjects; a duplicate label or one with other characters; a missing
-///   column. A subject whose scans are unknown has `trouble` set.
+/// Finds the subjects of a cohort, sorted by label. `input` is one of:
+/// - A BIDS folder with folders sub-LABEL, which may contain ses-LABEL. Each session is a subject; scans
+///   outside of sessions form another one. A plan's scan NAME is the file that ends in _NAME before its
+///   extension, or else the subject's only scan. Label maps (_dseg, _mask, ...) do not count as scans.
+/// - A .csv, or a .tsv with tabs: a column participant_id (or subject), and a column for each scan of the
+///   plan. If the plan has one scan, its column may be called `scan`. Paths are relative to the table. For
+///   BIDS's participants.tsv, which has no columns of scans, the subjects are the folders beside it.
+/// Throws voxel::Error (Input), with path and reason, if the path is neither a folder nor a file, if there is
+/// no subject, if a label occurs twice or has other characters than letters, digits, _ and -, or if a column
+/// is missing. A subject whose scans cannot be found has `trouble` set.
 std::vector<Subject> find_subjects(const std::filesystem::path& input, const Plan& plan);
 
-/// Doubts about the whole cohort, one sentence each: subjects that share the path of a scan, and unused
-/// columns of a table of scans. None for BIDS's participants.tsv, whose columns describe people. Throws as
-/// find_subjects() does if the table cannot be read.
+/// Doubts about the cohort as a whole, one sentence each: subjects that share the file of a scan, and columns
+/// of a table of scans that no scan of the plan uses. Columns of BIDS's participants.tsv raise no doubt,
+/// because they describe people. Throws as find_subjects() does if the table cannot be read.
 std::vector<std::string> doubts_of_cohort(const std::filesystem::path& input, const Plan& plan,
                                           const std::vector<Subject>& subjects);
 
-/// A file that a step reads and that is not beside the plan: the file in the subject's folder that has this
-/// name, or a name that ends in "_" and this name. Empty if there is none or the subject has no folder.
-/// Throws voxel::Error (Input) if there are several.
+/// The subject's own file for a file that a step reads: in the subject's folder, a file of the same name, or
+/// one whose name ends in "_" and that name. Empty if there is none or the subject has no folder. Throws
+/// voxel::Error (Input) if there are several.
 std::filesystem::path file_of_subject(const Subject& subject, const std::filesystem::path& name);
 
-/// The subjects with one of these labels, with or without "sub-"; if no subject has exactly this label, all
-/// its sessions; all subjects if there are no labels. Throws voxel::Error (Input), with the nearest label, if
-/// one does not exist.
+/// The subjects with these labels, with or without "sub-". A label that no subject has chooses all sessions
+/// of the person with this label. Returns all subjects if there are no labels. Throws voxel::Error (Input),
+/// with the most similar label, if a label chooses no subject.
 std::vector<Subject> chosen_subjects(std::vector<Subject> subjects, const std::vector<std::string>& labels);
 
 }  // namespace octotomy::planner

@@ -8,9 +8,9 @@
 namespace octotomy::planner {
 namespace {
 
-constexpr std::size_t most_data_unit = 1 << 17;    ///< of data, as this side states it
-constexpr std::size_t most_negotiation = 1 << 16;  ///< of a request or its answer
-constexpr std::size_t most_command = 1 << 14;      ///< of a command set, which takes some 300 bytes
+constexpr std::size_t most_data_unit = 1 << 17;    ///< largest data unit that this side accepts
+constexpr std::size_t most_negotiation = 1 << 16;  ///< largest request for an association, or answer to one
+constexpr std::size_t most_command = 1 << 14;      ///< largest command set; a usual one has about 300 bytes
 constexpr const char* application_context = "1.2.840.10008.3.1.1.1";
 
 enum Unit { asks = 1, accepts_it = 2, rejects = 3, data = 4, releases = 5, is_released = 6, aborts = 7 };
@@ -61,21 +61,21 @@ std::string title_of(std::string_view field) {
   return last == std::string_view::npos ? "" : std::string(field.substr(first, last + 1 - first));
 }
 
-/// An identifier without its padding; empty if it is none (PS3.5, 9.1).
+/// A unique identifier without its padding. Empty if the bytes are no identifier (PS3.5, 9.1).
 std::string uid_of(std::string_view bytes) {
   while (!bytes.empty() && (bytes.back() == '\0' || bytes.back() == ' ')) bytes.remove_suffix(1);
   if (bytes.size() > 64 || bytes.find_first_not_of("0123456789.") != std::string_view::npos) return "";
   return std::string(bytes);
 }
 
-/// A name from a peer, for messages: at most 16 printable characters.
+/// A peer's name as messages show it: at most 16 characters, all printable.
 std::string printable(std::string text) {
   for (char& c : text)
     if (c < ' ' || c > '~') c = '?';
   return text.substr(0, 16);
 }
 
-/// Passes the items of a unit to `take` until they end; false if they are damaged.
+/// Passes each item of a unit to `take`. Returns false if an item is damaged or `take` returns false.
 bool each_item(std::string_view bytes, const std::function<bool(int kind, std::string_view value)>& take) {
   while (!bytes.empty()) {
     if (bytes.size() < 4) return false;
@@ -92,7 +92,7 @@ std::string user_information() {
                         item(0x52, "2.25.107031158870021870421842158015462014722") + item(0x55, "OCTOTOMY"));
 }
 
-/// The longest unit that the other side accepts, from its user information; 16 KB if it states none.
+/// The largest data unit that the other side accepts, from its user information; 16 KB if that states none.
 std::size_t most_of(std::string_view information) {
   std::size_t most = 16384;
   each_item(information, [&](int kind, std::string_view value) {
@@ -112,7 +112,7 @@ std::string uid_value(std::string uid) {
   return uid;
 }
 
-/// The command set (PS3.7, annex E), always with implicit VR.
+/// Encodes a command set (PS3.7, annex E), which always has implicit VR.
 std::string text_of(const DicomCommand& command) {
   const bool is_answer = (command.kind & 0x8000) != 0;
   std::string text;
@@ -127,7 +127,7 @@ std::string text_of(const DicomCommand& command) {
   return element(0x0000, little(text.size(), 4)) + text;
 }
 
-/// False if the bytes are no command set.
+/// Decodes a command set. Returns false if the bytes are none.
 bool read_command(std::string_view bytes, DicomCommand& command) {
   command = {};
   while (!bytes.empty()) {
@@ -201,7 +201,7 @@ void Association::abort() {
     connection_.set_deadline(std::chrono::seconds(1));
     connection_.write(unit(aborts, std::string(4, '\0')));
   } catch (const PeerError&) {
-    // The other side has already closed the connection.
+    // Aborting is not necessary: the other side has already closed the connection.
   }
 }
 

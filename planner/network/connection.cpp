@@ -20,7 +20,7 @@
 
 namespace octotomy::planner {
 
-/// A file descriptor that is closed at the end.
+/// Owns a file descriptor and closes it.
 class ConnectionSocket {
  public:
   explicit ConnectionSocket(int number = -1) : number_(number) {}
@@ -128,8 +128,8 @@ struct Connection::State {
     }
   }
 
-  /// Waits until the connection is ready for the operation that TLS needs next after `result`; throws for
-  /// errors.
+  /// Waits until the socket can be read or written, whichever TLS needs after an operation with this result.
+  /// Throws for other results.
   void wait_for_tls(int result) const {
     const int error = SSL_get_error(session.get(), result);
     if (error == SSL_ERROR_WANT_READ) return wait(POLLIN);

@@ -12,34 +12,35 @@
 
 namespace octotomy::planner {
 
-/// The other side does not answer, violates the protocol, exceeds a limit, or refuses.
+/// The other side does not answer, violates the protocol, exceeds a limit, or refuses a request.
 struct PeerError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// TLS 1.2 or later. A client verifies the server's certificate and host against `authorities`, PEM, or else the
-/// system's; a server shows `certificate` with `key` and, if `authorities` are given, accepts only clients that they
-/// signed.
+/// Files for TLS 1.2 or later, all PEM. A client checks the server's certificate and host name against
+/// `authorities`; without them, against those of the system. A server shows `certificate`, whose private key
+/// is `key`. If it has `authorities`, it accepts only clients whose certificates they have signed.
 struct TlsFiles {
   std::filesystem::path certificate = {}, key = {}, authorities = {};
 };
 
-/// A TCP connection, plain or by TLS. Every wait ends at the deadline.
+/// A TCP connection, plain or with TLS. Waiting for the other side ends at the deadline.
 class Connection {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Throws PeerError with host, port and reason.
+  /// Connects to a host. Throws PeerError with host, port and reason.
   Connection(const std::string& host, int port, const std::optional<TlsFiles>& tls,
              std::chrono::seconds timeout);
   Connection(Connection&&) noexcept;
   ~Connection();
 
-  /// Reads and writes whole blocks. Throw PeerError if the other side closes, or the deadline passes.
+  /// Reads or writes the whole block. Both throw PeerError if the other side closes the connection or the
+  /// deadline passes.
   void read(char* bytes, std::size_t count);
   void write(std::string_view bytes);
   void set_deadline(std::chrono::milliseconds from_now);
-  /// The other side's address, for messages.
+  /// The other side's address, as messages show it.
   const std::string& peer() const;
 
  private:
@@ -49,19 +50,22 @@ class Connection {
   std::unique_ptr<State> state_;
 };
 
-/// Accepts connections on a port; 0 is any free one.
+/// Accepts connections on a port; with port 0, on any free one.
 class Listener {
  public:
-  /// Throws std::runtime_error with address, port and reason, or the file of `tls` that cannot be read.
+  /// Listens on an address. Throws std::runtime_error with address, port and reason, or with the file of
+  /// `tls` that cannot be read.
   Listener(const std::string& address, int port, const std::optional<TlsFiles>& tls);
   Listener(const Listener&) = delete;
   Listener& operator=(const Listener&) = delete;
   ~Listener();
 
   int port() const;
-  /// The next connection, before its TLS handshake; none after `wait`. Throws PeerError.
+  /// Waits for the next connection. Its TLS handshake is still to be made by handshake(). None if no
+  /// connection arrives within `wait`. Throws PeerError.
   std::optional<Connection> accept(std::chrono::milliseconds wait);
-  /// The TLS handshake, if the listener has one. Throws PeerError. May be called by any thread.
+  /// Makes the TLS handshake of an accepted connection; does nothing without TLS. Throws PeerError. May be
+  /// called from any thread.
   void handshake(Connection& connection) const;
 
  private:

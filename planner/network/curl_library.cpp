@@ -9,7 +9,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// The name under which version 4 of the interface is installed; it has been stable since 2006.
+/// The file name of libcurl with version 4 of its binary interface, which has been stable since 2006.
 constexpr const char* file_name = "libcurl.so.4";
 
 [[noreturn]] void refuse_library(const std::string& what) {
@@ -23,7 +23,7 @@ void find(void* library, const char* name, Function& function) {
   if (function == nullptr) refuse_library(std::string("which lacks ") + name);
 }
 
-/// It is never unloaded, because its libraries register functions that run when the program ends.
+/// libcurl is never unloaded: libraries that it loads register functions that run when the program ends.
 CurlLibrary loaded() {
   void* const library = dlopen(file_name, RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) refuse_library(std::string("which cannot be loaded (") + dlerror() + ")");

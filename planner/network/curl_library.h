@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-// Without the header's macros, which check the types of arguments only in direct calls.
+// Disables macros of the header that check the types of arguments; they work only for direct calls.
 #define CURL_DISABLE_TYPECHECK
 #include <curl/curl.h>
 
 namespace octotomy::planner {
 
-/// The functions of libcurl that DICOMweb needs.
+/// Pointers to the functions of libcurl that DICOMweb needs.
 struct CurlLibrary {
   decltype(&curl_global_init) global_init;
   decltype(&curl_version_info) version_info;
@@ -21,9 +21,9 @@ struct CurlLibrary {
   decltype(&curl_slist_free_all) slist_free_all;
 };
 
-/// Loads and starts libcurl at the first call. The program does not link it, because it depends on about
-/// thirty libraries, and loading them would take a third of the program's starting time. Throws voxel::Error,
-/// Resource, if it is not installed or cannot start. May be called from several threads.
+/// Loads and initialises libcurl at the first call. The program is not linked with it, because loading its
+/// about thirty libraries would take a third of the program's start. Throws voxel::Error, Resource, if
+/// libcurl is not installed or cannot be initialised. May be called from several threads.
 const CurlLibrary& curl_library();
 
 }  // namespace octotomy::planner

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t most_answer = 16 << 20, most_reason = 1 << 16, most_header_lines = 1 << 18;
 
-/// One request. Exceptions of the callbacks end it and are thrown again.
+/// One HTTP request. An exception of a callback ends the request; run() rethrows it.
 class Request {
  public:
   Request(const WebArchive& archive, const std::string& path, const std::stop_token& stop)
@@ -57,7 +57,8 @@ class Request {
     headers_.reset(curl_.slist_append(headers_.release(), line.c_str()));
     set(CURLOPT_HTTPHEADER, headers_.get());
   }
-  /// Sets the request to a POST with a body of a known length.
+  /// Makes this a POST request with a body of `bytes` bytes. `body` writes the next bytes into a buffer and
+  /// returns their number.
   void post(std::uint64_t bytes, std::function<std::size_t(char*, std::size_t)> body) {
     body_ = std::move(body);
     set(CURLOPT_POST, 1L);
@@ -67,8 +68,8 @@ class Request {
     add_header("Expect:");
   }
 
-  /// Runs the request and passes the body to `answer` if the status is 200. Returns the status; reason()
-  /// returns the text of other answers.
+  /// Sends the request and returns the status of the answer. If that is 200, passes the answer's body to
+  /// `answer`; otherwise reason() returns its text.
   long run(const std::function<void(const std::string& type, std::string_view bytes)>& answer) {
     answer_ = &answer;
     const CURLcode code = curl_.easy_perform(handle_.get());
@@ -84,7 +85,7 @@ class Request {
     curl_.easy_getinfo(handle_.get(), CURLINFO_RESPONSE_CODE, &number);
     return number;
   }
-  /// The beginning of the text that the other side sends with a refusal, as one printable line.
+  /// The beginning of the text that came with another status than 200, as one line of printable characters.
   std::string reason() const {
     std::string text = reason_.substr(0, 200);
     for (char& c : text)
@@ -95,8 +96,8 @@ class Request {
  private:
   template <typename Value>
   void set(CURLoption option, Value value) {
-    // An older library may ignore an unknown option, even one on which the safety of requests depends. So
-    // such an option is an error.
+    // An option that an older libcurl does not support is an error, because the safety of the request may
+    // depend on it.
     if (const CURLcode code = curl_.easy_setopt(handle_.get(), option, value); code != CURLE_OK)
       throw voxel::Error(voxel::ErrorCode::Resource, "libcurl refuses option " + std::to_string(option) +
                                                          ": " + curl_.easy_strerror(code) +
@@ -120,7 +121,7 @@ class Request {
       return 0;
     }
   }
-  /// Counts the header lines, all of which libcurl keeps.
+  /// Limits the size of header lines, because libcurl stores all of them.
   static std::size_t take_header(char*, std::size_t, std::size_t count, void* self) {
     auto& request = *static_cast<Request*>(self);
     request.header_bytes_ += count;
@@ -161,7 +162,7 @@ class Request {
                   (reason.empty() ? "" : ": " + reason));
 }
 
-/// Joins a text, a file and a text into one body.
+/// The body of a request: a text, a file and a second text, one after the other.
 class FileBody {
  public:
   FileBody(std::string before, const fs::path& path, std::string after)
@@ -196,8 +197,8 @@ class FileBody {
 }  // namespace
 
 void store_by_web(const WebArchive& archive, const fs::path& path, const std::stop_token& stop) {
-  // A DICOM file contains this text only if somebody put it there, which would damage only that sender's own
-  // object.
+  // The text that separates the parts of a body. A DICOM file that contains it would be damaged on arrival.
+  // Only its sender could have put it there.
   const std::string boundary = "octotomy-4c7e1f0a9b2d4e58a1c36b7790de5f42";
   FileBody body("--" + boundary + "\r\nContent-Type: application/dicom\r\n\r\n", path,
                 "\r\n--" + boundary + "--\r\n");
@@ -210,7 +211,7 @@ void store_by_web(const WebArchive& archive, const fs::path& path, const std::st
     if (said.size() + bytes.size() > most_answer) throw PeerError(archive.url + ": its answer exceeds 16 MB");
     said.append(bytes);
   });
-  // A response with the tag 00081197 lists instances that were not stored, with the reason (PS3.18, I.2).
+  // The tag 00081197 lists instances that were not stored, with the reason (PS3.18, I.2).
   if (status != 200 || said.find("00081197") != std::string::npos)
     refuse(path.string() + ": not stored", status, status == 200 ? said.substr(0, 200) : request.reason());
 }

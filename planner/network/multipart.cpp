@@ -33,7 +33,7 @@ Multipart::Multipart(const std::string& type, ReceivedFiles& folder)
     : folder_(folder), boundary_(boundary_of(type)), held_("\r\n") {}
 
 void Multipart::add(std::string_view bytes) {
-  // Works on blocks, so that `held_` stays small.
+  // The body is processed in blocks, so that `held_` stays small.
   constexpr std::size_t block = 1 << 16;
   while (!bytes.empty()) {
     const std::string_view now = bytes.substr(0, block);
@@ -57,7 +57,7 @@ bool Multipart::step() {
         need_end(before);
       held_.erase(0, before);
       if (at == std::string::npos) return false;
-      // The next two bytes show whether another part follows.
+      // The two bytes after a boundary show whether another part follows.
       if (held_.size() < boundary_.size() + 2) return false;
       if (part_) part_->finish("", "");
       part_.reset();

@@ -9,22 +9,23 @@
 
 namespace octotomy::planner {
 
-/// Splits a multipart body (RFC 2046, 5.1) into its parts as it arrives and writes each part into a folder.
-/// Holds at most 64 KB of the body, a part's header and a boundary in memory.
+/// Splits a multipart body (RFC 2046, 5.1) into its parts while it arrives, and writes each part into a
+/// folder. Stores at most 64 KB of the body, the header of a part and a boundary in memory.
 class Multipart {
  public:
-  /// `type`: the answer's Content-Type. Throws PeerError if it names no boundary.
+  /// `type` is the Content-Type of the answer. Throws PeerError if it is not multipart/related or names no
+  /// boundary.
   Multipart(const std::string& type, ReceivedFiles& folder);
-  /// Throws PeerError if the body is damaged or a part is no DICOM object.
+  /// Adds the next bytes of the body. Throws PeerError if the body is damaged or a part is no DICOM object.
   void add(std::string_view bytes);
-  /// Throws PeerError unless the body has ended.
+  /// To be called after the last bytes. Throws PeerError if the body is not complete.
   void finish() const;
 
  private:
   enum class Place { Before, Header, Part, After };
-  /// Consumes the next piece of `held_`; false if more bytes are needed.
+  /// Processes the next piece of `held_`. Returns false if it needs more bytes.
   bool step();
-  /// Throws PeerError if too many bytes belong to no part.
+  /// Counts `more` bytes outside of parts. Throws PeerError if there are too many.
   void need_end(std::size_t more);
 
   ReceivedFiles& folder_;

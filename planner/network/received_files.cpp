@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t head_bytes = 1 << 20;  ///< checked when an object is complete
+constexpr std::size_t head_bytes = 1 << 20;  ///< checked beginning of a complete object
 
 [[noreturn]] void refuse(const fs::path& path, int error) {
   throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(error));
@@ -99,7 +99,7 @@ ReceivedFile ReceivedFiles::Part::finish(const std::string& class_uid, const std
     made.class_uid = file.text(0x00080016);
     made.instance_uid = file.text(0x00080018);
   } catch (const voxel::DicomFile::NeedsMore&) {
-    // The attributes extend beyond the checked bytes, so the identifiers are those that the peer announced.
+    // The attributes extend beyond the checked bytes. The identifiers that the peer announced are used.
     made.class_uid = class_uid;
     made.instance_uid = instance_uid;
   } catch (const voxel::DicomFile::Deflated&) {

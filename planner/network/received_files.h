@@ -12,35 +12,36 @@
 namespace octotomy::planner {
 
 struct ReceiveLimits {
-  std::uint64_t object_bytes = std::uint64_t{4} << 30;  ///< most bytes of an object
-  std::uint64_t total_bytes = std::uint64_t{64} << 30;  ///< most bytes of all objects
+  std::uint64_t object_bytes = std::uint64_t{4} << 30;  ///< largest size of an object
+  std::uint64_t total_bytes = std::uint64_t{64} << 30;  ///< largest size of all objects together
 };
 
-/// An object that was received whole.
+/// An object that was received completely.
 struct ReceivedFile {
-  std::string name;  ///< SHA-256 of its bytes, and .dcm
+  std::string name;  ///< the SHA-256 of its bytes, followed by ".dcm"
   std::uint64_t bytes = 0;
   std::string class_uid, instance_uid;
 };
 
-/// The folder of received objects. Names are computed from the content alone, so no statement of a peer can
-/// choose a path. May be used by several threads.
+/// The folder into which objects are received. A file's name depends only on the object's bytes, so that no
+/// peer can choose a path. May be used by several threads.
 class ReceivedFiles {
  public:
-  /// Makes the folder. Throws std::runtime_error with path and reason.
+  /// Creates the folder. Throws std::runtime_error with path and reason.
   ReceivedFiles(std::filesystem::path folder, const ReceiveLimits& limits);
 
-  /// An object that is being received, in a file that is removed unless finish() succeeds.
+  /// An object that is being received. Its file is removed unless finish() has succeeded.
   class Part {
    public:
     explicit Part(ReceivedFiles& owner);
     Part(const Part&) = delete;
     Part& operator=(const Part&) = delete;
     ~Part();
-    /// Throws PeerError beyond the limits, std::runtime_error if the disk is full.
+    /// Appends bytes. Throws PeerError if a limit is exceeded, and std::runtime_error if the disk is full.
     void write(std::string_view bytes);
-    /// Checks that the bytes are a DICOM file, that its attributes end within the file, and that it has the
-    /// given class and instance, unless these are empty; renames it into place. Throws PeerError.
+    /// Checks the object: it is a DICOM file, its attributes end within the file, and it has the given class
+    /// and instance, unless these are empty. Then moves the file to its name. Throws PeerError if a check
+    /// fails.
     ReceivedFile finish(const std::string& class_uid, const std::string& instance_uid);
 
    private:

@@ -85,8 +85,8 @@ void send_file(Association& association, const OutgoingFile& file, std::uint16_t
     throw PeerError(stated() + " and did not store it");
 }
 
-/// The transfer syntaxes that are stored: little endian, and encapsulated pixels (PS3.5, annex A). Deflated
-/// data sets are not stored, nor big endian ones, which are retired.
+/// Whether the receiver accepts a transfer syntax: little endian, or encapsulated pixels (PS3.5, annex A). It
+/// refuses deflated data sets, and big endian ones, which are retired.
 bool is_taken(const std::string& syntax) {
   return syntax == implicit_little_endian || syntax == explicit_little_endian ||
          syntax == "1.2.840.10008.1.2.5" || syntax.starts_with("1.2.840.10008.1.2.4.");
@@ -96,8 +96,8 @@ bool is_stored(const std::string& class_uid) {
   return class_uid.starts_with("1.2.840.10008.5.1.4.");
 }
 
-/// The bytes of a file before its data set. They contain only what the association agreed on, because the
-/// peer sends no meta header.
+/// The beginning of a received object's file, before its data set. The peer does not send it, so it states
+/// what the association has agreed on.
 std::string file_head(const std::string& class_uid, const std::string& instance_uid,
                       const std::string& syntax) {
   voxel::DicomAttributes meta;
@@ -115,7 +115,7 @@ std::string file_head(const std::string& class_uid, const std::string& instance_
   return std::string(128, '\0') + "DICM" + length.str() + text.str();
 }
 
-/// One association of the receiver.
+/// Serves one association of the receiver.
 class Receiver {
  public:
   Receiver(ReceivedFiles& folder, const ReceiveOptions& options, std::atomic<std::size_t>& count)
@@ -223,7 +223,7 @@ std::vector<std::string> store(const StorePeer& peer, const std::vector<Outgoing
                                const std::stop_token& stop) {
   std::vector<std::string> warnings;
   for (std::size_t first = 0; first < files.size();) {
-    // Adds files until one association has no context left for a further kind.
+    // Adds files as long as one association has enough contexts for their kinds.
     std::set<std::pair<std::string, std::string>> kinds;
     std::size_t last = first;
     while (last < files.size() &&
@@ -273,7 +273,7 @@ void receive_by_store(ReceivedFiles& folder, const ReceiveOptions& options, cons
     if (served.size() >= static_cast<std::size_t>(options.associations)) {
       refused(next->peer() + ": refused for now, because " + std::to_string(served.size()) +
               " associations are open");
-      // Before the TLS handshake no rejection can be sent.
+      // With TLS, a rejection could be sent only after the handshake, so the connection is just closed.
       if (!options.tls) Association::refuse_for_now(std::move(*next));
       continue;
     }

@@ -14,7 +14,7 @@
 
 namespace octotomy::planner {
 
-/// The archive's address and names, for C-ECHO and C-STORE.
+/// The host, port and titles of an archive, for C-ECHO and C-STORE.
 struct StorePeer {
   std::string host;
   int port = 104;
@@ -23,20 +23,20 @@ struct StorePeer {
   std::chrono::seconds timeout{30};
 };
 
-/// A DICOM file to send: identified by its meta header (PS3.10, 7.1).
+/// A DICOM file to be sent, with the identifiers of its meta header (PS3.10, 7.1).
 struct OutgoingFile {
   std::filesystem::path path;
   std::string class_uid, instance_uid, syntax;
-  std::uint64_t data_at = 0, bytes = 0;  ///< where its data set begins, and the file's size
+  std::uint64_t data_at = 0, bytes = 0;  ///< offset of the data set, and size of the file
 };
 /// Reads a file's meta header. Throws std::runtime_error with the path.
 OutgoingFile outgoing_file(const std::filesystem::path& path);
 
-/// Checks that the other side answers (C-ECHO). Throws PeerError.
+/// Checks that an archive answers (C-ECHO). Throws PeerError if it does not.
 void echo(const StorePeer& peer);
 
-/// Sends files by C-STORE, with their data sets unchanged. Returns warnings that the other side stated.
-/// Throws PeerError with the file if it is refused, and voxel::Stopped.
+/// Sends files by C-STORE; data sets are not changed. Returns the warnings of the other side. Throws
+/// PeerError, with the file, if the other side refuses it, and voxel::Stopped.
 std::vector<std::string> store(const StorePeer& peer, const std::vector<OutgoingFile>& files,
                                const std::stop_token& stop = {});
 
@@ -45,17 +45,18 @@ struct ReceiveOptions {
   int port = 11112;
   std::string title = "OCTOTOMY";  ///< only associations with this title are accepted; empty: any title
   std::optional<TlsFiles> tls = std::nullopt;
-  std::chrono::milliseconds patience{30000};  ///< for each unit of an association
-  int associations = 8;                       ///< largest number at a time; others are rejected as temporary
-  /// Ends after this number of objects. None: runs until it is stopped.
+  std::chrono::milliseconds patience{30000};  ///< time limit for each data unit
+  int associations = 8;                       ///< largest number at a time; others are rejected
+  /// Number of objects after which receive_by_store() returns. None: it runs until it is stopped.
   std::optional<std::size_t> objects = std::nullopt;
   std::function<void(int port)> listening = {};
-  /// called with a description of a peer's fault; one call at a time
+  /// called with a description when a peer makes an error; calls do not overlap
   std::function<void(const std::string&)> refused = {};
 };
 
-/// Receives objects by C-STORE, and answers C-ECHO, until it is stopped. An object is acknowledged when it is in the
-/// folder. Memory: two units for each association, which peers cannot increase. Throws as Listener does.
+/// Receives objects by C-STORE and answers C-ECHO until it is stopped. Acknowledges an object when its file
+/// is in the folder. Memory: two data units for each association, whatever peers send. Throws as Listener
+/// does.
 void receive_by_store(ReceivedFiles& folder, const ReceiveOptions& options, const std::stop_token& stop);
 
 }  // namespace octotomy::planner

@@ -13,28 +13,28 @@ struct BackgroundTasks::Tasks {
 
   std::stop_source stop;
   std::stop_callback<std::function<void()>> with;
-  std::deque<tbb::task_group> groups;  ///< one per task, so that each can be awaited separately
+  std::deque<tbb::task_group> groups;  ///< a group for each task, so that each task can be awaited separately
 };
 
 BackgroundTasks::BackgroundTasks(const std::stop_token& stop) : tasks_(std::make_unique<Tasks>(stop)) {}
 
 BackgroundTasks::~BackgroundTasks() {
   tasks_->stop.request_stop();
-  // No group is cancelled: TBB would skip parts of loops within a task, and the task would continue with
-  // incomplete results.
+  // The tasks stop by their token. Cancelling a group would make TBB skip parts of loops within a task, which
+  // would then continue with incomplete results.
   for (tbb::task_group& group : tasks_->groups) {
     try {
       group.wait();
     } catch (...) {
-      // Ignores the exception, because nobody waits for the task any more.
+      // The exception is ignored, because no caller waits for the task any more.
     }
   }
 }
 
 void BackgroundTasks::begin(std::function<void(const std::stop_token&)> task) {
   tasks_->groups.emplace_back().run([task = std::move(task), stop = tasks_->stop.get_token()] {
-    // Isolated, so that a thread that waits within a task starts no other task, which would have to end
-    // first.
+    // Isolated: otherwise a thread that waits within this task could start another task, which would have to
+    // end first.
     tbb::this_task_arena::isolate([&] { task(stop); });
   });
 }

@@ -8,22 +8,22 @@
 
 namespace octotomy::planner {
 
-/// Background tasks on idle threads. With one thread a task runs inside wait(). The destructor stops the
-/// tasks and waits for them. Only one thread may call the members at a time.
+/// Background tasks on idle threads. With one thread, a task runs inside wait(). The destructor requests the
+/// tasks to stop and waits for them. Members may be called by only one thread at a time.
 class BackgroundTasks {
  public:
-  /// `stop` also stops the tasks.
+  /// A stop that is requested by `stop` also stops the tasks.
   explicit BackgroundTasks(const std::stop_token& stop);
   ~BackgroundTasks();
   BackgroundTasks(const BackgroundTasks&) = delete;
   BackgroundTasks& operator=(const BackgroundTasks&) = delete;
 
-  /// Starts a task, which must check the token passed to it. Tasks are numbered from 0 and started in order.
-  /// Precondition: not called within without_tasks().
+  /// Starts a task. The task must check the token that it receives. Tasks are numbered from 0 in the order of
+  /// the calls, in which they also start. Must not be called within without_tasks().
   void begin(std::function<void(const std::stop_token&)> task);
-  /// Waits for a task and may run others meanwhile. Rethrows the task's exception.
+  /// Waits for the task with this number. May run other tasks meanwhile. Rethrows the task's exception.
   void wait(std::size_t task);
-  /// Runs work of the caller. Its parallel loops do not run background tasks while they wait.
+  /// Runs work so that its parallel loops start no background task while they wait.
   void without_tasks(const std::function<void()>& work) const;
 
  private:

@@ -18,8 +18,8 @@
 namespace octotomy::planner {
 namespace {
 
-/// The parts of an object from a scan that no image measured. For an object made from one with such parts, a note of
-/// this.
+/// Warnings about parts of an object that lie in gaps between images of its scans. If there are none,
+/// warnings that an object from which it was made has such parts.
 std::vector<std::string> interpolated_parts(const MadeOf& from, const Object& object) {
   if (!object.voxel.measures.extents) return {};
   const voxel::Box& box = *object.voxel.measures.extents;
@@ -47,8 +47,8 @@ std::vector<std::string> interpolated_parts(const MadeOf& from, const Object& ob
   return parts;
 }
 
-/// The finding of a scan's audit that samples were not finite numbers, in this scan or in one from which it
-/// was made.
+/// The audit's finding that samples were not finite numbers, in this scan or in the scan from which it was
+/// made. Null if there is none.
 const voxel::Finding* unmeasured_finding(const std::vector<voxel::Finding>& audit) {
   const auto found = std::find_if(audit.begin(), audit.end(), [](const voxel::Finding& finding) {
     return finding.check == "finite" && finding.verdict != voxel::Verdict::Pass;
@@ -56,7 +56,8 @@ const voxel::Finding* unmeasured_finding(const std::vector<voxel::Finding>& audi
   return found == audit.end() ? nullptr : &*found;
 }
 
-/// Readers turn samples that are not finite into padding; scans in memory may still contain them.
+/// Whether a sample was not measured. Readers replace samples that are not finite by padding, but a scan that
+/// a caller made in memory may contain them.
 bool is_unmeasured(const voxel::Scene& scene, double sample) {
   return !std::isfinite(sample) || (scene.padding && sample == *scene.padding);
 }
@@ -71,12 +72,13 @@ std::uint64_t unmeasured_samples(const voxel::Scene& scene) {
       scene.samples);
 }
 
-/// The number of unmeasured samples that lie between samples of a window along an axis, within the object's box.
+/// The number of unmeasured samples within the object's box that have samples of a window on both sides along
+/// an axis.
 std::uint64_t enclosed_samples(const voxel::Scene& scene, const Shown& window, const Object& object) {
   if (!object.voxel.measures.extents) return 0;
   const glm::ivec3 dims = scene.lattice.dims;
   const voxel::Box& box = *object.voxel.measures.extents;
-  // The mesh reaches less than a sample beyond the voxels.
+  // The object's mesh extends beyond its voxels by less than a sample.
   const double beyond_mm = glm::length(scene.lattice.spacing_mm());
   const auto is_within = [&](std::size_t at) {
     const auto row = static_cast<std::size_t>(dims.x), slice = row * static_cast<std::size_t>(dims.y);
@@ -126,8 +128,8 @@ std::uint64_t enclosed_samples(const voxel::Scene& scene, const Shown& window, c
   return count;
 }
 
-/// Whether a scan is one that 'scan_of' made, or was made of such a scan. Its padding includes the holes that a
-/// motion left, where no tissue is missing: the plan states nothing there.
+/// Whether a scan was made by 'scan_of', or from such a scan. Its padding may be holes that a motion left
+/// behind, where the plan states no tissue, so no measured tissue is missing.
 bool is_operated(const std::vector<ScanRecord>& records, std::string name) {
   for (;;) {
     const auto record = std::find_if(records.begin(), records.end(),
@@ -138,8 +140,8 @@ bool is_operated(const std::vector<ScanRecord>& records, std::string name) {
   }
 }
 
-/// A share of an object's volume. More padding within the object makes its numbers wrong. Less padding may be
-/// dark samples of an MR that happen to have the padding's value, 0.
+/// Share of an object's volume. Enclosed padding with a larger share makes the object's numbers wrong. A
+/// smaller share may be dark samples of an MR whose value happens to be that of the padding, 0.
 constexpr double most_missing_share = 0.005;
 
 void add_unmeasured(const MadeOf& from, Object& made) {
@@ -157,7 +159,7 @@ void add_unmeasured(const MadeOf& from, Object& made) {
     std::uint64_t enclosed = 0;
     for (const Shown& window : made.bound.windows)
       if (window.scan == name) enclosed = std::max(enclosed, enclosed_samples(scene, window, made));
-    // Padding that a scanner states surrounds the measured region, so it is no caveat unless enclosed.
+    // Scanners surround the measured region by padding, so only padding that an object encloses is a caveat.
     if (!are_nonfinite && enclosed == 0) continue;
     const bool left_by_motion = !are_nonfinite && is_operated(from.records, name);
     std::string reason = (count == 0 ? "Some" : std::to_string(count)) + " samples of '" + name + "' are " +
@@ -181,8 +183,8 @@ void add_unmeasured(const MadeOf& from, Object& made) {
   }
 }
 
-/// An upper bound of the tissue that padding hides within an object, from all windows that it was made of. None if
-/// the samples of a window are not known.
+/// An upper bound in mm³ of the tissue that is missing in an object because of padding, over all windows from
+/// which it was made. None if the samples of a window are not stored.
 std::optional<double> missing_mm3(const Object& object) {
   double missing = 0.0;
   for (const Shown& window : object.bound.windows) {
@@ -194,12 +196,12 @@ std::optional<double> missing_mm3(const Object& object) {
 }
 
 void add_inherited(const MadeOf& from, Object& made) {
-  std::optional<std::optional<double>> own_missing_mm3;  // read where a caveat needs it
+  std::optional<std::optional<double>> own_missing_mm3;  // computed only if a caveat needs it
   for (const std::string& name : objects_used(from.action)) {
     const Object& operand = from.objects.at(name);
     for (const Caveat& caveat : operand.caveats) {
-      // A motion starts from the whole object, including its part outside the universe, unless that part was
-      // cut off permanently.
+      // A motion moves the whole object, including its part outside of the universe. If that part was cut off
+      // permanently, the caveat remains.
       if (caveat.is_of_place && made.image && !operand.ends_with_universe) continue;
       const std::string reason =
           caveat.is_inherited ? caveat.reason : "made of '" + name + "': " + caveat.reason;
@@ -208,7 +210,7 @@ void add_inherited(const MadeOf& from, Object& made) {
       if (is_known || (made.is_interpolated && operand.is_interpolated)) continue;
       std::optional<double> missing = caveat.missing_mm3;
       if (missing) {
-        // A piece may lie beside the padding that its object encloses.
+        // An object that is a part of its operand may lie beside the padding that the operand encloses.
         if (!own_missing_mm3) own_missing_mm3 = missing_mm3(made);
         missing = std::min(*missing, own_missing_mm3->value_or(*missing));
       }
@@ -223,7 +225,8 @@ std::string outside_text(double outside_mm3, double whole_mm3, const voxel::Box&
          plain(universe_mm) + ") and are left out of every number: move less, or use a scan with more room";
 }
 
-/// The counterpart of add_part_outside() for a moved object without a mesh: reports the voxels that it lost.
+/// Does what add_part_outside() does for a moved object that has no mesh: reports the volume of the voxels
+/// that the motion lost.
 void add_voxels_outside(const Objects& objects, Object& made) {
   if (made.bound.spacing_mm == glm::dvec3(0.0) || made.is_tool || made.mesh.whole) return;
   if (!made.image || made.image->is_whole) return;
@@ -237,15 +240,15 @@ void add_voxels_outside(const Objects& objects, Object& made) {
   made.caveats.push_back({voxel::Verdict::Fail, std::move(text), false, true});
 }
 
-/// Reported only for objects made directly from a scan; objects made from these have the same border.
+/// Adds the finding that a scan's border cuts the object off. Later objects are cut off at the same place, so
+/// only the first one has the finding.
 void add_border_finding(const MadeOf& from, Object& made) {
   if (made.is_tool) return;
   made.border_finding = made.image ? still_of(from.objects, made).border_finding : border_finding_of(made);
   if (made.border_finding && !scans_used(from.action).empty()) made.findings.push_back(*made.border_finding);
 }
 
-/// Whether an object is bounded by itself. A complement or an unbounded mask ends only at the universe's
-/// border.
+/// Whether an object is finite. A complement and a mask without an end extend beyond the universe.
 bool ends_by_itself(const Object& object) {
   constexpr double endless_mm = 1e12;
   const voxel::Box& reach = object.witness.lines().box_mm;
@@ -259,7 +262,7 @@ void add_caveats(const MadeOf& from, Object& made) {
   const std::vector<std::string> interpolated = interpolated_parts(from, made);
   made.is_interpolated = !interpolated.empty();
   made.findings.insert(made.findings.end(), interpolated.begin(), interpolated.end());
-  // Both kernels use the same interpolated samples, so these cannot show as a disagreement.
+  // Both kernels read the same interpolated samples, so errors in these do not show as a disagreement.
   for (const std::string& part : interpolated) made.caveats.push_back({voxel::Verdict::Warn, part, false});
   add_unmeasured(from, made);
   add_border_finding(from, made);
@@ -301,7 +304,7 @@ void add_kept_parts(std::vector<verify::OpenPart> kept, const std::vector<verify
       (kept.size() == 1 ? "is connected by a neck" : "are connected by necks") + " thinner than " +
       verify::thin_neck + ", the largest near " + voxel::rounded(kept.front().bridge.at_mm) +
       ": both kernels keep the parts that only one of them connects; "
-      "'keep_bridges_mm' and 'cut_bridges_mm' of the step decide it";
+      "'keep_bridges_mm' and 'cut_bridges_mm' of the step decide on such parts";
   made.findings.push_back(text);
   made.shared_values.push_back(
       made.kind + ": the choice of parts beyond thin necks, which stay if one kernel connects them");
@@ -311,14 +314,14 @@ void add_kept_parts(std::vector<verify::OpenPart> kept, const std::vector<verify
 }
 
 void add_part_outside(const voxel::Box& universe_mm, Object& made) {
-  // A mask made of regions alone has no end of its own. An imported mesh has.
+  // A mask that consists of regions has no end and normally leaves the universe. An imported mesh does not.
   if (made.is_tool || (made.bound.spacing_mm == glm::dvec3(0.0) && !ends_by_itself(made))) return;
   made.findings.push_back(
       "a part lies outside of the universe (" + plain(universe_mm) +
       ") and is left out of every number and picture: move less, or use a scan with more room");
   const double whole_mm3 = made.mesh.whole->measures().volume_mm3;
   const double lost_mm3 = whole_mm3 - (made.mesh.within ? made.mesh.within->measures().volume_mm3 : 0.0);
-  constexpr double rounding = 1e-9;  // tolerance for touching the universe's border
+  constexpr double rounding = 1e-9;  // share of the volume that rounding may cut off at the universe's border
   if (!ends_by_itself(made) || !(lost_mm3 > rounding * std::abs(whole_mm3))) return;
   made.caveats.push_back({voxel::Verdict::Fail, outside_text(lost_mm3, whole_mm3, universe_mm), false, true});
 }

@@ -9,41 +9,41 @@
 #include "verify/certificate/necks.h"
 
 // Reasons why an object's certificate cannot be a PASS even if both kernels agree: samples that were not
-// measured, parts that left the universe, and caveats of the objects from which it was made.
+// measured, parts outside of the universe, and caveats of the objects from which it was made.
 namespace octotomy::planner {
 
-/// The inputs from which an object was made.
+/// The inputs of an object: its action, and the objects and scans that the action may use.
 struct MadeOf {
   const Action& action;
   const Objects& objects;                  ///< all earlier objects
-  const Scans& scan;                       ///< access to the scans that the action uses
-  const std::vector<ScanRecord>& records;  ///< records of all scans so far
+  const Scans& scan;                       ///< returns the scan of a name, for those that the action uses
+  const std::vector<ScanRecord>& records;  ///< records of all scans that were read or made so far
 };
 
-/// Adds caveats and findings to an object: gaps between images that it reaches into; samples of its scans
-/// that were not finite numbers; for an object with voxels only, the part that a motion moved out of the
-/// universe; and the caveats of the objects from which it was made. A FAIL if samples that are not finite lie
-/// between samples of the object's own windows, because a part is missing there, or if a part lies outside;
-/// the operands' caveats are a WARN. A moved object does not inherit that a part of its operand lies outside,
-/// because it has a position of its own. If the scan's border cuts the object off, adds a finding.
-/// Precondition: both kernels have answered and the object's bound is set. Cost: one pass over a scan that
-/// has such samples.
+/// Adds caveats and findings to an object. A FAIL: samples that are not finite, or more than a small share of
+/// padding, lie between samples of the object's windows, so that a part is missing; or a part of a moved
+/// object lies outside of the universe and it has no mesh (for others see add_part_outside()). A WARN: the
+/// object extends into gaps between images; its scans have other samples that are not finite, or other
+/// padding that the object encloses; an object from which it was made has a caveat. A moved object does not
+/// inherit that a part of its operand lies outside of the universe, because it has another position. Also
+/// adds a finding if the scan's border cuts the object off. Precondition: both kernels have answered, and the
+/// object's bound is set. Cost: one pass over each scan that has samples that are not finite.
 void add_caveats(const MadeOf& from, Object& made);
 
-/// Copies, into the audit of a scan made from others, their findings on samples that were not finite numbers,
-/// unless it has such a finding.
+/// Copies the finding on samples that are not finite from the audits of the scans from which a scan was made
+/// to the audit of that scan, unless it has such a finding itself.
 void keep_unmeasured(const Action& action, const std::vector<ScanRecord>& records, ScanRecord& made);
 
-/// Adds a finding with the parts that stay in an object because only one kernel joins them by a thin neck,
-/// except for those in `open`; a WARN if they exceed a twentieth of the object. Also lists their positions in
-/// the details.
+/// Adds a finding on parts that stay in an object because one kernel connects them by a thin neck, and the
+/// places of the necks to its details. Parts in `open` are left out. Adds a WARN if the parts have more than
+/// a twentieth of the object's volume.
 void add_kept_parts(std::vector<verify::OpenPart> kept, const std::vector<verify::OpenPart>& open,
                     Object& made);
 
-/// Adds a finding, and a FAIL with the volume, if a part of an object lies outside the universe, a box in LPS
-/// millimetres. Tools and objects made only of masks are exempt, because they normally end there.
-/// Preconditions: the mesh's `whole` reaches out of the box, and `within` is the part inside, if the mesh
-/// kernel could cut it.
+/// If a part of an object lies outside of the universe, a box in LPS millimetres, adds a finding, and a FAIL
+/// with the part's volume. Leaves out tools and objects of masks alone, because these normally extend beyond
+/// the universe. Preconditions: the mesh `whole` extends beyond the box, and `within` is its part inside,
+/// unless the mesh kernel could not cut it.
 void add_part_outside(const voxel::Box& universe_mm, Object& made);
 
 }  // namespace octotomy::planner

@@ -11,7 +11,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// The objects and made scans that a step uses, by their steps.
+/// Ids of the steps that make the objects and scans that a step uses.
 std::vector<std::string> inputs_of(const Step& step) {
   std::vector<std::string> inputs = objects_used(step.action);
   const std::vector<std::string> scans = scans_used(step.action);
@@ -23,7 +23,7 @@ Json numbers(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
 }
 
-/// The files that the fields of an operation, and of the records in it, name.
+/// Adds the files that fields name, including fields of nested records.
 void add_files(const std::vector<Field>& fields, void* owner, std::vector<std::filesystem::path>& files) {
   for (const Field& field : fields) {
     const Slot slot = field.slot(owner);
@@ -50,7 +50,7 @@ std::set<std::string> needed_for(const Plan& plan, const std::vector<std::string
   for (const Step& step : plan.steps) known.insert(step.id);
   for (const std::string& id : ids)
     if (!known.contains(id)) throw voxel::InvalidInput("the plan has no step called '" + id + "'");
-  // Steps use only earlier ones, so one pass from the last to the first finds all.
+  // A step uses only earlier steps, so one pass backwards finds all dependences.
   for (auto step = plan.steps.rbegin(); step != plan.steps.rend(); ++step)
     if (needed.contains(step->id))
       for (const std::string& input : inputs_of(*step))

@@ -29,7 +29,7 @@ void compare(const Json& from, const Json& to, const std::string& place, std::ve
     compare(from[i], to[i], place + "[" + std::to_string(i) + "]", changes);
 }
 
-/// The plan's document without its steps.
+/// The plan's JSON without its steps.
 Json document_of(const Plan& plan) {
   Json document = Json::parse(plan.text);
   document.erase("steps");
@@ -56,7 +56,7 @@ StepsById steps_by_id(const Plan& plan) {
   return steps;
 }
 
-/// For each step that both plans have: the previous such step; "" before the first.
+/// For each step that the other plan also has, the last such step before it; empty for the first.
 std::map<std::string, std::string> steps_before(const Plan& plan, const StepsById& other) {
   std::map<std::string, std::string> before;
   std::string last;

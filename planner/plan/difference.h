@@ -9,7 +9,7 @@
 
 namespace octotomy::planner {
 
-/// A value in which two plans differ. It is null if a plan does not have it.
+/// A value that differs between two plans: a field, with its value in both. Null if a plan does not state it.
 struct FieldChange {
   std::string field;  ///< its path: "rotate, degrees", "regions[0], view"
   nlohmann::ordered_json from, to;
@@ -19,13 +19,12 @@ struct StepChange {
   std::vector<FieldChange> fields;
 };
 
-/// The differences between two plans. A stated default and an omitted one count as different.
+/// The differences between two plans. A value that states the default differs from an omitted one.
 struct PlanDifference {
-  std::vector<FieldChange> document;  ///< changes of name, scans, universe
+  std::vector<FieldChange> document;  ///< differences in name, scans and universe
   std::vector<std::string> added, removed;
   std::vector<StepChange> changed;
-  std::vector<std::string> reordered;  ///< steps of both plans that follow a different common step than
-                                       ///< before
+  std::vector<std::string> reordered;  ///< ids of common steps that follow another common step
 
   bool is_empty() const {
     return document.empty() && added.empty() && removed.empty() && changed.empty() && reordered.empty();
@@ -34,7 +33,8 @@ struct PlanDifference {
 PlanDifference difference(const Plan& from, const Plan& to);
 
 nlohmann::ordered_json to_json(const PlanDifference& difference);
-/// A line for each: "+ step 'overlap'", "~ step 'advanced', translate_mm: [0,-6,2] -> [0,-7,2]".
+/// The differences as text, one per line, such as "+ step 'overlap'" or "~ step 'advanced', translate_mm:
+/// [0,-6,2] -> [0,-7,2]".
 std::string text_of(const PlanDifference& difference);
 
 }  // namespace octotomy::planner

@@ -52,7 +52,7 @@ brep::Prism prism_of(const voxel::Box& box) {
   return {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {{{a.x, a.z}, {b.x, a.z}, {b.x, b.z}, {a.x, b.z}}}, a.y, b.y};
 }
 
-/// Samples beyond the scan get the scan's lowest value: air.
+/// The value of samples outside of a scan: the scan's lowest value, which is air.
 std::int16_t background_of(const voxel::Scene& scene) {
   return static_cast<std::int16_t>(std::clamp(std::floor(voxel::range(scene).low), -32768.0, -1024.0));
 }
@@ -102,7 +102,7 @@ class Evaluator {
         background_.without_tasks([&] {
           if (!take_cached(step)) makes == Makes::Scan ? make_scan(step) : make(step);
         });
-        // Not within without_tasks(), whose loops could run the task.
+        // Started outside of without_tasks(), because a parallel loop within it could run the new task.
         if (begun_ < uncertified_.size() && !prepares_files())
           background_.begin(uncertified_[begun_++].certify);
       });
@@ -131,11 +131,11 @@ class Evaluator {
     if (options_.progress) options_.progress(doing, fraction);
   }
 
-  /// The plan's scans that steps use, or all if they are to be stored. The scan of the first step comes
-  /// first, because it determines the universe. Scans made by steps are included.
+  /// The names of the plan's scans to read: those that wanted steps use, or all with `keep_scans`. The scan
+  /// of the plan's first step, which determines the universe, is always included.
   std::vector<std::string> scans_in_use() {
     std::vector<std::string> names;
-    std::string first;  // first scan of all steps, wanted or not
+    std::string first;  // the first scan that any step uses, wanted or not
     for (const Step& step : plan_.steps)
       for (const std::string& scan : scans_used(step.action)) {
         if (first.empty() && plan_.scans.contains(scan)) first = scan;
@@ -189,9 +189,9 @@ class Evaluator {
     check_identities();
   }
 
-  /// Adds to the scans' audits whether they are of one patient. A label map is compared with the scans on
-  /// which it may lie, and refused if it differs from all. Another scan is only compared with the first one,
-  /// because plans may use donors and later scans.
+  /// Compares the patients of the scans and adds differences to their audits. A label map is compared with
+  /// every scan and refused if it differs from all. Another scan is compared only with the first one and
+  /// never refused, because plans may use scans of donors and later scans.
   void check_identities() {
     for (ScanRecord& laid : result_.scans) {
       std::erase_if(laid.audit, [](const voxel::Finding& finding) { return finding.check == "identity"; });
@@ -218,8 +218,8 @@ class Evaluator {
     }
   }
 
-  /// The boxes of all meshes that steps import and of all tiled contours, wanted or not, so that the universe is
-  /// always the same.
+  /// The boxes of all imported meshes and tiled contours of the plan, even of steps that are not wanted, so
+  /// that the universe does not depend on the wanted steps.
   std::vector<voxel::Box> boxes_of_steps() {
     const Stopwatch watch(result_.timings, "read");
     std::vector<voxel::Box> boxes;
@@ -249,8 +249,8 @@ class Evaluator {
     return sum;
   }
 
-  /// The key of a loaded scan: its files, the options for reading them, and the universe, which the plan's
-  /// voxel size and first scan determine.
+  /// The key of a scan of the plan. It covers the scan's files, the options for reading them, and the
+  /// universe.
   std::string scan_key(const std::string& name, const ScanSource& source) const {
     nlohmann::ordered_json says{{"name", name},
                                 {"sum", sum_of(scan_path(plan_, source))},
@@ -301,7 +301,8 @@ class Evaluator {
     if (!(scan.grey.universe() == result_.universe)) load(name, scan.scene());
   }
 
-  /// The key of everything that all answers depend on besides their own step.
+  /// A text that covers the common inputs of all answers: the universe, by its size and place or by the first
+  /// scan, and whether objects are certified.
   std::string common_key() const {
     const glm::dvec3& low = box_.low_mm;
     const std::string place =
@@ -311,7 +312,7 @@ class Evaluator {
     return place + (options_.certify ? " certified" : "");
   }
 
-  /// The key distinguishes answers with and without the mesh kernel.
+  /// The cache's key of a step's object. It differs between answers with and without the mesh kernel.
   std::string key_of(const Step& step) const {
     return keys_.at(step.id) + (with_mesh_.contains(step.id) ? "" : " voxels");
   }
@@ -343,7 +344,7 @@ class Evaluator {
     loaded_.insert_or_assign(name, LoadedScan{shared, grey.with_scan(shared)});
   }
 
-  /// Makes a scan from another one. The universe remains that of the first scan that was read.
+  /// Makes a scan by a step. The universe remains that of the first scan that was read.
   void make_scan(const Step& step) {
     const Operation& operation = step.action.operation();
     MadeScan made;
@@ -371,7 +372,7 @@ class Evaluator {
       options_.cache->keep(keys_.at(step.id), {loaded_.at(step.id), result_.scans.back()});
   }
 
-  /// Computes both kernels' answers to a step and the bound of their difference.
+  /// Computes both kernels' answers to a step, and the bound within which they must agree.
   Object answer(const Step& step, const void* value, Object object) {
     const Operation& operation = step.action.operation();
     if (operation.voxel)
@@ -394,9 +395,10 @@ class Evaluator {
     return object;
   }
 
-  /// The agreed answer of operations that choose connected parts. Whether a neck thinner than a few voxels exists is
-  /// accidental, so parts that only one kernel joins by such a neck stay in both answers. Parts that the plan keeps
-  /// raise no doubt.
+  /// Computes the answer of a step. If the step chooses connected parts, both kernels must choose the same
+  /// ones. Whether a neck thinner than a few voxels exists depends on the kernel, so a part that only one
+  /// kernel connects by such a neck stays in both answers, with a finding. There is no finding if the plan
+  /// states that the part stays.
   Object agreed_answer(const Step& step, const void* value, const Object& begun) {
     constexpr int most_rounds = 4;
     Object made = answer(step, value, begun);
@@ -420,7 +422,7 @@ class Evaluator {
     return made;
   }
 
-  /// Makes an object in both kernels and certifies it.
+  /// Makes the object of a step in both kernels, and certifies it or adds it to the objects to certify.
   void make(const Step& step) {
     const Operation& operation = step.action.operation();
     Object object(step.id, operation.name, result_.universe);
@@ -470,12 +472,13 @@ class Evaluator {
     result_.objects.add(std::move(object));
   }
 
-  /// A piece that is being dragged is made again at every picture: its universe stays, and a finding states what
-  /// it loses.
+  /// Whether the universe may grow for an object. It stays as it is for a piece that is being dragged, which
+  /// is made again for each picture; a finding states what is cut off.
   bool grows() const { return options_.meshes || !options_.only_look_up; }
 
-  /// Adds a finding if an object without a mesh ends at the universe's border, because no surface beyond the border
-  /// shows this. None if an operand ends there already, as where the scan ends.
+  /// For an evaluation by voxels alone, adds a finding if an object ends at the universe's border: there is
+  /// no mesh that extends beyond it. Adds none if an operand ends there too, for example because the scan
+  /// does.
   void add_border_finding(const Step& step, Object& object) const {
     if (options_.meshes || object.is_tool || !object.ends_with_universe || object.kind == "combine") return;
     const auto touches = [](const Object& each) {
@@ -493,7 +496,7 @@ class Evaluator {
         "universe where there is room");
   }
 
-  /// Preparing files takes longest, so it starts as soon as possible, and certificates run in parallel with
+  /// Whether files are prepared. That takes longest, so certificates wait for it, and run in parallel with
   /// it.
   bool prepares_files() const {
     return options_.prepares_files &&
@@ -501,16 +504,17 @@ class Evaluator {
                        [](const Step& step) { return step.action.operation().prepare_file != nullptr; });
   }
 
-  /// With a cache, objects are stored together with their certificates, so these must be finished.
+  /// Whether certificates are computed in the background. With a cache they are not, because an object is
+  /// stored together with its certificate.
   bool certifies_beside() const { return options_.cache == nullptr; }
 
   static void certify_made(Object& object, Timings& timings, const std::stop_token& stop) {
-    // Certificates overlap, so their times add up to more than the elapsed time.
+    // Certificates run in parallel, so the sum of their times is larger than the elapsed time.
     const Stopwatch watch(timings, "certify");
     certify(object, object.id + " = " + object.definition, {stop, {}});
   }
 
-  /// Starts preparing the files for which this object was the last one missing.
+  /// Starts to prepare the files that need this object and whose other objects are already made.
   void prepare_files_of(const Object& object) {
     const auto is_made = [&](const std::string& id) {
       return id == object.id || std::any_of(result_.objects.begin(), result_.objects.end(),
@@ -535,12 +539,14 @@ class Evaluator {
     for (const std::string& step : steps) result_.file_preparations[step] = begun;
   }
 
-  /// Whether the mesh is compared with voxels of the other kernel or with a witness of its own.
+  /// Whether the certificate can compare the mesh with something independent of it: with voxels of the voxel
+  /// kernel, or with a witness.
   static bool is_judged(const Operation& operation, const Object& object) {
     return operation.voxel || verify::is_reshaped(object.witness) || verify::is_scan_blend(object.witness);
   }
 
-  /// The voxels of an answer that only the mesh kernel has.
+  /// Makes the voxels of an answer that only the mesh kernel has computed. Throws std::runtime_error if it
+  /// has no mesh.
   void voxelise(Object& object) {
     if (!object.mesh.whole)
       throw std::runtime_error(object.findings.empty() ? "there is no mesh to make voxels of"
@@ -550,7 +556,7 @@ class Evaluator {
     object.witness = verify::witness_of_surface(*object.mesh.whole);
   }
 
-  /// Computes the mesh kernel's answer; adds a finding if it has none.
+  /// Computes the mesh kernel's answer. Adds a finding if it has none.
   void make_mesh(const Step& step, const void* value, Object& object) {
     const Operation& operation = step.action.operation();
     if (!operation.mesh) return object.findings.push_back("no mesh: the mesh kernel does not do this");
@@ -575,8 +581,8 @@ class Evaluator {
     }
   }
 
-  /// Cuts the mesh at the universe's border, where its voxels end. Masks normally reach beyond it; an object
-  /// from a scan that does has lost voxels, which is a finding.
+  /// Cuts the mesh at the border of the universe, where the voxels end. Adds a finding if a part lies
+  /// outside; masks are exempt, because they normally extend beyond it.
   void take_within(Object& object) {
     object.mesh.within = object.mesh.whole;
     if (!object.mesh.whole || object.mesh.whole->empty()) return;
@@ -604,7 +610,7 @@ class Evaluator {
   const std::optional<voxel::Box> room_;
   voxel::Universe least_universe_;  ///< before it was enlarged
   Evaluation result_;
-  double told_ = 0.0;  ///< the fraction that was reported last
+  double told_ = 0.0;  ///< fraction of the progress that was reported last
   std::map<std::string, LoadedScan> loaded_;
   std::map<std::string, std::size_t> uses_left_;
   std::set<std::string> wanted_, with_mesh_;      ///< steps
@@ -614,16 +620,18 @@ class Evaluator {
   voxel::Box box_;  ///< box of the universe
   brep::Solid world_;
   std::unique_ptr<verify::MeshExpressions> expressions_;
-  /// An object before certification, its index among the objects, and the time of its certificate.
+  /// An object that is not certified yet, its index among the objects, and the time that certifying it has
+  /// taken.
   struct Uncertified {
     Object object;
     std::size_t index = 0;
     Timings timings;
     std::function<void(const std::stop_token&)> certify;
   };
-  std::deque<Uncertified> uncertified_;  ///< in the order of the background tasks
-  std::size_t begun_ = 0;                ///< number of these that were started
-  /// Runs the certificates; last member, so that it ends before their inputs are destroyed.
+  std::deque<Uncertified> uncertified_;  ///< numbered like the background tasks
+  std::size_t begun_ = 0;                ///< number of objects whose task has been started
+  /// Runs the certificates. Must be the last member, so that the tasks end before the objects that they use
+  /// are destroyed.
   BackgroundTasks background_{options_.stop};
 };
 

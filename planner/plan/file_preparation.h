@@ -14,14 +14,15 @@
 
 namespace octotomy::planner {
 
-/// Prepares files of a plan's result on a thread of its own, started as soon as the files' objects exist, in
-/// parallel with their certificates. The destructor stops the work and waits for it.
+/// Prepares files of a plan's result on its own thread, in parallel with certificates. It can start when the
+/// objects of the files exist. The destructor requests a stop and waits.
 class FilePreparation {
  public:
   using Kept = std::map<std::string, std::shared_ptr<const void>>;
 
-  /// Runs the actions in order. Each may leave values in `kept` for the next. `objects` are those made so
-  /// far, including those of the actions. Precondition: the operations have a `prepare_file` function.
+  /// Starts the work: runs the actions in order. Each may leave values in `kept` for the next. `objects` are
+  /// all objects made so far, including those of the actions. Precondition: the operation of each action has
+  /// a `prepare_file` function.
   FilePreparation(std::vector<Action> actions, const voxel::Universe& universe, Objects objects,
                   const std::stop_token& stop);
 
@@ -29,9 +30,10 @@ class FilePreparation {
   FilePreparation(const FilePreparation&) = delete;
   FilePreparation& operator=(const FilePreparation&) = delete;
 
-  /// Waits for the work and reports its progress to `progress`, which may be empty. Adds the values in `kept`
-  /// for writing and, at the first call, the time to `timings`. Rethrows exceptions of the work; throws
-  /// Stopped if `stop` or the constructor's token requests it. Only one thread may call it at a time.
+  /// Waits for the work, with its progress in `progress`, which may be empty. Adds the values that writing
+  /// the files needs to `kept` and, at the first call, the time to `timings`. Rethrows exceptions of the
+  /// work. Throws Stopped if a stop is requested by `stop` or by the constructor's token. May be called by
+  /// only one thread at a time.
   void finish(Kept& kept, Timings& timings, const std::stop_token& stop,
               const std::function<void(const std::string& doing, double fraction)>& progress);
 
@@ -41,7 +43,7 @@ class FilePreparation {
   std::stop_source stop_;
   std::stop_callback<std::function<void()>> stopped_with_;
   std::shared_future<void> done_;
-  std::jthread thread_;  ///< last member, so that it ends before the others are destroyed
+  std::jthread thread_;  ///< last member: ends before the members that it uses are destroyed
 };
 
 }  // namespace octotomy::planner

@@ -57,7 +57,8 @@ constexpr const char* tables = R"(
   CREATE TABLE state (current INTEGER NOT NULL, branch TEXT NOT NULL, written TEXT NOT NULL);
 )";
 
-/// Refuses because some states are not yet in the history's file but in files beside it.
+/// Throws: the folder cannot be written, and the newest states are not in the history's file but in files
+/// beside it.
 [[noreturn]] void refuse_read_only(const fs::path& path) {
   throw std::runtime_error(path.string() +
                            ": its newest states lie in files beside it, which need a folder that can be "
@@ -84,7 +85,7 @@ struct Bytes {
   std::string bytes;
 };
 
-/// A SQL statement with bound values; iterates over its rows.
+/// A SQL statement with its values, and the rows that it returns.
 class Query {
  public:
   Query(sqlite3* database, const fs::path& path, const char* text) : database_(database), path_(path) {
@@ -112,7 +113,7 @@ class Query {
     sqlite3_bind_blob(statement_, ++bound_, bytes.bytes.data(), static_cast<int>(bytes.bytes.size()),
                       SQLITE_TRANSIENT);
   }
-  /// Moves to the next row; false if there is none.
+  /// Moves to the next row. Returns false if there is none.
   bool next() {
     const int code = sqlite3_step(statement_);
     if (code == SQLITE_ROW) return true;
@@ -134,7 +135,7 @@ class Query {
   int bound_ = 0;
 };
 
-/// A path for a URI, in which three characters must be escaped.
+/// A path as part of a URI: escapes the three characters that would end or change it.
 std::string uri_of(const fs::path& path) {
   std::string uri;
   for (const char letter : path.string())
@@ -271,7 +272,7 @@ class PlanHistory::Database {
                        {}});
     }
     if (edits.empty()) return edits;
-    // Versions have no index by state, so all are read once.
+    // Versions are not indexed by state, so all of them are read once.
     Query names = query("SELECT edit, name FROM versions WHERE edit >= ? ORDER BY name", edits.back().id);
     while (names.next()) {
       const auto named = std::lower_bound(edits.begin(), edits.end(), names.number(0),
@@ -299,7 +300,7 @@ class PlanHistory::Database {
     need_writable();
     make_as_readable_as_the_plan();
     open_file(SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, path_.string());
-    // If another process has an older history with a log open, the log stays; nothing is lost.
+    // Does nothing if another process has an older history open, whose log then stays. No state is lost.
     sqlite3_exec(database_, "PRAGMA journal_mode = DELETE", nullptr, nullptr, nullptr);
     run("PRAGMA synchronous = EXTRA");
     open();
@@ -307,8 +308,8 @@ class PlanHistory::Database {
   void open_to_read() {
     need_history();
     open_file(SQLITE_OPEN_READONLY, path_.string());
-    // An older history has a log, and reading it writes a file beside it. If that is not permitted and the
-    // log is empty, no process has it open, so it is read without locks.
+    // An older history has a log; reading it requires a file beside the history. If that file cannot be
+    // written and the log is empty, no process has the history open, and it is read without locks.
     const int code = sqlite3_exec(database_, "PRAGMA user_version", nullptr, nullptr, nullptr);
     if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) {
       for (const char* ending : {"-wal", "-journal"}) need_nothing_beside(ending);
@@ -336,13 +337,13 @@ class PlanHistory::Database {
                              ": cannot be written, so the plan's states cannot be stored there: copy the "
                              "plan and its .history to a folder in which you may write");
   }
-  /// Called if an edit does not follow its parent, or its text does not have the stored checksum.
+  /// Throws: an edit is not newer than its parent, or its text does not have the stored checksum.
   [[noreturn]] void refuse_damaged(std::int64_t edit) const {
     throw std::runtime_error(path_.string() + ": the history is damaged at state " + std::to_string(edit) +
                              ": move it away, and a new one is begun");
   }
-  /// A new history gets the plan's permissions, because it contains the plan's text. Its owner may always
-  /// write it.
+  /// Gives a new history the permissions of the plan's file, because it contains the plan's text. The owner
+  /// may always write it.
   void make_as_readable_as_the_plan() const {
     struct stat of_plan {};
     if (::stat(plan_.c_str(), &of_plan) != 0) return;
@@ -361,8 +362,7 @@ class PlanHistory::Database {
     if (sqlite3_exec(database_, text, nullptr, nullptr, nullptr) != SQLITE_OK) fail(database_, path_);
   }
 
-  /// Runs a function in an exclusive transaction: afterwards the database has either all of its changes or
-  /// none.
+  /// Runs `act` in an exclusive transaction. If it throws, none of its changes remain.
   template <typename Act>
   void locked(const Act& act) {
     run("BEGIN IMMEDIATE");
@@ -382,7 +382,8 @@ class PlanHistory::Database {
       settle(text);
     });
   }
-  /// Makes the plan's file, which has this text, and the database's current state agree.
+  /// Makes the plan's file, whose text is `text`, and the current state agree. If another program has written
+  /// the file, its text becomes an edit; otherwise the file is written.
   void settle(const std::string& text) {
     read_state();
     const std::string sum = sha256_of(text), current_sum = sum_of(current_);
@@ -398,7 +399,8 @@ class PlanHistory::Database {
       written_ = now;
     }
   }
-  /// The layout version of the file; 0: it is new.
+  /// The version of the database's layout; 0 for a new file. Throws if it is a later version than this
+  /// program has.
   int need_known_layout() {
     Query row = query("PRAGMA user_version");
     row.next();
@@ -422,7 +424,8 @@ class PlanHistory::Database {
     if (!has_edit(current_)) refuse_damaged(current_);
   }
 
-  /// Runs a change of state as steps 1 to 3. Throws if another program has written first.
+  /// Runs a change of the current state by the steps 1 to 3 above. Throws OtherWriter if another program has
+  /// changed the history or the plan before.
   template <typename Change>
   void change(const Change& make) {
     const std::int64_t current = current_;
@@ -438,8 +441,8 @@ class PlanHistory::Database {
       branch_ = branch;
       throw;
     }
-    // Another writer may have changed the state since. The position of this writer is not updated, so that
-    // its next change is refused.
+    // Another program may have made a further change in the meantime. This object keeps its own position, so
+    // that its next change is refused.
     const std::int64_t made = current_;
     const std::string made_on = branch_;
     locked([&] { settle(read_text(plan_)); });
@@ -447,7 +450,7 @@ class PlanHistory::Database {
     branch_ = made_on;
   }
 
-  /// Adds an edit and makes it current.
+  /// Adds an edit and makes it the current state.
   void add(const std::string& text, const std::string& what, std::optional<std::int64_t> parent) {
     std::int64_t depth = 0;
     std::size_t head = 0, tail = 0;
@@ -474,8 +477,8 @@ class PlanHistory::Database {
     if (row.number(0) >= edit) refuse_damaged(edit);
     return row.number(0);
   }
-  /// The state after the current one on the current branch; none if the branch ends at the current state or
-  /// does not contain it.
+  /// The state after the current one on the current branch. None if the current state is the branch's last
+  /// one or is not on the branch.
   std::optional<std::int64_t> state_above() {
     const std::optional<std::int64_t> tip = tip_of(branch_);
     if (!tip || *tip <= current_) return std::nullopt;
@@ -485,7 +488,8 @@ class PlanHistory::Database {
     if (here == way_.end() || *here != current_) return std::nullopt;
     return *std::prev(here);
   }
-  /// Extends the path downwards to the current state or one before it.
+  /// Extends `way_` from the branch's end towards the first state, down to the current state or an earlier
+  /// one.
   void extend_way() {
     Query row = query(
         "WITH RECURSIVE way (id, parent) AS (SELECT id, parent FROM edits WHERE id = ? UNION ALL "
@@ -516,15 +520,15 @@ class PlanHistory::Database {
                           query("SELECT 1 FROM versions WHERE name = ?", name).next();
     if (is_taken) throw std::runtime_error("the name '" + name + "' is taken: choose another");
     if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0])))
-      throw std::runtime_error("the name '" + name + "' must not begin with a digit, as states' numbers do");
+      throw std::runtime_error("the name '" + name +
+                               "' must not begin with a digit, because numbers name states");
   }
 
   fs::path plan_, path_;
   sqlite3* database_ = nullptr;
   std::int64_t current_ = 0;
   std::string branch_, written_;
-  std::vector<std::int64_t>
-      way_;  ///< path from a branch's end downwards; it never changes, because edits keep their parents
+  std::vector<std::int64_t> way_;  ///< states from a branch's end downwards, newest first
 };
 
 PlanHistory::PlanHistory(const fs::path& plan, Access access)

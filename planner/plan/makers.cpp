@@ -8,7 +8,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// Adds clauses to `to`, sorted and without duplicates.
+/// Merges the clauses of `from` into `to`, which stays sorted and without duplicates.
 void add(std::vector<std::string>& to, const std::vector<std::string>& from) {
   to.insert(to.end(), from.begin(), from.end());
   std::sort(to.begin(), to.end());
@@ -27,7 +27,8 @@ void add_makers(const MadeOf& from, bool found_values, Object& made) {
   }
   add(made.voxel.makers, {operation.name + ": " + made.voxel.lineage});
   if (made.mesh.whole) add(made.mesh.makers, {operation.name + ": " + made.mesh.lineage});
-  // If only the mesh kernel does the operation, the voxels come from its mesh.
+  // If the voxel kernel does not do the operation, the voxels are made from the mesh, so they have the mesh's
+  // makers.
   if (!operation.voxel) add(made.voxel.makers, made.mesh.makers);
   if (found_values)
     add(made.shared_values, {operation.name + ": values that the step computes once for both kernels"});

@@ -18,7 +18,7 @@ namespace {
 
 using Ids = std::vector<std::string>;
 
-/// The value of a key; null if it is absent.
+/// The value of a key; null if the object does not have it.
 Json value_at(const Json& object, const std::string& key) {
   return object.is_object() && object.contains(key) ? object[key] : Json();
 }
@@ -27,7 +27,8 @@ class Merge {
  public:
   std::vector<MergeConflict> conflicts;
 
-  /// The merged value; null if it was removed.
+  /// Merges a value of the base that `a` and `b` may have changed. Null if the merged plan does not have it.
+  /// In a conflict, adds it to `conflicts`.
   Json value(const Json& base, const Json& a, const Json& b, const std::string& step,
              const std::string& field) {
     if (a == b || b == base) return a;
@@ -41,7 +42,7 @@ class Merge {
       if (merged.contains(key)) return;
       Json one = value(value_at(base, key), value_at(a, key), value_at(b, key), step,
                        field.empty() ? key : field + ", " + key);
-      // A null that both plans state is kept, such as that of "sha256".
+      // A null that both plans state stays, such as that of "sha256". Other nulls are removed keys.
       if (!one.is_null() || (a.contains(key) && b.contains(key))) merged[key] = std::move(one);
     };
     for (const auto& [key, unused] : a.items()) take(key);
@@ -70,7 +71,7 @@ Ids those_in(const Ids& ids, const Ids& others, const Ids& more) {
   return kept;
 }
 
-/// Adds the ids of `from` that `order` lacks, each after the id that it follows in `from`.
+/// Adds to `order` the ids of `from` that it lacks, each behind the id before it in `from`.
 void add_missing(const Ids& from, Ids& order) {
   std::list<std::string> all(order.begin(), order.end());
   std::map<std::string, std::list<std::string>::iterator> place_of;

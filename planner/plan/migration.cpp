@@ -9,7 +9,7 @@ namespace octotomy::planner {
 
 void migrate(nlohmann::json& plan, const Migrations& migrations) {
   const auto found = plan.find("octotomy_plan");
-  if (found == plan.end()) return;  // the reader reports that it is missing
+  if (found == plan.end()) return;  // the caller reports that the version is missing
   const int newest = 1 + static_cast<int>(migrations.size());
   if (!found->is_number_integer() || found->get<std::int64_t>() < 1)
     refuse("octotomy_plan", "must be a version of plans, from 1 to " + std::to_string(newest));

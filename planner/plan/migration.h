@@ -7,17 +7,18 @@
 
 namespace octotomy::planner {
 
-/// The version of plans that this program writes and evaluates.
+/// The version of the plan format that this program writes and evaluates.
 inline constexpr int plan_version = 1;
 
-/// Functions that raise a plan by one version: the first entry makes version 2 from version 1.
+/// Functions that each change a plan to the next version. The first one makes version 2 from version 1.
 using Migrations = std::vector<std::function<void(nlohmann::json& plan)>>;
 
-/// Raises a plan to version 1 + the number of migrations, one version at a time. Throws std::runtime_error if
-/// its version is missing, is not an integer from 1, or is newer than that.
+/// Changes a plan to version 1 + the number of migrations, step by step. Throws std::runtime_error if its
+/// version is not an integer from 1 on, or is newer. A plan without a version stays as it is, for its reader
+/// to report.
 void migrate(nlohmann::json& plan, const Migrations& migrations);
 
-/// The migrations of this program: plan_version - 1 of them.
+/// The plan_version - 1 migrations of this program.
 const Migrations& migrations();
 
 }  // namespace octotomy::planner

@@ -10,8 +10,8 @@
 namespace octotomy::planner {
 namespace {
 
-/// Memory of a solid's triangle: 36 bytes for itself, 150 in the search tree, and in the mesh a face, three
-/// halfedges of 16 bytes, and half a vertex with point, normal and status.
+/// Memory for each triangle of a solid, in bytes: 36 for the triangle, 150 in the search tree, and about 100
+/// in the mesh (a face, three halfedges of 16 bytes, and half a vertex with point, normal and status).
 constexpr std::uint64_t triangle_bytes = 36 + 150 + 100;
 
 std::uint64_t bytes_of(const std::optional<brep::Solid>& solid) {

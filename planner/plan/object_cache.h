@@ -15,13 +15,13 @@
 
 namespace octotomy::planner {
 
-/// Results of earlier evaluations, by their keys (step_keys()). For callers that evaluate a plan repeatedly:
-/// a step whose key is stored is not evaluated again. Results are shared, never copied. All members may be
-/// called from any thread.
+/// Results of earlier evaluations by their keys (step_keys()). With it, a caller that evaluates a plan
+/// repeatedly does not evaluate a step again whose key is stored. Results are shared, not copied. All members
+/// may be called from any thread.
 class ObjectCache {
  public:
-  /// Stores up to `most` objects and as many scans, each kind up to `most_bytes` bytes, but always the newest
-  /// one. Removes the least recently used first.
+  /// Stores at most `most` objects and `most` scans. Each kind may take `most_bytes` bytes of memory, except
+  /// that the newest result always stays. The least recently used ones are removed first.
   explicit ObjectCache(std::size_t most = 512, std::uint64_t most_bytes = std::uint64_t{2} << 30)
       : most_(most), most_bytes_(most_bytes) {}
 
@@ -38,11 +38,12 @@ class ObjectCache {
     const std::uint64_t bytes = bytes_of(scan);
     scans_.keep(key, std::make_shared<const Scan>(std::move(scan)), bytes, *this);
   }
-  /// Memory of a result including everything that is computed lazily. Memory shared by several results counts
-  /// in each.
+  /// Memory of a result, including parts that are computed only when needed. Memory that several results
+  /// share counts in each.
   static std::uint64_t bytes_of(const Object& object);
   static std::uint64_t bytes_of(const Scan& scan);
-  /// The stored SHA-256 of a scan's files, if they have not changed since: `state` has their sizes and times.
+  /// The stored SHA-256 of a scan's files. None if it is not stored for this `state`, which contains the
+  /// files' sizes and times.
   std::optional<std::string> sum(const std::string& state) const;
   void keep_sum(const std::string& state, const std::string& sha256);
 
@@ -101,7 +102,7 @@ class ObjectCache {
   Counts counts_;
 };
 
-/// The sizes and times of a scan's file, or of all files in its folder. The text differs if a file changes.
+/// A text with size and time of a scan's file, or of all files in its folder. It changes if a file does.
 std::string state_of_path(const std::filesystem::path& path);
 
 }  // namespace octotomy::planner

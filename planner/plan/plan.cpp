@@ -41,7 +41,7 @@ std::vector<voxel::SliceRange> slices_of(const Keys& scan) {
   }
 }
 
-/// The result of `parse` for a key's text, if the scan has this key.
+/// Parses the text of a scan's key. None if the scan does not have the key.
 template <typename Value>
 std::optional<Value> parsed(const Keys& scan, const char* key, Value (*parse)(const std::string&)) {
   if (scan.find(key) == nullptr) return std::nullopt;
@@ -52,7 +52,7 @@ std::optional<Value> parsed(const Keys& scan, const char* key, Value (*parse)(co
   }
 }
 
-/// The options for reading a scan: its series, and facts that images and raw files do not state.
+/// The options for reading a scan: which series, and facts that images and raw files do not state.
 voxel::ReadOptions read_options_of(const Keys& scan) {
   voxel::ReadOptions read;
   if (scan.find("series") != nullptr) read.series = scan.text("series");
@@ -88,8 +88,8 @@ std::map<std::string, ScanSource> scans_of(const Keys& top) {
   if (value == nullptr) return scans;
   if (!value->is_object() || value->empty())
     refuse("scans",
-           "must name at least one scan, as {\"ct\": {\"path\": \"head.nrrd\"}}; a plan of imported meshes "
-           "and tiled contours alone leaves it out");
+           "must name at least one scan, for example {\"ct\": {\"path\": \"head.nrrd\"}}; leave it out if "
+           "the plan only imports meshes and tiles contours");
   for (const auto& [name, entry] : value->items()) {
     const Keys keys(entry, "scans, " + name,
                     {"path", "sha256", "series", "join", "slices", "frame", "unit", "spacing_mm", "raw",
@@ -109,7 +109,7 @@ std::map<std::string, ScanSource> scans_of(const Keys& top) {
   return scans;
 }
 
-/// The words for a step's `do`: the operations, and "export".
+/// The words that a step's `do` may have: the names of operations, and "export".
 std::vector<std::string> step_words() {
   std::vector<std::string> words;
   for (const Operation& operation : operations()) words.push_back(operation.name);
@@ -117,7 +117,7 @@ std::vector<std::string> step_words() {
   return words;
 }
 
-/// The operation of a step that does "export": the one that writes its path's extension.
+/// The operation of a step whose `do` is "export": the one that writes files with the extension of its path.
 const char* export_of(const SortedJson& step) {
   const auto path = step.find("path");
   const std::string name = path != step.end() && path->is_string() ? path->get<std::string>() : "";
@@ -149,11 +149,11 @@ Step step_of(const SortedJson& value, std::size_t index, Scope& scope) {
     need_fields_read(operation->fields, value, step.action.value(), place);
     if (operation->check) operation->check(step.action.value(), place);
   } catch (const std::exception& error) {
-    // Refusals name their place themselves.
+    // Refusals already state the place, so only internal errors need it here.
     if (fault_of(error) == Fault::Internal) rethrow_at(place.where + ": ", error);
     throw;
   }
-  // Bound last, so that no step can name itself.
+  // Bound after its fields are read, so that a step cannot use its own result.
   scope.bind(place.where, step.id, *operation);
   return step;
 }
@@ -174,8 +174,8 @@ const char* word(Makes makes) {
   return "";
 }
 
-/// The schema of one operation's step. `x-makes` states what it makes; a tool is an object that only helps to
-/// make others. `x-moves` names the field whose object it moves rigidly.
+/// The JSON schema for steps of an operation. `x-makes` states what the step makes; a tool is an object that
+/// only helps to make others. `x-moves` names the field with the object that the step moves rigidly.
 Json step_schema(const Operation& operation) {
   Json schema{{"title", operation.name}, {"description", operation.says}};
   schema.update(fields_schema(operation.fields, operation.fresh().get()));
@@ -218,7 +218,8 @@ Plan parse_plan(const std::string& json, const std::filesystem::path& folder) {
   const auto needs_no_scan = [](const Step& step) { return is_import(step.action) || is_tile(step.action); };
   if (plan.scans.empty() && std::none_of(plan.steps.begin(), plan.steps.end(), needs_no_scan))
     refuse("scans",
-           "must name at least one scan, as {\"ct\": {\"path\": \"head.nrrd\"}}, where no step imports a "
+           "must name at least one scan, for example {\"ct\": {\"path\": \"head.nrrd\"}}, unless a step "
+           "imports a "
            "mesh or tiles contours");
   plan.landmarks = scope.landmarks();
   plan.lps_from_head = scope.lps_from_head();
@@ -274,7 +275,7 @@ Json plan_schema() {
                   {"additionalProperties", false}};
   Json steps = Json::array();
   for (const Operation& operation : operations()) steps.push_back(step_schema(operation));
-  // "export" denotes the operation that writes the path's extension.
+  // Each of these operations is also written as "export", with a path of its extensions.
   for (const char* name : {"surface", "deck", "label_map"}) {
     Json schema = step_schema(*find_operation(name));
     schema["title"] = std::string("export, as ") + name;
@@ -290,7 +291,7 @@ Json plan_schema() {
            {{"octotomy_plan", {{"const", plan_version}}},
             {"name", {{"type", "string"}, {"minLength", 1}}},
             {"scans",
-             {{"description", "May be left out by plans that import meshes alone."},
+             {{"description", "May be left out if the plan only imports meshes or tiles contours."},
               {"type", "object"},
               {"minProperties", 1},
               {"additionalProperties", scan}}},

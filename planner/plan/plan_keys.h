@@ -13,9 +13,9 @@
 
 namespace octotomy::planner {
 
-// Functions for reading a plan's JSON, common to all kinds of steps.
+// Functions to read the JSON of a plan, for all kinds of steps.
 
-/// The names of pairs or of a map's entries, in their order.
+/// The names in a list of pairs, or the keys of a map, in order.
 template <typename Pairs>
 std::vector<std::string> names_of(const Pairs& pairs) {
   std::vector<std::string> names(pairs.size());
@@ -23,21 +23,21 @@ std::vector<std::string> names_of(const Pairs& pairs) {
   return names;
 }
 
-/// Reads a JSON object key by key; refuses unknown keys. Members throw std::runtime_error if a value is
-/// missing or has another type.
+/// Reads a JSON object key by key. The constructor refuses unknown keys. Members throw std::runtime_error,
+/// with the key's place, if a value is missing or has another type.
 class Keys {
  public:
-  /// `where` names the object in error messages. `value` must outlive this object.
+  /// `where` is the object's place in error messages, `known` its keys. `value` must outlive this object.
   Keys(const nlohmann::json& value, std::string where, std::vector<std::string> known);
 
   const std::string& where() const { return where_; }
-  /// The name of a key of this object for messages.
+  /// The place of a key in error messages.
   std::string at(const std::string& key) const { return where_.empty() ? key : where_ + ", " + key; }
 
-  /// Null if the key is absent or its value is null.
+  /// The value of a key; null if the key is absent or its value is null.
   const nlohmann::json* find(const std::string& key) const;
   const nlohmann::json& need(const std::string& key) const;
-  /// A text that is not empty.
+  /// The value of a key as text. Refuses an empty one.
   std::string text(const std::string& key) const;
   double number(const std::string& key) const { return number_of(need(key), at(key)); }
   std::optional<double> number_if(const std::string& key) const;

@@ -12,7 +12,7 @@ namespace {
 
 using Kept = std::map<std::string, std::shared_ptr<const void>>;
 
-/// The origin of a file, for its header.
+/// Lines on the origin of a file, for its header.
 std::vector<std::string> origins_of(const Plan& plan, const Evaluation& evaluation) {
   std::vector<std::string> lines{std::string("octotomy ") + OCTOTOMY_VERSION,
                                  "plan: " + plan.name + ", SHA-256 " + sha256_of(plan.text)};

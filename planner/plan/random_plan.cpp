@@ -16,8 +16,8 @@ using verify::Random;
 using verify::random_int;
 using verify::random_real;
 
-/// A sum of waves no shorter than a third of the scan, minus a term that grows outside an ellipsoid, so that
-/// the region of positive samples stays within the scan.
+/// A scan of random waves no shorter than a third of its sides. A term that grows outside of an ellipsoid is
+/// subtracted, so that positive samples do not reach the border.
 voxel::Scene waves(Random& random, const glm::ivec3& dims, const glm::dvec3& spacing_mm) {
   voxel::Scene scene;
   scene.meaning = voxel::Meaning::Raw;
@@ -64,7 +64,7 @@ glm::dvec3 random_vector(Random& random, double reach) {
   return {x, y, random_real(random, -reach, reach)};
 }
 
-/// A polygon around a point with corners in order of their angles, so that no sides cross.
+/// A polygon whose corners are sorted by their angle about a point, so that its sides do not cross.
 Json region(Random& random, double size_mm) {
   constexpr std::array<const char*, 8> views{"anterior", "posterior", "left",  "right",
                                              "superior", "inferior",  "30,20", "-50,35"};
@@ -87,7 +87,7 @@ Json region(Random& random, double size_mm) {
           {"polygons_mm", Json::array({polygon})}};
 }
 
-/// Builds a random plan step by step.
+/// Makes the steps of a random plan one after the other.
 class Author {
  public:
   Author(Random& random, const std::vector<RandomScan>& scans)
@@ -143,7 +143,7 @@ class Author {
   double size_mm_ = 0.0;
 };
 
-/// Removes operands that the tree does not use and renumbers its leaves.
+/// Removes the operands that an expression does not use, and numbers its leaves anew.
 void drop_unused(RandomStep& step) {
   std::vector<int> number(step.operands.size(), -1);
   std::vector<std::string> used;
@@ -165,7 +165,7 @@ std::string id_of(const RandomStep& step) {
   return step.json.at("id").get<std::string>();
 }
 
-/// The plan in which step i is replaced by the object that it moves.
+/// The plan without its step i, a motion. Later steps use the object that it moved.
 RandomPlan without_motion(const RandomPlan& plan, std::size_t i) {
   const std::string gone = id_of(plan.steps[i]), still = plan.steps[i].json.at("object").get<std::string>();
   RandomPlan simple = plan;

@@ -17,7 +17,7 @@ fs::path whole(const fs::path& folder) {
   return fs::weakly_canonical(fs::absolute(folder.empty() ? fs::path(".") : folder));
 }
 
-/// Rewrites paths relative to one folder as relative to another.
+/// Converts paths relative to one folder to paths relative to another.
 struct Rebase {
   fs::path from, to;
 
@@ -31,7 +31,7 @@ struct Rebase {
   }
 };
 
-/// Changes the fields of a step that name a file which the step reads: texts, or lists of texts.
+/// Converts the paths of files that a step reads, in fields that are texts or lists of texts.
 void change_files(Json& step, const std::vector<fs::path>& read,
                   const std::function<std::string(const std::string&)>& change) {
   const auto is_read = [&](const Json& value) {

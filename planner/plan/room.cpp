@@ -12,7 +12,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// Levels of the octree that a universe may gain.
+/// Number of times that a universe may double its side.
 constexpr int most_levels = 2;
 
 bool contains(const voxel::Box& box, const voxel::Box& other) {
@@ -24,8 +24,8 @@ voxel::Box around(const voxel::Box& a, const voxel::Box& b) {
   return {glm::min(a.low_mm, b.low_mm), glm::max(a.high_mm, b.high_mm)};
 }
 
-/// Whether a part of the object lies outside of the universe, and box_of() states where. Does not count parts
-/// that an object it was made of has already lost.
+/// Whether a part of an object lies outside of the universe, at a place that box_of() can state. Parts that
+/// its operands have already lost do not count.
 bool has_left(const Object& made) {
   if (!made.image && !made.mesh.whole) return false;
   return std::any_of(made.caveats.begin(), made.caveats.end(), [](const Caveat& caveat) {
@@ -33,7 +33,7 @@ bool has_left(const Object& made) {
   });
 }
 
-/// The box of an object, with its parts outside of the universe.
+/// The box of an object in LPS millimetres, including its part outside of the universe.
 voxel::Box box_of(const Objects& objects, const Object& made) {
   if (made.mesh.whole) return {made.mesh.whole->size().low_mm, made.mesh.whole->size().high_mm};
   const voxel::Octree& still = still_of(objects, made).voxel.octree;
@@ -55,7 +55,8 @@ voxel::Box box_of(const Objects& objects, const Object& made) {
 
 std::optional<voxel::Universe> with_room(const voxel::Universe& universe, const voxel::Box& box_mm) {
   const voxel::Lattice lattice = universe.lattice();
-  // Voxels needed below the first and above the last one. Universes are aligned with LPS.
+  // Number of voxels needed below the first and beyond the last voxel. The axes of a universe are those of
+  // LPS.
   const glm::dvec3 low = glm::min(glm::floor(lattice.voxel(box_mm.low_mm) + 0.5), glm::dvec3(0.0));
   const glm::dvec3 high = glm::max(glm::ceil(lattice.voxel(box_mm.high_mm) + 0.5),
                                    glm::dvec3(static_cast<double>(universe.side())));
@@ -64,7 +65,7 @@ std::optional<voxel::Universe> with_room(const voxel::Universe& universe, const 
   while (larger.side() < std::max({wanted.x, wanted.y, wanted.z}))
     if (++larger.depth > std::min(universe.depth + most_levels, voxel::Universe::max_depth))
       return std::nullopt;
-  // The remaining room is divided between both sides, in whole voxels.
+  // Voxels that the larger universe has in addition are divided between both sides.
   const glm::dvec3 first = low - glm::floor(0.5 * (static_cast<double>(larger.side()) - wanted));
   if (larger.depth > universe.depth) larger.lps_from_voxel[3] = glm::dvec4(lattice.lps_mm(first), 1.0);
   return larger;

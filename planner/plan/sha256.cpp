@@ -80,7 +80,7 @@ std::string sha256_of_path(const fs::path& path) {
   std::sort(lines.begin(), lines.end());
   Digest digest;
   for (const auto& [name, sum] : lines) {
-    digest.add(name.c_str(), name.size() + 1);  // with its terminating zero byte
+    digest.add(name.c_str(), name.size() + 1);  // including its terminating zero byte
     digest.add(sum.data(), sum.size());
     digest.add("\n", 1);
   }

@@ -7,8 +7,8 @@
 
 namespace octotomy::planner {
 
-/// Returns the result of a step's work. Exceptions of the work are rethrown with the same type and the step's
-/// name: "step 'cut': ...".
+/// Runs the work of a step and returns its result. Rethrows an exception of the work with the same type and
+/// the step's id: "step 'cut': ...".
 template <typename Work>
 auto name_step_in_errors(const std::string& id, const Work& work) {
   try {

@@ -28,20 +28,20 @@
 namespace octotomy::planner {
 namespace {
 
-/// The errors of one trial.
+/// The random errors of one trial.
 struct Errors {
   std::map<std::string, glm::dvec3> landmarks_mm;
   std::map<std::string, double> kerf_mm;                             ///< by saw steps
-  std::map<std::string, std::pair<glm::dvec3, glm::dvec3>> seating;  ///< millimetres and radians, by pieces
+  std::map<std::string, std::pair<glm::dvec3, glm::dvec3>> seating;  ///< by piece: mm and rotation in rad
   double outward_mm = 0.0;
 };
 
-/// The motions of a trial by objects, LPS to LPS.
+/// Motions of objects in one trial, from LPS to LPS, by the objects' ids.
 struct Motions {
-  std::map<std::string, glm::dmat4> own;    ///< motion of the step that moved it
-  std::map<std::string, glm::dmat4> total;  ///< motion since it was made, including earlier errors of its
+  std::map<std::string, glm::dmat4> own;    ///< of the step that moved the object
+  std::map<std::string, glm::dmat4> total;  ///< since the object was made, including errors of its
                                             ///< parts
-  std::map<std::string, glm::dmat4> off;    ///< from its planned position to its position in the trial
+  std::map<std::string, glm::dmat4> off;    ///< from the planned position of the object to that in the trial
 };
 
 struct Number {
@@ -49,11 +49,11 @@ struct Number {
   std::function<double(const Errors& errors, const Motions& motions)> value;
 };
 
-/// A pair of objects, with the points of the first that may come nearest to the second.
+/// Two objects, and the points of the first one that may be the nearest to the second.
 struct Pair {
   std::string one, other;
   std::vector<NearPoint> points;
-  std::set<std::string> saws;  ///< saw steps that separated the two
+  std::set<std::string> saws;  ///< ids of the saw steps that separated the two
   double scale = 1.0;          ///< of the overlap
 
   template <typename Each>
@@ -101,7 +101,7 @@ class Through {
       errors.landmarks_mm[landmark.name] = some(asked.landmark_mm);
     for (const Object& object : objects_) {
       if (object.kind == "saw") errors.kerf_mm[object.id] = asked.kerf_mm * chance.normal();
-      // Nobody seats a piece by scaling it: the motions before and after have the error.
+      // A real piece is not scaled, so scaling adds no error.
       if (object.moved && is_rigid(object.moved->motion)) {
         const glm::dvec3 by_mm = some(asked.seating_mm);
         errors.seating[object.id] = {by_mm, some(glm::radians(asked.seating_deg))};
@@ -139,7 +139,7 @@ class Through {
     return mark.object.empty() ? p_mm : carried(motions.total.at(mark.object), p_mm);
   }
 
-  /// The seating error of a piece, as a motion about the planned position of its centroid.
+  /// The seating error of a piece as a motion: displacement, and rotation about the planned centroid.
   glm::dmat4 seated(const Object& object, const Errors& errors) const {
     const auto found = errors.seating.find(object.id);
     if (found == errors.seating.end()) return glm::dmat4(1.0);
@@ -151,7 +151,7 @@ class Through {
     return glm::translate(motion, -centre_mm);
   }
 
-  /// The common error of all objects from which an object is made, if it is the same for all.
+  /// The error that all operands of an object share. The identity if their errors differ.
   glm::dmat4 inherited(const Object& object, const Motions& made) const {
     const auto step = steps_.find(object.id);
     if (step == steps_.end()) return glm::dmat4(1.0);
@@ -281,7 +281,8 @@ class Through {
   std::vector<std::string> findings_;
 };
 
-/// The half-width of the shortest interval around each value that contains the claimed share of trials.
+/// For each value, the half-width of the shortest interval around it that contains the claimed share of the
+/// trials.
 std::vector<double> half_widths(const Through& through, const Trials& asked,
                                 const std::vector<double>& values) {
   std::vector<std::vector<double>> off(values.size());

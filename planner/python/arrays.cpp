@@ -12,8 +12,8 @@
 namespace octotomy::planner::python {
 namespace {
 
-/// Refuses an array that has numbers that are not finite, or not the shape (`rows`, `columns`). `rows` -1: any number
-/// of rows; 0: one row, as an array of one dimension.
+/// Refuses an array that has another shape than (`rows`, `columns`) or a number that is not finite. `rows` =
+/// -1 allows any number of rows; `rows` = 0 requires one dimension with `columns` numbers.
 void check_shape(const Numbers& numbers, const char* what, int rows, int columns) {
   const bool fits = rows == 0 ? numbers.ndim() == 1 && numbers.shape(0) == columns
                               : numbers.ndim() == 2 && numbers.shape(1) == columns &&
@@ -83,7 +83,7 @@ py::array array_of(const glm::dmat4& matrix) {
 }
 
 py::object python_of(const nlohmann::ordered_json& json) {
-  // Names of files need not be UTF-8.
+  // Names of files need not be UTF-8, so invalid bytes are replaced.
   constexpr auto replace = nlohmann::ordered_json::error_handler_t::replace;
   return py::module_::import("json").attr("loads")(json.dump(-1, ' ', false, replace));
 }

@@ -12,8 +12,8 @@ namespace octotomy::planner::python {
 
 namespace py = pybind11;
 
-/// A read-only array of the values from `first` on, which keeps `owner` alive. Shape as in NumPy, the
-/// fastest axis last.
+/// A read-only NumPy array of the numbers from `first` on, without a copy. The array keeps `owner` alive. The
+/// last axis of `shape` is the fastest.
 template <typename Number>
 py::array shown(const Number* first, std::vector<py::ssize_t> shape, py::handle owner) {
   py::array array(py::dtype::of<Number>(), std::move(shape), first, owner);
@@ -23,23 +23,24 @@ py::array shown(const Number* first, std::vector<py::ssize_t> shape, py::handle 
 
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// Each throws std::invalid_argument naming `what` if the shape differs, or a number is not finite or out
-/// of its range.
+/// Each function throws std::invalid_argument, which names `what`, if the array has another shape or a number
+/// is not finite or out of range.
 glm::dvec3 vector_of(const Numbers& numbers, const char* what);
 std::vector<glm::dvec2> points_2d_of(const Numbers& numbers, const char* what);
 std::vector<glm::dvec3> points_3d_of(const Numbers& numbers, const char* what);
-/// `number` itself, which must lie from `low` to `high`; either may be infinite.
+/// Checks that `number` lies from `low` to `high`, which may be infinite, and returns it.
 double number_from(double number, double low, double high, const char* what);
-/// Row by row, as in NumPy and nibabel.
+/// A 4 x 4 matrix from its rows, as in NumPy and nibabel.
 glm::dmat4 matrix_of(const Numbers& numbers, const char* what);
 
-/// Names of files may be any bytes. Bytes that are not UTF-8 are written as escapes, \xff.
+/// The name of a file, which may consist of any bytes, as a Python string. Bytes that are not UTF-8 become
+/// escapes such as \xff.
 py::str text_of(const std::string& bytes);
 
 py::array array_of(const glm::dvec3& vector);
 py::array array_of(const glm::dmat4& matrix);
 
-/// JSON as dictionaries, lists and numbers.
+/// JSON as Python's dictionaries, lists, texts and numbers.
 py::object python_of(const nlohmann::ordered_json& json);
 
 }  // namespace octotomy::planner::python

@@ -10,7 +10,7 @@
 namespace octotomy::planner::python {
 namespace {
 
-/// In the order of Fault. Never freed: they live as long as Python does.
+/// The exception classes in the order of Fault. They are never freed, because Python uses them until it ends.
 std::array<PyObject*, 5> of_fault{};
 
 PyObject* new_error(py::module_& module, const char* name, const char* says, const py::object& bases) {

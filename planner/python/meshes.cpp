@@ -28,7 +28,7 @@ using brep::Solid;
 using brep::Triangles;
 using SharedTriangles = std::shared_ptr<Triangles>;
 
-/// At this distance doubles still distinguish points a ten-millionth of a millimetre apart.
+/// Up to this distance, doubles distinguish points that are a ten-millionth of a millimetre apart.
 constexpr double farthest_mm = 1e9;
 
 SharedTriangles triangles_of_arrays(const Numbers& vertices_mm, const Numbers& faces) {
@@ -110,13 +110,13 @@ void add_meshes(py::module_& module) {
             return python_of(
                 to_json(without_lock([&](const std::stop_token&) { return brep::health(triangles); })));
           },
-          "Whether it is closed, manifold, oriented and free of self-intersection, with findings.")
+          "Whether the mesh is closed, manifold, oriented and free of self-intersection, with findings.")
       .def(
           "solid",
           [](const Triangles& triangles) {
             return without_lock([&](const std::stop_token&) { return brep::solid_of(triangles); });
           },
-          "The solid that it bounds. Raises GeometryError with the first defect and its place.")
+          "The solid that the mesh bounds. Raises GeometryError with the first defect and its place.")
       .def("write", &write, py::arg("path"),
            "Writes .stl, .ply, .obj, .off, .vtp or .glb, by the name's extension.");
 
@@ -164,8 +164,9 @@ void add_meshes(py::module_& module) {
         return read;
       },
       py::arg("path"), py::arg("frame") = py::none(), py::arg("unit") = py::none(),
-      "Reads .stl, .ply, .obj, .off, .vtk, .vtp, .vtu, .glb or .3mf. The mesh's `audit` says which frame and "
-      "unit the file states, and what was assumed; `frame` (\"RAS\") and `unit` (\"inch\") override these.");
+      "Reads .stl, .ply, .obj, .off, .vtk, .vtp, .vtu, .glb or .3mf. The mesh's `audit` contains the frame "
+      "and unit that the file states, and what was assumed; `frame` (\"RAS\") and `unit` (\"inch\") override "
+      "these.");
   module.def("isosurface", &isosurface, py::arg("scan"), py::arg("low"), py::arg("high") = 32767.0,
              "The surface on which a scan's samples enter low..high.");
 }

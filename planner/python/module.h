@@ -3,7 +3,7 @@
 
 #include <pybind11/pybind11.h>
 
-// The parts of the module octotomy._kernel, each in a source of its own.
+// Each function adds the part of the module octotomy._kernel that its source file has.
 namespace octotomy::planner::python {
 
 void add_errors(pybind11::module_& module);

@@ -74,10 +74,10 @@ Octree read_octree(const std::filesystem::path& path) {
   if (auto* octree = std::get_if<Octree>(&file.tree)) return std::move(*octree);
   if (const auto* partial = std::get_if<voxel::PartialOctree>(&file.tree)) return partial->inside;
   throw voxel::Error(voxel::ErrorCode::Input,
-                     path.string() + ": holds grey samples and no object: use a scan's window");
+                     path.string() + ": contains grey samples, not an object: use a scan's window");
 }
 
-/// One region: a view's name and polygons in its millimetres.
+/// A region of a mask: a view, and polygons in the view's millimetres.
 voxel::Region region_of(const std::string& view, const std::vector<Numbers>& polygons_mm) {
   voxel::Region region{voxel::parse_view(view), {}};
   for (const Numbers& polygon : polygons_mm) region.polygons_mm.push_back(points_2d_of(polygon, "a polygon"));
@@ -117,13 +117,14 @@ void add_octrees(py::module_& module) {
           [](const Expression& expression, const voxel::Universe& universe) {
             return without_lock([&](const std::stop_token&) { return voxel::combine(universe, expression); });
           },
-          py::arg("universe"), "The voxels of the universe whose centres it contains.");
+          py::arg("universe"), "The octree of the universe's voxels whose centres the expression contains.");
 
   py::class_<Octree>(module, "Octree",
                      "A set of voxels of a universe; immutable. Its operators make expressions.")
       .def_static("of_voxels", &of_voxels, py::arg("voxels"), py::arg("universe"),
-                  "The voxels that are true, (z, y, x) from the universe's first voxel on.")
-      .def("voxels", &voxels_of, "All voxels as an array of truths (z, y, x).")
+                  "The octree of the voxels that are true in an array (z, y, x), which begins at the "
+                  "universe's first voxel.")
+      .def("voxels", &voxels_of, "All voxels as an array of truth values (z, y, x).")
       .def_property_readonly("universe", &Octree::universe)
       .def("__len__", [](const Octree& octree) { return octree.voxel_count(); })
       .def("__bool__", [](const Octree& octree) { return !octree.is_empty(); })
@@ -166,7 +167,7 @@ void add_octrees(py::module_& module) {
       [](const Numbers& normal, double offset_mm) {
         const glm::dvec3 direction = vector_of(normal, "normal");
         const double length = glm::length(direction);
-        if (length == 0.0) throw voxel::InvalidInput("normal must have a length");
+        if (length == 0.0) throw voxel::InvalidInput("normal must not be zero");
         return Expression(voxel::HalfSpace{direction / length, offset_mm / length});
       },
       py::arg("normal"), py::arg("offset_mm"), "The points p with normal . p <= offset_mm, LPS.");

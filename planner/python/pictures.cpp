@@ -17,7 +17,7 @@ namespace {
 using voxel::Picture;
 using SharedPicture = std::shared_ptr<Picture>;
 
-/// The largest size of the program's pictures.
+/// Largest number of pixels along a side of a picture.
 constexpr int most_px = 8192;
 
 voxel::DrawnObject drawn(const voxel::Octree& octree, const std::optional<voxel::GreyOctree>& grey,
@@ -54,8 +54,8 @@ void add_pictures(py::module_& module) {
   py::class_<voxel::DrawnObject>(module, "Drawn", "An object to draw, its colour 0 to 1 in sRGB.")
       .def(py::init(&drawn), py::arg("octree"), py::arg("grey") = py::none(), py::arg("threshold") = 0.0,
            py::arg("colour") = py::none(), py::arg("opacity") = 1.0f,
-           "With `grey` its surface lies where the samples reach `threshold`, otherwise its surface is the "
-           "voxels' surface.");
+           "With `grey`, its surface lies where the samples reach `threshold`; without, its surface is that "
+           "of its voxels.");
   py::class_<Picture, SharedPicture>(module, "Picture", "A picture with the depth and object of every pixel.")
       .def_property_readonly(
           "rgb",

@@ -17,7 +17,7 @@
 namespace octotomy::planner::python {
 namespace {
 
-/// A plan's result. Its parts that Python holds keep it alive.
+/// The result of a plan. Python objects that refer to a part of it keep the whole result alive.
 using SharedResult = std::shared_ptr<Result>;
 
 const Object& object_of(const Result& result, const std::string& id) {
@@ -67,7 +67,7 @@ void add_plans(py::module_& module) {
             for (const Object& object : result.evaluation.objects) names.push_back(object.id);
             return names;
           },
-          "The names of its objects, in the order of their steps.")
+          "The names of the result's objects, in the order of their steps.")
       .def_property_readonly("universe", [](const Result& result) { return result.evaluation.universe; })
       .def(
           "octree",

@@ -35,7 +35,7 @@ std::string meaning_of(const Scene& scene) {
   return "raw";
 }
 
-/// The array's samples, copied: a scan owns its own.
+/// A copy of an array's samples, which the scan then owns.
 template <typename Sample>
 voxel::Samples<Sample> samples_of(const py::array& array) {
   const auto dense = py::array_t<Sample, py::array::c_style>::ensure(array);
@@ -128,9 +128,9 @@ void add_scans(py::module_& module) {
       .def_property_readonly("meaning", &meaning_of)
       .def_property_readonly("unit", [](const Scene& scene) { return voxel::unit(scene); })
       .def_readonly("modality", &Scene::modality)
-      .def_readonly(
-          "padding", &Scene::padding,
-          "The sample where the scanner measured nothing, below all measured ones; None without any.")
+      .def_readonly("padding", &Scene::padding,
+                    "The sample of places where the scanner measured nothing, below all measured ones; None "
+                    "if there are no such places.")
       .def_property_readonly("source", [](const Scene& scene) { return text_of(scene.source); })
       .def_property_readonly("audit", [](const Scene& scene) { return python_of(to_json(scene.audit)); })
       .def(
@@ -158,7 +158,8 @@ void add_scans(py::module_& module) {
             });
           },
           py::arg("path"),
-          "Writes .nrrd, .nii, .nii.gz or .mha as the name ends. The names of the labels of a label map that "
+          "Writes .nrrd, .nii, .nii.gz or .mha, by the name's extension. The names of the labels of a label "
+          "map that "
           "was read from a file are written beside it, as .tsv.");
 
   module.def("read_scan", &read_scan, py::arg("path"), py::arg("series") = "",

@@ -10,9 +10,9 @@
 
 namespace octotomy::planner::python {
 
-/// The answer of work(stop), computed on a thread of its own while Python's other threads run. Ctrl-C sets
-/// the stop token, waits for the work to end, and raises KeyboardInterrupt. Precondition: the caller holds
-/// the interpreter's lock, and the work touches no Python object.
+/// Runs work(stop) on another thread, while other threads of Python can run, and returns its answer. Ctrl-C
+/// requests the work to stop, waits for its end and raises KeyboardInterrupt. Precondition: the caller holds
+/// the interpreter's lock, and the work uses no Python object.
 template <typename Work>
 auto without_lock(const Work& work) {
   std::packaged_task<decltype(work(std::stop_token{}))(std::stop_token)> task(work);

@@ -15,7 +15,7 @@ export function use_wire(one: Wire): void {
 export const ask = <Answer>(word: string, fields: object = {}): Promise<Answer> =>
     wire.ask<Answer>(word, fields);
 
-// Used as `lost` to give up: the request is not sent again.
+// A `lost` for try_to() that does not send the request again.
 const let_go = async(): Promise<null> => null;
 
 /// Sends a request once the connection is open. Shows a refusal to the person and returns null. If the
@@ -47,9 +47,10 @@ const next_greeting = (): Promise<void> => new Promise((resolve) => waiting_for_
 /// Resolves once the server has sent its first message to this page.
 export const first_greeting = (): Promise<void> => state.hello ? Promise.resolve() : next_greeting();
 
-/// Takes over a plan's state. For another plan, also restores how this browser last showed it, or fits the panes.
-/// `is_opened`: the person has opened it, so it is shown. Otherwise the start page stays in sight, and what
-/// arrives meanwhile is the state of the plan that was left, or of one that another window has opened.
+/// Makes `plan` the state that the page shows. If the page showed another plan before, also restores how this
+/// browser last showed this one, or fits the panes to its scan. `is_opened`: the person has opened the plan,
+/// so the page leaves the start page. Otherwise an open start page stays, because the state may belong to a
+/// plan that the person has left or that another window has opened.
 export function take_plan(plan: PlanState|null, is_opened = false): void {
   if (!plan) {
     leave_plan();
@@ -64,7 +65,8 @@ export function take_plan(plan: PlanState|null, is_opened = false): void {
       plan: {...plan, measurements: plan.measurements ?? known_measurements(plan)},
       jobs: plan.jobs ?? state.jobs
     });
-    // The window that edits evaluates what it shows; this one may show other objects.
+    // A window that may not edit can show other objects than the window that made this edit, so it requests
+    // its own evaluation.
     if (is_edited && !may_edit()) void evaluate();
     return;
   }
@@ -83,17 +85,18 @@ export function take_plan(plan: PlanState|null, is_opened = false): void {
   void evaluate();
 }
 
-// Whether a scan's file was replaced by another one. An added scan replaces none.
+// Whether a scan that the shown plan has was replaced by another file or removed. Added scans do not count.
 function has_other_scan(plan: PlanState): boolean {
   const before = state.plan?.plan.scans ?? {};
   return Object.entries(before).some(([name, scan]) => plan.plan.scans?.[name]?.path !== scan.path);
 }
 
-// A pane that an earlier version of the page stored may lack a field.
+// Panes with the usual value of every field that they lack, because an earlier version of the page may have
+// stored them.
 const with_usual = (panes: PaneSetting[]|undefined): PaneSetting[] =>
     usual_panes().map((usual, index) => ({...usual, ...panes?.[index]}));
 
-// Earlier measurements of the steps that have not changed since.
+// The page's measurements of those steps that are the same in `plan`.
 function known_measurements(plan: PlanState): Measurement[] {
   const before = new Map(steps().map((step) => [step.id, JSON.stringify(step)]));
   const unchanged = new Set(
@@ -121,8 +124,8 @@ export async function greet(): Promise<void> {
   const hello = await try_to<Hello>("hello", {}, let_go);
   if (!hello) return;
   set({hello, link: "open"});
-  // The program was restarted without the plan that this window shows. The plan's file and history are on the
-  // disk.
+  // A restarted program has no open plan, so the plan of this window is opened again. Its file and history
+  // are on the disk.
   const plan = hello.plan_state ??
       (state.plan && may_edit() ? await try_to<PlanState>("open", {path: state.plan.path}, let_go) : null);
   if (plan) take_plan(plan, !state.plan);
@@ -139,8 +142,8 @@ export async function open_plan(what: {path?: string; phantom?: string; series?:
   if (plan) take_plan(plan, true);
 }
 
-// Sends a change of the plan. If the connection breaks, sends it once more, unless `is_done` shows that the
-// change was made and only its answer was lost.
+// Sends a change of the plan. If the connection breaks before the answer, waits for the new connection and
+// sends the change once more, unless `is_done` finds it in the plan's state.
 async function change(word: string, fields: object, is_done: () => boolean): Promise<PlanState|null> {
   if (!may_edit()) {
     notify("This window only shows the plan.", "warning");
@@ -173,7 +176,7 @@ export const replace_step = (id: string, step: Step, what: string): Promise<bool
 export const add_steps = (more: Step[], what: string): Promise<boolean> =>
     edit({steps: [...steps(), ...more]}, what, more[more.length - 1]?.id ?? null);
 
-/// Requests a change of the plan and shows the resulting plan. Returns null if the change was refused.
+/// Requests a change of the plan and shows the resulting plan. Returns null if the server refused the change.
 export async function change_plan(word: string, fields: object = {}): Promise<PlanState|null> {
   const {branch, edit: before} = state.plan ?? {};
   const plan = await change(word, fields, () => state.plan?.edit !== before || state.plan?.branch !== branch);
@@ -186,8 +189,9 @@ export async function change_history(
   if (await change_plan(word, fields)) void evaluate();
 }
 
-/// Evaluates the shown objects, and the measurements and scans that steps make; with `certify`, the whole
-/// plan in both kernels. The results arrive as the event `objects`.
+/// Requests an evaluation of the shown objects and of the steps that make measurements or scans; with
+/// `certify`, an evaluation of the whole plan in both kernels. The results arrive later, as the event
+/// `objects`.
 export async function evaluate(certify = false): Promise<void> {
   if (!steps().length) return;
   const objects = objects_of_plan().flatMap((object) => (object.id ? [object.id] : []));
@@ -201,7 +205,8 @@ export interface MeasureAnswer extends Measured {
 export const measure = (kind: string, fields: object): Promise<MeasureAnswer|null> =>
     try_to("measure", {kind, ...fields});
 
-/// Places or moves a landmark at a point; with `snap`, on the nearest bone. Returns its position.
+/// Places the landmark `name` at a point, or moves it there; with `snap`, at the nearest bone. Returns the
+/// position of the landmark; null if the server refused it.
 export async function put_landmark(name: string, point: Vec3, snap: boolean): Promise<Vec3|null> {
   const answer = await try_to<{point: Vec3; snapped: boolean}>("landmark", {name, point, snap});
   if (answer && snap && !answer.snapped)
@@ -209,7 +214,7 @@ export async function put_landmark(name: string, point: Vec3, snap: boolean): Pr
   return answer?.point ?? null;
 }
 
-/// A name that no step has: the stem, or the stem with a number.
+/// The stem if no step has that name, else the stem with the first free number from 2 on.
 export function free_id(stem: string): string {
   const taken = new Set(steps().map((step) => step.id));
   if (!taken.has(stem)) return stem;
@@ -224,7 +229,7 @@ export function window_step(low: number, high?: number): Step {
 }
 
 let next_busy = -1;
-/// Shows work that the page waits for as a job without a percentage.
+/// Adds a job without a percentage to the list of running jobs. Returns its number, which done() removes.
 export function busy(what: string): number {
   const id = next_busy--;
   set({jobs: [...state.jobs, {id, what, share: 0}]});

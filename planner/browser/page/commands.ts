@@ -51,7 +51,8 @@ export function remove_step(step: Step): void {
   void edit({remove: step.id}, `${step.id} removed`, null);
 }
 
-/// Puts a step where another one stands. The server refuses an order in which a step precedes what it uses.
+/// Moves a step to a place in the list, counted from 0. The server refuses an order in which a step comes
+/// before a step that it uses.
 export function put_step_at(id: string, place: number): void {
   const now = steps().findIndex((step) => step.id === id);
   const moved = steps()[now];
@@ -96,8 +97,8 @@ export function compare_selected(): void {
 }
 
 const contact_range_mm = 2;
-/// Colours two objects by their distance to each other. Shows them from the front and the left, and each
-/// alone from the side of the other one.
+/// Colours two objects by their distance to each other. Two panes show both from the front and from the left;
+/// two show one object alone, seen from the side of the other. A second call ends this.
 export function map_contacts(): void {
   if (state.compare) return clear_compare();
   const step = selected_step();
@@ -135,7 +136,7 @@ export function clear_compare(): void {
   for (const pane of all_panes()) pane.want(false);
 }
 
-/// Commands that only change how this window looks at the plan.
+/// Commands that change only how this window shows the plan.
 function looking_commands(): Command[] {
   const of_a_pane: Command[] = [
     {name: "Fit all panes", key: "0", run: fit_all},
@@ -244,12 +245,12 @@ export function all_commands(): Command[] {
     {name: "Save", key: "ctrl+s", run: () => void save()},
     {
       name: "Merge with another plan",
-      says: "Takes over what somebody else has changed in a copy of this plan.",
+      says: "Takes over the changes that somebody else has made in a copy of this plan.",
       run: () => dialogs.merge()
     },
     {
       name: "Signatures",
-      says: "Who has approved the plan, what has changed since, and a new signature.",
+      says: "Shows who has approved the plan and what has changed since, and adds a signature.",
       run: () => dialogs.sign()
     },
     {
@@ -368,7 +369,7 @@ export async function name_version(): Promise<void> {
   if (name) await change_history("name_version", {name});
 }
 
-/// The command of a key press, if there is one. While a text is typed, letter keys run no commands.
+/// The command of a key press; undefined if there is none. Letter keys run no commands while a text is typed.
 export function command_of(event: KeyboardEvent): Command|undefined {
   const target = event.target as HTMLElement;
   const is_typing = target.matches("input, textarea, select");

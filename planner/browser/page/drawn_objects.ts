@@ -9,18 +9,18 @@ const bone = ["#ede3cc", "#d9c7a0", "#cfd3d6"];
 const moved = ["#e08a3c", "#3fa7a0", "#a678de", "#d0649b", "#7fae3e"];
 export const mask_colour = "#5b9dff";
 export const overlap_colour = "#e5484d";
-// Colours of a difference: the part only in the dragged piece, the part only in the other object, and the
-// part in both.
+// Colours of the difference between a dragged piece and another object: the part only in the piece, the part
+// only in the other object, and the common part.
 export const only_moved_colour = "#e08a3c";
 export const only_other_colour = "#5b9dff";
 export const common_colour = "#cfd3d6";
-/// A warp also displaces its object, though not rigidly.
+/// Whether a step displaces its object, rigidly or by a warp.
 const is_displaced = (step: Step): boolean => moves_object(step) || step.do === "warp";
 const is_union = (step: Step): boolean =>
     step.do === "combine" && typeof step.expression === "string" && !/[&^~-]/.test(step.expression);
 
-/// Whether a step is the interference of pieces, which is drawn in red: the intersection of pieces of which
-/// one is moved, or which a union of the plan joins, such as a graft and the bone.
+/// Whether a step is the overlap of pieces, which is drawn in red. It is an intersection, and one of its
+/// operands has been moved or a union of the plan joins all of them, such as a graft and the bone.
 export function is_overlap(step: Step, all: Step[]): boolean {
   if (step.do !== "combine" || typeof step.expression !== "string" || !/^[\w\s&|()]*&[\w\s&|()]*$/.test(step.expression))
     return false;
@@ -30,12 +30,12 @@ export function is_overlap(step: Step, all: Step[]): boolean {
       pieces.some((name) => all.some((other) => other.id === name && is_displaced(other)));
 }
 
-/// Whether a step is the part of an object inside a mask. Such a piece has its own colour even before it
-/// moves.
+/// Whether a step is an intersection without unions and differences, usually an object's part inside a mask.
+/// Such a piece has its own colour even before a step moves it.
 export const is_piece = (step: Step): boolean => step.do === "combine" &&
     typeof step.expression === "string" && /^[^|^~-]*&[^|^~-]*$/.test(step.expression);
 
-/// Whether a later union leaves this piece out, because it is removed or only measured.
+/// Whether a step is a piece that a later union leaves out, because the piece is removed or only measured.
 function is_left_out(step: Step, all: Step[]): boolean {
   return is_piece(step) && !is_overlap(step, all) &&
       all.slice(all.indexOf(step)).some((later) => is_union(later) && !operands(later).includes(step.id));
@@ -92,14 +92,14 @@ export function look_of(id: string): Shown {
 /// The ids of the plan's objects, in the order of its steps.
 export const object_ids = (): string[] => steps().filter(makes_shape).map((step) => step.id);
 
-/// The objects that the panes request: those of the plan, or the bone of a scan that lies in a frame of its
-/// own.
+/// The objects that panes request. For a scan that lies in its own frame of reference, that is its bone;
+/// otherwise the objects of the plan.
 export function drawn_objects(): DrawnObject[] {
   if (!is_elsewhere()) return objects_of_plan();
   return [{window: {scan: shown_scan(), low: bone_low(shown_scan()), alone: true}, colour: bone[0]!, opacity: 1}];
 }
 
-/// The plan's visible objects, and a window that is being set.
+/// The plan's visible objects, and the window that the person is setting.
 export function objects_of_plan(): DrawnObject[] {
   const drawn: DrawnObject[] = [];
   const failed =

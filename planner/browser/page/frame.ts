@@ -70,7 +70,7 @@ export function make_bar(host: HTMLElement): void {
   again();
 }
 
-/// Gives the page the layout of what its window may do.
+/// Adapts the page's layout to a window that may only show the plan, and to a window with one pane.
 export function follow_access(): void {
   const again = (): void => {
     document.body.classList.toggle("looks-only", !may_edit());

@@ -114,7 +114,7 @@ function make_page(): void {
 function follow_keys(): void {
   addEventListener("keydown", (event) => {
     const is_palette = (event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "k";
-    // Otherwise the browser would use the key for its own address bar.
+    // Without this, the browser would use the key for its address bar.
     if (is_palette) event.preventDefault();
     if (document.querySelector("dialog[open]")) return;
     if (is_palette) return open_palette();

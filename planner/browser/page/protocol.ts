@@ -37,10 +37,10 @@ export interface ScanState {
   range?: [number, number];
   unit?: string;
   window_suggestion?: [number, number]|null;
-  bone_low?: number|null;  // where bone begins in this scan's own samples
+  bone_low?: number|null;  // lower bound of bone in this scan's samples
   patient?: Patient|null;  // null: the scan states none
 }
-/// The identity of a scan's patient; null for attributes that the scan does not state.
+/// A patient as a scan states it. Attributes that the scan does not state are null.
 export interface Patient {
   name: string|null;
   number: string|null;
@@ -49,18 +49,19 @@ export interface Patient {
   sex: string|null;
   study_date: string|null;
 }
-/// The plane about which an object was mirrored. The fit's values are null if the plane was given.
+/// The plane about which an object was mirrored. If the step states the plane, the values of the fit are
+/// null.
 export interface MirrorPlane {
   plane: {point_mm: Vec3; normal: Vec3};
   rms_mm: number|null;
   kept_share: number|null;
   converged: boolean|null;
 }
-/// A thin neck by which only one kernel connects a part. `kept`: both kernels keep the part; else the plan
-/// has to decide.
+/// A thin neck by which a part is connected in only one kernel. `kept`: both kernels keep the part. Otherwise
+/// they differ, and the plan should decide.
 export interface Neck {
   at_mm: Vec3;
-  volume_mm3: number|null;  // of the part beyond it
+  volume_mm3: number|null;  // of the part beyond the neck
   kept: boolean;
 }
 export interface ObjectState {
@@ -120,7 +121,7 @@ export interface PlanState {
   measurements?: Measurement[];
   jobs?: Job[];
 }
-/// A landmark that a rule proposes and nobody has confirmed.
+/// A landmark proposed by a rule, which no person has confirmed.
 export interface LandmarkGuess {
   name: string;
   says: string;
@@ -141,7 +142,7 @@ export interface ProcedureSays {
   landmarks: {name: string; says: string; scan?: string}[];
   scans: {name: string; says: string}[];
   values: ProcedureValue[];
-  options: {name: string; says: string; values: ProcedureValue[]}[];  // steps that a person may choose
+  options: {name: string; says: string; values: ProcedureValue[]}[];  // optional further steps
 }
 export interface Tissue {
   name: string;
@@ -174,7 +175,7 @@ export interface Schema {
 export interface Hello {
   version: string;
   may_edit: boolean;    // false: this window only shows the plan
-  view_token?: string;  // that of pages which only show the plan, if the server has them
+  view_token?: string;  // the token of windows that only show the plan; absent if the server has none
   plan_state: PlanState|null;
   schema: Schema;
   procedures: ProcedureSays[];
@@ -183,7 +184,7 @@ export interface Hello {
   most_upload_bytes?: number;
 }
 
-/// A point of a piece and its target.
+/// A point of a piece and the point to which it is to move.
 export type MarkPair = {
   at: Vec3; to: Vec3
 };
@@ -198,7 +199,7 @@ export interface DrawnObject {
   window?: {scan: string; low: number; high?: number; alone?: boolean};
   colour: string;
   opacity: number;
-  hatched?: boolean;  // in slices: its inside is hatched
+  hatched?: boolean;  // a slice hatches the inside of this object
 }
 export interface PaneRequest {
   pane: number;
@@ -227,11 +228,12 @@ export interface PaneRequest {
   cut_planes?: [number, number, number, number][];
   cut_face?: "plain"|"grey";
   shading?: string;
-  stereo_deg?: number;  // for red and cyan glasses: the angle between the eyes
+  stereo_deg?: number;  // angle between the two eyes of a picture for red and cyan glasses
   background?: string;
   dragging: boolean;
 }
-/// A dragged piece compared with another object: the volumes in only one of them, and in both.
+/// A dragged piece compared with the object `to`: the volume that only the piece contains, that only the
+/// other object contains, and that both contain.
 export interface Difference {
   to: string;
   only_moved_mm3: number;
@@ -256,5 +258,5 @@ export interface FrameHeader {
 export interface Notice {
   message: string;
   level: "info"|"warning"|"error";
-  act?: {label: string; run(): void};  // an action that solves the problem
+  act?: {label: string; run(): void};  // a button with an action that solves the problem
 }

@@ -3,7 +3,7 @@
 // shows the plan comes over a channel between windows of this browser.
 import {PaneSetting, set, shows_one_pane, State, state, watch} from "./state";
 
-/// What the second window takes over from the first one.
+/// Parts of the state that the second window takes over from the first one.
 const followed = [
   "looks", "selected", "scan", "cross_mm", "grey", "draft_window", "preview", "compare", "cut_plane", "arch_mm", "marked",
   "theme", "hides_patient"
@@ -11,14 +11,14 @@ const followed = [
 type Followed = Pick<State, typeof followed[number]>;
 
 interface Message {
-  path: string;  // of the plan, because the windows open another one at different times
+  path: string;  // of the plan: one window may have opened another plan already
   asks_pane?: number;
   pane?: {setting: PaneSetting; side_px: number};
   values?: Partial<Followed>;
 }
 
 let channel: BroadcastChannel|null = null;
-// The followed values as texts, as both windows last had them.
+// The last values that were sent or received, as texts. Only other values are sent.
 let known: {[key: string]: string} = {};
 const text_of = (value: unknown): string => JSON.stringify(value) ?? "";
 
@@ -48,7 +48,7 @@ const side_of = (pane: number): number => {
   return canvas ? Math.min(canvas.clientWidth, canvas.clientHeight) : 0;
 };
 
-/// Opens the pane in a second window, which a person puts on another screen.
+/// Opens a pane in a second browser window, which can be moved to another screen.
 export function open_second_screen(pane: number): void {
   const number = sessionStorage.getItem("octotomy-screen") ?? crypto.randomUUID();
   sessionStorage.setItem("octotomy-screen", number);
@@ -56,7 +56,8 @@ export function open_second_screen(pane: number): void {
   window.open(`/${location.search}#screen=${number}&pane=${pane}`, `octotomy-${number}-${pane}`, "popup,width=1200,height=900");
 }
 
-/// Sends the followed values to second windows. The number outlives a reload of the first window, so that they still follow it.
+/// Sends the followed values to second windows. The number is stored for the session, so that second windows
+/// still follow after the first one is reloaded.
 function lead(number: string): void {
   if (channel) return;
   channel = new BroadcastChannel(`octotomy-${number}`);
@@ -72,7 +73,8 @@ function lead(number: string): void {
   watch([...followed], () => say_changes(followed));
 }
 
-/// Makes this window follow the first one, where its address says that it is a second one; otherwise goes on leading.
+/// Starts following the first window, if the address states that this is the second one. Otherwise continues
+/// to lead second windows, if there were any before a reload.
 export function begin_screen(): void {
   const address = new URLSearchParams(location.hash.slice(1));
   const number = address.get("screen"), pane = Number(address.get("pane") ?? 0);
@@ -91,7 +93,7 @@ export function begin_screen(): void {
     is_led = true;
     take_values(data.values);
   };
-  // Both windows leave a plan by themselves, with values of their own.
+  // Each window opens and leaves plans by itself. For a new plan, this one requests the settings again.
   watch(["plan"], () => {
     const path = state.plan?.path ?? "";
     if (path === asked_for) return;
@@ -99,7 +101,7 @@ export function begin_screen(): void {
     is_led = false;
     if (path) say({asks_pane: pane});
   });
-  // A click brings the cross-hair of both.
+  // A click in this window also moves the cross-hair of the first one.
   watch(["cross_mm"], () => {
     if (is_led) say_changes(["cross_mm"]);
   });

@@ -9,33 +9,34 @@ export interface PaneSetting {
   mode: "view"|"slice"|"panoramic";
   view: View;
   plane: PlaneName;
-  tilt: Turned;   // direction in which the oblique plane is viewed
-  only?: string;  // the one object that the pane shows
+  tilt: Turned;   // angles of the view direction of the oblique plane
+  only?: string;  // id of the only object that the pane shows
   shading: string;
   centre_mm: Vec3;
-  pixel_mm: number;  // size of a CSS pixel
+  pixel_mm: number;  // size of a CSS pixel in the patient
 }
 export interface ObjectLook {
   colour?: string;
   visible?: boolean;
   opacity?: number;
-  behind?: string;  // id of a step: this object is hidden as long as the plan has that step
+  behind?: string;  // id of a step: the object is hidden while the plan has this step
 }
-/// An object drawn in place of another: the object `of` after a motion, or the last object that steps outside
-/// the plan make.
+/// An object that is drawn but not in the plan: the object `of` after a motion, or the last object made by
+/// steps that are not in the plan.
 export type Preview = PaneRequest["preview"]&{};
-/// What the server computed for a preview of steps, or the reason why there is nothing.
+/// The volume that the server computed for a preview, or its reason to refuse the preview. `refusal` is empty
+/// if there was none.
 export interface Tried {
   mm3: number;
   voxels: number;
-  findings?: string[];  // for example on parts that the volume leaves out
-  is_coarse?: boolean;  // the picture was made during a drag
+  findings?: string[];  // for example about parts that the volume leaves out
+  is_coarse?: boolean;  // computed during a drag, in coarse voxels
   refusal: string;
 }
-/// Proposals to clean an object, to preview and to apply; none is applied by itself.
+/// Proposals to clean an object. The person can preview each; only a click adds its step to the plan.
 export interface Cleaning {
   object: string;
-  of: string;  // the data from which the proposals were computed, as a text
+  of: string;  // everything from which the proposals were computed, as a text
   is_looking: boolean;
   proposals: Proposal[];
   dismissed: string[];  // names of proposals
@@ -47,7 +48,8 @@ export interface Proposal {
   doubts: string[];
   made: Step;  // the step that a click adds
 }
-/// A window that is being set and is not a step yet. If it changes a step, that step is not drawn.
+/// A window whose thresholds the person is setting. `replaces` is the step that it changes, which is then not
+/// drawn; none for a new step.
 export interface DraftWindow {
   scan: string;
   low: number;
@@ -63,7 +65,7 @@ export interface Compare {
   object: string;
   reference: string;
   range_mm: number;
-  mutual?: boolean;  // both are coloured: a map of their contacts
+  mutual?: boolean;  // both objects are coloured, as in a map of contacts
 }
 
 export interface State {
@@ -73,7 +75,7 @@ export interface State {
   scan: string|null;  // the scan that panes show; null: the patient's
   page: "start"|"audit"|"plan";
   theme: "system"|"light"|"dark";
-  hides_patient: boolean;  // no screen or report of this window names the patient
+  hides_patient: boolean;  // whether screens and reports of this window leave out the patient
   panes: PaneSetting[];
   maximised: number|null;
   active_pane: number;
@@ -86,21 +88,21 @@ export interface State {
   preview: Preview|null;
   overlap_mm3: number|null;
   tried: Tried|null;
-  difference_to: string|null;    // the object whose difference to a dragged piece is drawn in two colours
-  difference: Difference|null;  // of the newest picture of the dragged piece
+  difference_to: string|null;    // the object with which a dragged piece is compared in two colours
+  difference: Difference|null;  // as stated by the newest picture of the dragged piece
   cleaning: Cleaning|null;
   compare: Compare|null;
   cut_plane: CutPlane|null;
   arch_mm: Vec3[];                           // points of the panoramic sheet, left to right
   marked: {at_mm: Vec3; says: string}|null;  // the place that a certificate names
-  guesses: LandmarkGuess[];                  // landmarks to look at, none of them in the plan
+  guesses: LandmarkGuess[];                  // proposed landmarks that are not in the plan
   tool: string;
   left_tab: "objects"|"steps"|"history";
   right_tab: "inspector"|"numbers"|"movement";
   jobs: Job[];
   notices: (Notice&{key: number})[];
   tour: number|null;
-  evaluations: number;  // how often the server has sent evaluated objects, after which pictures may change
+  evaluations: number;  // how many times evaluated objects have arrived; each may change the pictures
   pointer: string;      // description of the place under the pointer
 }
 
@@ -114,7 +116,7 @@ const pane = (mode: PaneSetting["mode"], view: View, plane: PlaneName): PaneSett
   pixel_mm: 0.6,
 });
 
-/// The usual layout: anterior, left, superior, and one view to rotate freely.
+/// The usual panes: anterior, left and superior view, and a view to rotate freely.
 export const usual_panes = (): PaneSetting[] =>
     [pane("view", "anterior", "coronal"),
      pane("view", "left", "sagittal"),
@@ -122,7 +124,7 @@ export const usual_panes = (): PaneSetting[] =>
      pane("view", {azimuth: 35, elevation: 15}, "axial"),
 ];
 
-/// The keys that belong to a plan, with their values when no plan is shown.
+/// Those parts of the state that belong to a plan, with their values while no plan is shown.
 const without_plan = () => ({
   scan: null,
   maximised: null,
@@ -165,9 +167,10 @@ const first: State = {
   evaluations: 0,
 };
 
-/// Whether this is a second window, which shows one pane large and follows the first (second_screen.ts).
+/// Whether this is a second window, which shows one large pane and follows the first window
+/// (second_screen.ts).
 export const shows_one_pane = new URLSearchParams(location.hash.slice(1)).has("screen");
-/// Whether this window may change the plan. The server refuses the others whatever their page requests.
+/// Whether this window may change the plan. The server also refuses changes by other windows.
 export const may_edit = (): boolean => !shows_one_pane && state.hello?.may_edit !== false;
 
 type Key = keyof State;
@@ -176,7 +179,8 @@ const watchers: {keys: Set<Key>; call: () => void}[] = [];
 const changed = new Set<Key>();
 let is_queued = false;
 
-/// Changes the state. Functions that watch one of the keys are called once, before the next picture.
+/// Changes the state. Afterwards each function that watches a changed key is called once, even after several
+/// calls of set() in a row.
 export function set(patch: Partial<State>): void {
   for (const key of Object.keys(patch) as Key[]) changed.add(key);
   Object.assign(state, patch);
@@ -198,26 +202,26 @@ export function watch(keys: Key[], call: () => void): void {
   watchers.push({keys: new Set(keys), call});
 }
 
-/// Shows or hides the patient on every screen and in new reports. The choice is stored in this browser.
+/// Shows or hides the patient in this window and in new reports, and stores the choice in the browser.
 export function hide_patient(hides_patient: boolean): void {
   localStorage.setItem("octotomy_hides_patient", hides_patient ? "yes" : "no");
   set({hides_patient});
 }
 
 const plan_leavers: (() => void)[] = [];
-/// Registers a function to be called when the window leaves a plan, so that no part of the page carries a
-/// value of one patient into the next plan.
+/// Registers a function that is called when the window leaves a plan. It must clear the values that its file
+/// stores about the plan, so that no patient's value reaches the next plan.
 export function on_leaving_plan(call: () => void): void {
   plan_leavers.push(call);
 }
-/// Clears everything in this window that belongs to the shown plan, including the current tool.
+/// Resets every part of the state that belongs to the plan, and calls the functions of on_leaving_plan().
 export function leave_plan(): void {
   for (const call of plan_leavers) call();
-  // Errors that are still shown belong to the plan that is left, so they are removed.
+  // Errors that are still shown belong to the old plan.
   set({...without_plan(), notices: state.notices.filter((notice) => notice.level !== "error")});
 }
-/// Clears the data of a scan whose file was replaced in the same plan: tools and their drafts. How objects
-/// are shown stays.
+/// Clears tools and drafts that belong to a scan whose file was replaced in the same plan. The looks of
+/// objects stay.
 export function leave_scan(): void {
   for (const call of plan_leavers) call();
   set({
@@ -235,8 +239,8 @@ export function leave_scan(): void {
   });
 }
 
-// Keys by which a window shows a plan. The browser stores them by the plan's path; the plan itself is on the
-// server.
+// Parts of the state that the browser stores for each plan, under the plan's path. The plan itself is stored
+// by the server.
 const kept: Key[] = [
   "page",
   "panes",
@@ -259,11 +263,12 @@ function keep(): void {
   localStorage.setItem(`octotomy:${state.plan.path}`, JSON.stringify({...view, scans_then: mark_of_scans(state.plan)}));
 }
 
-// The files of a plan's scans and their positions, as a text; empty before they are read.
+// Names, files and positions of a plan's scans, as a text to compare; empty if the server has not read them
+// yet.
 const mark_of_scans = (plan: PlanState): string =>
     plan.scans.map(({name, path, dims, bounds_mm}) => JSON.stringify([name, path, dims, bounds_mm])).join();
 
-/// How this browser last showed the plan; null if it never did, or if the plan at this path now has other
+/// How this browser last showed the plan. Null if it never did, or if the plan at this path now has other
 /// scans.
 export function kept_view(plan: PlanState): Partial<State>|null {
   const text = localStorage.getItem(`octotomy:${plan.path}`);
@@ -283,16 +288,16 @@ export const selected_step = (): Step|undefined => step_of(state.selected);
 export const first_scan = (): string => state.plan?.scans[0]?.name ?? "ct";
 export const shown_scan = (): string =>
     state.plan?.scans.find((scan) => scan.name === state.scan)?.name ?? first_scan();
-/// The threshold of bone in a scan's own samples. A scan without Hounsfield units has no fixed one.
+/// The lower bound of bone in a scan's own samples; 300 if the server states none.
 export const bone_low = (scan: string): number =>
     state.plan?.scans.find((one) => one.name === scan)?.bone_low ?? 300;
-/// Whether panes show a scan in a frame of its own, such as a donor's. The plan's objects are not in that
-/// frame.
+/// Whether the panes show a scan that lies in its own frame of reference, such as a donor's. The plan's
+/// objects cannot be drawn in that frame.
 export const is_elsewhere = (): boolean =>
     shown_scan() !== first_scan() && shown_scan() in (state.plan?.plan.scans ?? {});
 
 let next_notice = 1;
-/// Shows a message to the person; an error stays until it is closed.
+/// Shows a message. An error stays until the person closes it; other messages vanish after some seconds.
 export function notify(message: string, level: Notice["level"] = "info", act?: Notice["act"]): void {
   const key = next_notice++;
   set({

@@ -3,8 +3,8 @@
 // a loss.
 import {FrameHeader, Json} from "./protocol";
 
-/// A refusal by the server, with its code: input, geometry, cancelled, resource, internal or changed; or
-/// "lost" if the connection broke.
+/// A request that failed. `code` is the server's: input, geometry, cancelled, resource, internal or changed;
+/// or "lost" if the connection broke.
 export class Refusal extends Error {
   constructor(message: string, readonly code: string) {
     super(message);
@@ -26,8 +26,8 @@ interface Waiting {
 const first_retry_ms = 400;
 const last_retry_ms = 5000;
 
-/// The interval at which the page tests the connection, and the silence after which it counts as broken. A
-/// network that drops packets reports nothing.
+/// Time between two tests of the connection, and the time without any message after which it counts as
+/// broken. A network that drops packets reports no error.
 const ask_alive_ms = 2000;
 const longest_silence_ms = 8000;
 
@@ -73,11 +73,12 @@ export class Wire {
 
   private ask_alive(socket: WebSocket): void {
     const now = performance.now();
-    // A tab that was asleep sends a test first and waits for its answer.
+    // A browser may suspend a tab. Its silence does not count; the next test shows whether the connection
+    // still works.
     if (now - this.asked_at > 2 * ask_alive_ms) this.heard_at = now;
     this.asked_at = now;
     if (now - this.heard_at > longest_silence_ms) {
-      // The socket's own close() would wait for the other side.
+      // close() alone would call onclose only after the server's answer, which may never arrive.
       socket.onopen = socket.onmessage = socket.onclose = null;
       socket.close();
       this.closed();
@@ -86,8 +87,8 @@ export class Wire {
     }
   }
 
-  /// Sends a request. The promise is rejected with a Refusal if the server refuses it or the connection
-  /// breaks. `on_id` is called at once, with the request's id.
+  /// Sends a request. Rejects with a Refusal if the server refuses the request or the connection breaks.
+  /// Calls `on_id` with the request's id before sending.
   ask<Answer>(word: string, fields: object = {}, on_id?: (id: number) => void): Promise<Answer> {
     const id = this.next_id++;
     on_id?.(id);
@@ -135,7 +136,7 @@ export class Wire {
       parts.push(new Uint8Array(data, at, part.bytes));
       at += part.bytes;
     }
-    // A picture is itself the answer to its request; a text answer need not follow.
+    // A picture answers its request without a further text message.
     this.waiting.get(header.id)?.resolve(header);
     this.waiting.delete(header.id);
     this.events.picture(header, parts);

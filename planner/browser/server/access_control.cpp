@@ -36,7 +36,7 @@ std::string decoded(std::string_view text) {
   return plain;
 }
 
-/// Takes the same time wherever the two differ, to prevent timing attacks.
+/// Takes the same time wherever two tokens differ, to prevent timing attacks.
 bool are_equal(const std::string& a, const std::string& b) {
   unsigned difference = a.size() == b.size() ? 0u : 1u;
   for (std::size_t i = 0; i < a.size(); ++i)

@@ -10,7 +10,7 @@
 namespace octotomy::planner::serve {
 namespace {
 
-/// Sides of the tracing: enough for a dialog over the whole page.
+/// Width and height of the tracing: enough for a dialog that fills the page.
 constexpr int tracing_px = 900;
 
 std::string tracing_of(const Objects& objects, const Cephalometry& definitions,
@@ -39,7 +39,7 @@ Json cephalometry(Session& session, const Json&, const Watched& watched) {
         "example, under these names");
   Json findings = Json::array();
   for (const auto& [step, why] : made.errors)
-    findings.push_back("'" + step + "' is left out, so what it moves counts as unmoved: " + why);
+    findings.push_back("'" + step + "' failed, so the objects that it moves count as unmoved: " + why);
   return {{"table", planner::to_json(found, {})},
           {"cephalogram", tracing_of(objects, definitions, landmarks, watched)},
           {"findings", findings}};

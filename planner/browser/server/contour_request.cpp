@@ -21,15 +21,15 @@ namespace {
   throw voxel::Error(voxel::ErrorCode::Input, why);
 }
 
-/// A thinned contour, unless it would cross itself.
+/// Thins a contour. Returns it unchanged if the thinned one would cross itself.
 std::vector<glm::dvec2> thinned(const std::vector<glm::dvec2>& polygon, double thin_mm) {
   if (!(thin_mm > 0.0)) return polygon;
   const brep::Contour thin = brep::thin({polygon}, thin_mm);
   return brep::first_crossing(thin) ? polygon : thin.points_mm;
 }
 
-/// Contours rounded to a hundredth of a millimetre. Points that then equal the one before are left out, and
-/// so are contours that then enclose no area.
+/// Contours as JSON, thinned and rounded to hundredths of a millimetre. Leaves out points that then equal the
+/// previous one, and contours that then enclose no area.
 Json polygons_json(const PlaneContours& polygons, double thin_mm) {
   constexpr double least_mm2 = 0.01 * 0.01;
   Json all = Json::array();
@@ -49,7 +49,8 @@ Json polygons_json(const PlaneContours& polygons, double thin_mm) {
   return all;
 }
 
-/// The mesh kernel's surface; if the object is not certified yet, the surface half way between voxels.
+/// The mesh kernel's surface of an object. If the object is not certified yet, this is the surface half way
+/// between its voxels and those outside.
 brep::Mesh surface_of(const Object& object) {
   if (object.mesh.within) return object.mesh.within->mesh();
   if (object.certificate) refuse_contours("'" + object.id + "' has no surface: see its findings");

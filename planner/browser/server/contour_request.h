@@ -7,9 +7,9 @@
 namespace octotomy::planner::serve {
 
 /// {"view", "position_mm", "seed_mm", "scan", "tolerance" or "low" and "high"} -> {"polygons_mm", "sample"}:
-/// the contours of a region of a scan's slice around a seed, first its outline and then its holes, in the
-/// view's millimetres. With "object" in place of a scan and seed: the contours at which the plane cuts its
-/// surface. Points are thinned to "thin_mm".
+/// in a slice of a scan, the contours of the region around a seed, its outline first and then its holes, in
+/// the view's millimetres. With "object" in place of scan and seed: the contours in which the slice cuts the
+/// object's surface. Points within "thin_mm" of the remaining contour may be left out.
 Json trace_contours(Session& session, const Json& said, const Watched& watched);
 
 }  // namespace octotomy::planner::serve

@@ -14,7 +14,7 @@
 namespace octotomy::planner::serve {
 namespace {
 
-/// Largest number of edits that a page lists.
+/// Largest number of edits in the list of a page.
 constexpr std::int64_t most_listed = 200;
 
 Json::iterator find_step(Json& steps, const std::string& id) {
@@ -26,7 +26,7 @@ Json::iterator find_step(Json& steps, const std::string& id) {
   throw std::runtime_error("the plan has no step '" + id + "'" + suggestion(id, ids));
 }
 
-/// The points of the plan's first landmarks step with typed points; adds one if there is none.
+/// The points of the plan's first landmarks step that states its points. Adds such a step if there is none.
 Json& points_in(Json& steps) {
   auto found = std::find_if(steps.begin(), steps.end(), [](const Json& step) {
     return step.value("do", "") == "landmarks" && step.contains("points");
@@ -77,9 +77,9 @@ void need_files_of_record(const Json& record, const std::vector<Field>& fields,
   }
 }
 
-/// Refuses files of a plan's text that the page may not read. Steps such as landmarks, transforms, saws and
-/// masks read their files while they are parsed, so before a later check, an error could already quote a
-/// file.
+/// Refuses a plan's text if its steps name files that the page may not read. Must run before the text is
+/// parsed: steps such as landmarks, transforms, saws and masks read their files then, and an error could
+/// already quote a forbidden file.
 void need_files_within(const Json& plan, const std::filesystem::path& folder, const Folders& folders) {
   const auto steps = plan.find("steps");
   if (steps == plan.end() || !steps->is_array()) return;
@@ -92,16 +92,18 @@ void need_files_within(const Json& plan, const std::filesystem::path& folder, co
   }
 }
 
-/// Refuses a plan that reads files which the page may not read: a path in a plan grants no permission.
+/// Refuses a plan with scans or files that the page may not read. That a plan names a path is no permission
+/// to read it.
 void need_readable_files(const Plan& plan, const Folders& folders) {
   for (const auto& [name, scan] : plan.scans) folders.need_readable(scan_path(plan, scan));
   for (const Step& step : plan.steps)
     for (const std::filesystem::path& file : files_read(step)) folders.need_readable(plan.folder / file);
 }
 
-/// Refuses new names that a list could not show; names already in the plan are accepted.
+/// Refuses new names of landmarks that are too long or contain control characters. Names that the plan
+/// already has are accepted.
 void need_short_names(const std::vector<NamedPoint>& landmarks, const std::vector<NamedPoint>& known) {
-  constexpr std::size_t longest_name = 200;  // in bytes, as of a branch
+  constexpr std::size_t longest_name = 200;  // in bytes, as for the name of a branch
   for (const NamedPoint& landmark : landmarks) {
     const std::string& name = landmark.name;
     if (std::any_of(known.begin(), known.end(), [&](const NamedPoint& old) { return old.name == name; }))
@@ -118,14 +120,14 @@ void need_short_names(const std::vector<NamedPoint>& landmarks, const std::vecto
 
 Document::Document(const std::filesystem::path& path, const Folders& folders)
     : path_(path), folders_(folders) {
-  // Refuses an invalid plan, or one that reads forbidden files, before a history is begun.
+  // Refuses an invalid plan, or a plan that reads forbidden files, before its history is written.
   other(path_);
   history_ = std::make_unique<PlanHistory>(path_);
   read_again();
 }
 
 Plan Document::other(const std::filesystem::path& path) const {
-  // Refuses files that the page may not read before they are read.
+  // Must precede read_plan(), which reads files that steps name.
   need_files_within(Json(read_json(path)), path.parent_path(), folders_);
   Plan plan = read_plan(path);
   need_readable_files(plan, folders_);
@@ -143,7 +145,7 @@ void Document::read_again() {
 }
 
 Plan Document::readable(const std::string& text) const {
-  // parse_plan() refuses a text that is not JSON, before it reads any file.
+  // A text that is not JSON needs no check of its files: parse_plan() refuses it before it reads any.
   const Json json = Json::parse(text, nullptr, false);
   if (json.is_object()) need_files_within(json, path_.parent_path(), folders_);
   Plan plan = parse_plan(text, path_.parent_path());

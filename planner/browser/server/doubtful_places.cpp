@@ -21,7 +21,7 @@ namespace {
 
 constexpr int picture_px = 320;
 constexpr std::size_t most_gaps = 4;
-/// Less metal, and a smaller headrest, is not worth a picture: some voxels of a filling's edge, and dust.
+/// Smaller volumes get no picture: they are single voxels at the edge of a filling, or dust.
 constexpr double least_metal_mm3 = 2.0, least_headrest_mm3 = 1000.0;
 constexpr glm::vec3 tint{255.0f, 140.0f, 0.0f};
 constexpr float tint_share = 0.55f;
@@ -35,7 +35,7 @@ struct Place {
   Tinted tinted;
 };
 
-/// The whole slice through a place, with what is doubtful tinted.
+/// A picture of the whole slice through a place, with the doubtful samples tinted.
 std::string picture_of(const Place& place, const voxel::Scene& scene, const std::stop_token& stop) {
   const voxel::Box box = voxel::bounds(scene.lattice);
   const glm::dvec3 extent_mm = box.high_mm - box.low_mm;
@@ -91,7 +91,8 @@ void add_gaps(const voxel::Scene& scene, std::vector<Place>& places) {
   }
 }
 
-/// The number of voxels of metal, and their centroid in the slice (index z) that holds most of them.
+/// Samples as dense as metal: the number of voxels, the number of slices that contain any, and the centroid
+/// in the slice that contains most.
 struct Metal {
   std::uint64_t voxels = 0;
   int slices = 0;
@@ -151,12 +152,12 @@ void add_headrest(const voxel::Scene& scene, std::vector<Place>& places) {
     places.push_back(
         {"headrest",
          three_figures(removal.solid_mm3 / 1000.0) +
-             " cm\u00b3 behind the patient look like a table or headrest: 'remove_headrest' takes them away",
+             " cm\u00b3 behind the patient look like a table or headrest: 'remove_headrest' removes them",
          *centroid_mm, "axial", [solid, voxel_from_lps](const glm::dvec3& p_mm, double) {
            return solid.contains(glm::ivec3(glm::round(glm::dvec3(voxel_from_lps * glm::dvec4(p_mm, 1.0)))));
          }});
   } catch (const std::exception& error) {
-    // No patient, or nothing solid, was found: then nothing is claimed of a headrest either.
+    // Without a patient or anything solid in the scan there is no headrest to report.
     if (fault_of(error) != Fault::Input && fault_of(error) != Fault::Geometry) throw;
   }
 }

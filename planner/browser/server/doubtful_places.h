@@ -6,10 +6,11 @@
 
 namespace octotomy::planner::serve {
 
-/// {"scan"} -> {"places": [{"check", "sentence", "at_mm", "plane", "png"}]}: where a scan is doubtful, each with a slice through
-/// the place in which it is tinted, as a PNG in base64. Checks: "gap", a slab that no image measured; "metal", samples as
-/// dense as metal; "headrest", what lies behind the patient. The latter two are looked
-/// for in Hounsfield units only. Cost: a search for the headrest, seconds on a whole head.
+/// {"scan"} -> {"places": [{"check", "sentence", "at_mm", "plane", "png"}]}: the doubtful places of a scan,
+/// each with a slice through it as a PNG in base64, with the doubtful samples tinted. "check" is "gap", a
+/// slab that no image measured; "metal", samples as dense as metal; or "headrest", material behind the
+/// patient. Metal and headrests are found only in scans in Hounsfield units. Cost: some seconds for the
+/// headrest of a whole head.
 Json doubtful_places(Session& session, const Json& said, const Watched& watched);
 
 }  // namespace octotomy::planner::serve

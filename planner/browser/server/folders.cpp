@@ -15,13 +15,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether a folder is a path's beginning, part by part.
+/// Whether `path` is the folder or lies below it.
 bool holds(const fs::path& folder, const fs::path& path) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
-/// The path to which a write goes: resolves links, including broken ones, which fs::weakly_canonical() does
-/// not resolve. None if links are cyclic.
+/// The path to which a write would go: resolves all links. fs::weakly_canonical() does not resolve broken
+/// links. None if links form a cycle.
 std::optional<fs::path> reached(fs::path path) {
   constexpr int most_links = 40;  // the limit of Linux
   for (int links = 0; links <= most_links; ++links) {
@@ -47,8 +47,7 @@ bool is_taken(const fs::path& path) {
   return fs::exists(fs::symlink_status(path));
 }
 
-/// Whether an export would replace no file, neither under its own name nor under those of files written with
-/// it.
+/// Whether an export would replace no file: neither the one of this name nor those written together with it.
 bool is_free_for_export(const fs::path& path) {
   for (const fs::path& file : convert::is_deck(path) ? convert::deck_files(path) : std::vector{path})
     if (is_taken(file)) return false;
@@ -60,14 +59,14 @@ bool is_free_for_export(const fs::path& path) {
   return true;
 }
 
-/// The extensions of a file's name that identify its kind.
+/// The extensions that state a file's kind, such as ".nii.gz" or ".plan.json".
 std::string endings_of(const std::string& name) {
   for (const char* both : {".plan.json", ".nii.gz"})
     if (name.ends_with(both)) return both;
   return fs::path(name).extension();
 }
 
-/// The path, or the first of NAME-2.EXT, NAME-3.EXT, ... that passes a test.
+/// The first of the path, NAME-2.EXT, NAME-3.EXT, ... for which `is_free` is true.
 template <typename Test>
 fs::path first_free(const fs::path& path, const Test& is_free) {
   const std::string name = path.filename(), endings = endings_of(name);
@@ -78,7 +77,7 @@ fs::path first_free(const fs::path& path, const Test& is_free) {
   return tried;
 }
 
-/// The path without links, made absolute against the first of `places`. Throws if it is in none of them.
+/// The path without links, made absolute against the first of `places`. Throws if it lies in none of them.
 fs::path need_below(const std::vector<fs::path>& places, const fs::path& path) {
   if (path.native().find('\0') == std::string::npos && path.native().size() < 4096 && !places.empty()) {
     const std::optional<fs::path> real = reached(places.front() / path);
@@ -133,7 +132,7 @@ void need_readable_samples(const Folders& folders, const fs::path& scan) {
   try {
     files = voxel::read_volume_header(scan, *format).samples.files;
   } catch (const voxel::Error&) {
-    return;  // the reader of the scan will refuse it with a reason
+    return;  // the scan's reader refuses it and states why
   }
   const fs::path beside = fs::weakly_canonical(fs::absolute(scan)).parent_path();
   for (const fs::path& file : files) {

@@ -14,7 +14,7 @@ std::string jpeg_of(const glm::ivec2& size_px, const std::vector<std::uint8_t>& 
   jpeg_compress_struct writer{};
   jpeg_error_mgr errors{};
   writer.err = jpeg_std_error(&errors);
-  // libjpeg requires that this function does not return.
+  // libjpeg requires a handler that does not return, so it throws.
   errors.error_exit = [](j_common_ptr) {
     throw voxel::Error(voxel::ErrorCode::Resource, "a picture could not be compressed as JPEG");
   };

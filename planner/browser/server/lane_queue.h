@@ -12,7 +12,7 @@
 
 namespace octotomy::planner::serve {
 
-/// A thread that runs one task after the other. All members may be called from any thread.
+/// Runs tasks one after the other on its own thread. All members may be called from any thread.
 class LaneQueue {
  public:
   struct Work {
@@ -23,21 +23,23 @@ class LaneQueue {
                                     ///< before it started
   };
 
-  /// `newest_only`: a newer task of a window drops the window's waiting task and stops its running one.
+  /// With `newest_only`, a window's new task drops the window's waiting task and requests its running one to
+  /// stop.
   explicit LaneQueue(bool newest_only);
   ~LaneQueue();
   LaneQueue(const LaneQueue&) = delete;
   LaneQueue& operator=(const LaneQueue&) = delete;
 
   void put(Work work);
-  /// Drops or stops a request; returns whether it was in this queue.
+  /// Drops a waiting request or requests a running one to stop. Returns whether this queue had the request.
   bool cancel(std::uint64_t window, std::int64_t id);
-  /// Drops and stops all tasks of a closed window, without calling `dropped`.
+  /// Drops a closed window's waiting tasks without calling `dropped`, and requests its running one to stop.
   void close_window(std::uint64_t window);
 
  private:
   void run(const std::stop_token& over);
-  /// Removes waiting tasks for which `test` is true, and requests a running one to stop.
+  /// Drops waiting tasks for which `test` is true, and requests the running task to stop if `test` is true
+  /// for it.
   template <typename Test>
   std::deque<Work> take_out(const Test& test);
 

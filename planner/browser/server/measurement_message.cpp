@@ -9,7 +9,7 @@
 namespace octotomy::planner::serve {
 namespace {
 
-/// The text of a unit after a number.
+/// A unit as it follows a number in a sentence.
 std::string unit_text(const std::string& unit) {
   if (unit == "deg") return "\u00b0";
   if (unit == "mm2") return " mm\u00b2";
@@ -17,7 +17,7 @@ std::string unit_text(const std::string& unit) {
   return unit == "mm3" ? " mm\u00b3" : " mm";
 }
 
-/// A measure that only the mesh kernel's surface has, and its number to show first.
+/// A measure of an object's surface, which only the mesh kernel computes.
 struct SurfaceQuestion {
   const char* key;
   nlohmann::json::json_pointer number;
@@ -25,12 +25,12 @@ struct SurfaceQuestion {
   std::string words;
 };
 
-/// Null if the measurement needs no surface. If the surface is not computed yet, its result is null and must
-/// not be replaced by the object's volume.
+/// The surface measure that a measurement asks for; null for other measurements. While the surface is not
+/// computed, the measurement has no number: a page must not show the object's volume in its place.
 const SurfaceQuestion* surface_question(const Json& measured) {
   using Pointer = nlohmann::json::json_pointer;
   static const SurfaceQuestion questions[] = {
-      {"along", Pointer("/length_mm"), "mm", "Way along the surface of "},
+      {"along", Pointer("/length_mm"), "mm", "Path along the surface of "},
       {"section", Pointer("/area_mm2"), "mm2", "Area of the section of "},
       {"thickness", Pointer("/ball/mean_mm"), "mm", "Mean thickness of "},
       {"curvature", Pointer("/mean/mean_per_mm"), "per_mm", "Mean curvature of "}};
@@ -43,7 +43,7 @@ const SurfaceQuestion* surface_question(const Json& measured) {
   return asked;
 }
 
-/// The numbers of a measurement that a page shows first.
+/// The number of a measurement that a page shows first, with its half-width.
 struct ToldNumbers {
   std::string id, object, to;
   std::optional<double> distance_mm, distance_half_width_mm, angle_deg, angle_half_width_deg, gap_mm,
@@ -60,10 +60,10 @@ constexpr auto members_of(const ToldNumbers&) {
                     member("gap_half_width_mm", &T::gap_half_width_mm), member("volume", &T::volume));
 }
 
-/// The number of a result that has a table, which is shown before its table. `value` is null where the result
-/// has no number: `findings` state why.
+/// The number that a page shows for a result with a table, before the table itself. `value` is null if the
+/// result has no number; then `findings` state why.
 struct TableNumber {
-  const char* key;  ///< that only this kind of measurement has
+  const char* key;  ///< key that only results of this kind have
   nlohmann::json::json_pointer value;
   const char* unit;
   std::optional<nlohmann::json::json_pointer> half_width;
@@ -93,7 +93,7 @@ std::optional<TableNumber> table_number(const Json& json) {
     return TableNumber{"flap_segments", Pointer("/donor_used_mm"), "mm", std::nullopt,
                        "Length of the donor's bone"};
   if (json.contains("doubts")) {
-    std::string says = "How wrong it can be";
+    std::string says = "Value under random errors";
     if (!json["doubts"].empty())
       says += ": " + spoken(json["doubts"][0], "what") + " of " + spoken(json["doubts"][0], "of");
     return TableNumber{"doubts", Pointer("/doubts/0/value"), "", Pointer("/doubts/0/half_width"), says};
@@ -101,14 +101,14 @@ std::optional<TableNumber> table_number(const Json& json) {
   return std::nullopt;
 }
 
-/// What is shown for a step whose result is a table without a number to show first.
+/// Words for a result with a table that has no number to show before it.
 std::string table_words(const Json& json) {
   if (json.contains("landmarks") && json.contains("missing"))
     return "First guess of " + std::to_string(json["landmarks"].size()) + " landmarks";
   return json.contains("verdict") ? "Proof of " + spoken(json, "object") : "";
 }
 
-/// Null for a measurement without a table.
+/// The message for a result with a table; null for other measurements.
 Json table_message(const Json& json) {
   const std::optional<TableNumber> number = table_number(json);
   const std::string says = number ? number->says : table_words(json);

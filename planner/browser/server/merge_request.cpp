@@ -18,7 +18,8 @@ std::size_t changed_values(const PlanDifference& found) {
   return count;
 }
 
-/// The newest of the states from which a plan differs least.
+/// The state of the document's history from which another plan differs in the fewest values; the newest of
+/// several.
 std::int64_t nearest_state(const Document& document, const Plan& other) {
   std::int64_t nearest = document.history_json().at("edit");
   std::size_t least = changed_values(difference(*document.plan(), other));
@@ -84,8 +85,9 @@ Json merge_plan(Session& session, const Json& said, const Watched&) {
     for (const MergeConflict& conflict : made.merged.conflicts)
       conflicts += (conflicts.empty() ? "" : "; ") + conflict.text();
     if (!conflicts.empty())
-      throw voxel::Error(voxel::ErrorCode::Input, "both plans changed the same values: " + conflicts +
-                                                      "; make one of them agree and merge again");
+      throw voxel::Error(voxel::ErrorCode::Input,
+                         "both plans changed the same values: " + conflicts +
+                             "; change one plan to the other's values and merge again");
     Json said_of_it = described(document, made);
     document.record(Json::parse(made.merged.text), "merged with " + plain_stem(path));
     return said_of_it;

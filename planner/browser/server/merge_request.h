@@ -6,12 +6,14 @@
 
 namespace octotomy::planner::serve {
 
-/// {"path", "base"} -> {"base", "conflicts": [{"step", "field", "base", "a", "b", "text"}], "rows"}: what a merge with the plan of
-/// another file would change, line by line; or the values that both plans changed differently since their common
-/// original. `base` is the number of a state of this plan's history; without it, the state from which the other plan differs in
-/// the fewest values. Changes nothing.
+/// {"path", "base"} -> {"base", "conflicts": [{"step", "field", "base", "a", "b", "text"}], "rows"}: compares
+/// this plan and the plan of a file with their common original. "rows" are the changes that a merge would
+/// make, line by line; "conflicts" are the values that both plans changed differently. "base" is the number
+/// of the original in this plan's history. If the request lacks it, the original is the state from which the
+/// other plan differs in the fewest values. Changes nothing.
 Json try_merge(Session& session, const Json& said, const Watched& watched);
-/// As try_merge(), and records the merged plan as an edit. Throws voxel::Error, Input, with all conflicts if there are any.
+/// As try_merge(), and records the merged plan as an edit. Throws voxel::Error, Input, with all conflicts if
+/// both plans changed a value differently.
 Json merge_plan(Session& session, const Json& said, const Watched& watched);
 
 }  // namespace octotomy::planner::serve

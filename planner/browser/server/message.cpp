@@ -43,14 +43,14 @@ Message answer_to(std::int64_t id, const Json& ok) {
 Message refusal_to(std::int64_t id, const std::exception& error, const LineOf& line_of) {
   std::string said = message_of(error);
   Fault fault = fault_of(error);
-  // The request has wrong members. The library's message begins with its name and a number, which are
-  // removed.
+  // JSON members are missing or have the wrong type. The library's message begins with its own name and an
+  // error number, which are removed.
   if (dynamic_cast<const Json::exception*>(&error) != nullptr) {
     said = error.what();
-    said = "the request lacks a value or has one of another type: " + said.substr(said.find(']') + 1);
+    said = "a value of the request is missing or has the wrong type: " + said.substr(said.find(']') + 1);
     fault = Fault::Input;
   }
-  // The page then offers to reload the file.
+  // The code "changed" makes the page offer to reload the file.
   const bool is_other_writer = dynamic_cast<const OtherWriter*>(&error) != nullptr;
   const std::string code = is_other_writer ? "changed" : to_string(fault);
   return text_of({{"id", id}, {"error", {{"message", line_of(said)}, {"code", code}}}});

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder, or its nearest existing parent.
+/// The folder if it exists, else its nearest existing parent.
 fs::path present(fs::path folder) {
   while (!fs::exists(folder)) folder = folder.parent_path();
   return folder;
@@ -31,7 +31,7 @@ void NewFiles::commit(const fs::path& last) {
   for (const fs::path& name : names)
     if (fs::exists(fs::symlink_status(folder_ / name)))
       throw voxel::Error(voxel::ErrorCode::Input,
-                         (folder_ / name).string() + ": is there already: choose another name");
+                         (folder_ / name).string() + ": exists already: choose another name");
   for (const fs::path& name : names) fs::rename(hidden() / name, folder_ / name);
 }
 

@@ -8,20 +8,20 @@
 
 namespace octotomy::planner::serve {
 
-/// The largest file that a page may send, and the most that it sends in one folder.
+/// The largest size of a file that a page sends, and of all files that it sends into one folder.
 inline constexpr std::uint64_t most_upload_bytes = std::uint64_t{4} << 30;
 
-/// Files for a folder that is created only when all are complete; if the work ends earlier, neither exists.
-/// Until then they are in a hidden folder beside the outermost missing folder.
+/// Files that appear in a folder only when all are complete. Until then they are in a hidden folder, beside
+/// the outermost folder that does not exist yet. If they are never committed, nothing of them remains.
 class NewFiles {
  public:
-  /// Throws voxel::Error, Input or Resource, if nothing can be written there.
+  /// Throws voxel::Error, Input or Resource, if files cannot be written there.
   explicit NewFiles(const std::filesystem::path& folder);
 
-  /// The folder into which files and folders are written, under their own names.
+  /// The hidden folder. The caller writes its files and folders here, under their final names.
   const std::filesystem::path& hidden() const { return staged_.folder(); }
-  /// Creates the folder and moves all files into it, `last` at the end. Throws voxel::Error, Input, if one of
-  /// the names is taken; then none is moved.
+  /// Creates the folder and moves all files into it; `last` is moved as the last one. Throws voxel::Error,
+  /// Input, and moves none if one of the names is taken.
   void commit(const std::filesystem::path& last);
 
  private:

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether a plan's only scan is this one.
+/// Whether a plan reads this scan and series, and no other scan.
 bool is_plan_of(const fs::path& plan, const fs::path& scan, const std::string& series) {
   std::ifstream file = voxel::opened(plan);
   const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());

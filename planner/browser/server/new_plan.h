@@ -9,18 +9,18 @@
 
 namespace octotomy::planner::serve {
 
-/// An initial lower bound of bone in a scan's samples: 300 HU, or the brightest of three classes if samples
-/// are not Hounsfield units; 1 in a label map. Cost: one pass over samples that are not Hounsfield units.
+/// An initial lower bound of bone in a scan's samples: 300 HU; 1 in a label map; for other samples the
+/// brightest of three classes. Cost: one pass over samples that are not in Hounsfield units.
 double bone_low(const voxel::Scene& scene);
 
-/// An initial plan for a scan: the scan "ct", and its bone from bone_low() on as the object "bone". Writes it
-/// as NAME.plan.json in `folder`. If a plan of that name for this scan exists, uses that one; does not
-/// replace any other file. Returns the plan's path. `series` as in voxel::ReadOptions. Throws as
+/// Makes an initial plan for a scan: the scan "ct", and the object "bone" with the samples from bone_low()
+/// on. Writes it as NAME.plan.json into `folder`. Uses an existing plan of that name if it is for this scan,
+/// and never replaces another file. Returns the plan's path. `series` as in voxel::ReadOptions. Throws as
 /// voxel::read_scene() does.
 std::filesystem::path plan_of_scan(const std::filesystem::path& scan, const std::filesystem::path& folder,
                                    const voxel::Progress& progress = {}, const std::string& series = {});
 
-/// Writes the head phantom as a scan to `path` if it does not exist. Returns the path.
+/// Writes a scan of the head phantom to `path` if there is no such file. Returns the path.
 std::filesystem::path phantom_at(const std::filesystem::path& path, const voxel::Progress& progress = {});
 
 }  // namespace octotomy::planner::serve

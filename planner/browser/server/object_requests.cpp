@@ -33,14 +33,15 @@ namespace fs = std::filesystem;
 
 constexpr const char* asked_step = "asked_of_the_page";
 
-/// Largest distance from a pointed position at which a landmark snaps to bone.
+/// A landmark snaps to bone if bone is at most this far from the clicked point.
 constexpr double snap_mm = 8.0;
 
 [[noreturn]] void refuse(const std::string& why) {
   throw voxel::Error(voxel::ErrorCode::Input, why);
 }
 
-/// The result of an additional measuring step in the plan; without a "do" it is a measure step.
+/// Evaluates a measuring step as if it stood at the end of the plan, and returns its result. A step without
+/// "do" is a measure step.
 Json measured(Session& session, Json step, const std::vector<std::string>& needed, bool certify,
               const Watched& watched) {
   step["id"] = asked_step;
@@ -67,7 +68,7 @@ std::vector<std::string> names_of(const Json& value) {
   return value.get<std::vector<std::string>>();
 }
 
-/// Replaces names of landmarks by their positions.
+/// Points in which names of landmarks are replaced by the landmarks' positions.
 Json points_mm(const Json& points, const Plan& plan) {
   Json typed = Json::array();
   for (const Json& point : points) {
@@ -81,8 +82,8 @@ Json points_mm(const Json& points, const Plan& plan) {
   return typed;
 }
 
-/// The centre of the voxel face nearest to a point, on the surfaces of all objects but tools, or of one
-/// object; none if there is none within snap_mm.
+/// The centre of the voxel face nearest to a point, on the surface of the object `only`, or of every object
+/// that is no tool if `only` is empty. None if there is no face within snap_mm.
 std::optional<glm::dvec3> snapped(const Evaluation& evaluation, const glm::dvec3& p_mm,
                                   const std::string& only) {
   const voxel::Lattice lattice = evaluation.universe.lattice();
@@ -147,7 +148,7 @@ Json measure(Session& session, const Json& said, const Watched& watched) {
   }
   if (kind != "distance" && kind != "angle")
     refuse("kind: must be distance, angle, surface_distance, volume or area");
-  // A landmark attached to an object needs the object's motion.
+  // A landmark that is attached to an object moves with it, so the object must be evaluated.
   std::vector<std::string> needed;
   for (const Json& point : points) {
     if (!point.is_string()) continue;
@@ -164,9 +165,10 @@ Json certify(Session& session, const Json& said, const Watched& watched) {
   const Json json = session.object_json(made, id);
   if (!json.contains("certificate"))
     return {{"verdict", nullptr},
-            {"sentence", json.value("findings", Json::array()).empty()
-                             ? "There is no certificate: '" + id + "' only helps to make others."
-                             : json["findings"].front().get<std::string>()},
+            {"sentence",
+             json.value("findings", Json::array()).empty()
+                 ? "There is no certificate: '" + id + "' is a tool, which only helps to make other objects."
+                 : json["findings"].front().get<std::string>()},
             {"place", nullptr},
             {"detection_limit", nullptr},
             {"rows", Json::array()}};
@@ -185,9 +187,9 @@ Json overlap(Session& session, const Json& said, const Watched& watched) {
 
 namespace {
 
-/// A voxel of the part that a person has pointed at, and the octree of that part. Starts from the voxel of
-/// the object nearest to the point. Of the part's voxels near it, returns one that lies below the surface, if
-/// there is one. None if no voxel is near.
+/// The part of an object at a point: a voxel of the part, and the part's octree. The part is that of the
+/// object's voxel nearest to the point. The returned voxel lies below the part's surface if such a voxel is
+/// near. None if no voxel of the object is near the point.
 std::optional<std::pair<glm::ivec3, voxel::Octree>> part_near(const voxel::Octree& whole,
                                                               const glm::dvec3& p_mm) {
   constexpr int reach = 2;
@@ -257,7 +259,7 @@ Json try_steps(Session& session, const Json& said, const Watched& watched) {
   const Json& steps = said.at("steps");
   std::vector<std::string> wanted;
   for (const Json& step : steps) wanted.push_back(step.at("id"));
-  if (wanted.empty()) refuse("steps: name at least one");
+  if (wanted.empty()) refuse("steps: name at least one step");
   const Evaluation made = session.evaluate(
       session.with_document([&](const Document& document) { return document.with_steps(steps); }), wanted,
       false, watched);
@@ -361,7 +363,8 @@ Json export_file(Session& session, const Json& said, const Watched& watched) {
 
 namespace {
 
-/// The plan of a snapshot without the steps that could not be evaluated; adds a finding for each of them.
+/// The plan of a snapshot without the steps that failed and without those that need them. Adds a finding for
+/// each.
 Plan with_answers(const Snapshot& made, std::vector<voxel::Finding>& findings) {
   Plan plan = *made.plan;
   std::erase_if(plan.steps, [&](const Step& step) {
@@ -372,8 +375,8 @@ Plan with_answers(const Snapshot& made, std::vector<voxel::Finding>& findings) {
     const bool is_own = made.errors.contains(step.id);
     findings.push_back(
         {"step", voxel::Verdict::Fail,
-         is_own ? "'" + step.id + "' is left out, as it failed: " + made.errors.at(step.id)
-                : "'" + step.id + "' is left out, as it needs '" + failed->first + "', which failed"});
+         is_own ? "'" + step.id + "' is left out, because it failed: " + made.errors.at(step.id)
+                : "'" + step.id + "' is left out, because it needs '" + failed->first + "', which failed"});
     return true;
   });
   return plan;
@@ -389,7 +392,7 @@ Json report(Session& session, const Json& said, const Watched& watched) {
   result.evaluation = *made.evaluation;
   result.anonymous = said.value("anonymous", false);
   result.pictures = plan_pictures(result.plan, result.evaluation);
-  // write_result() makes the folder appear completely or not at all.
+  // Only the parent is created here: write_result() creates the folder when all files are complete.
   fs::create_directories(folder.parent_path());
   write_result(result, folder, {watched.stop, watched.progress, true});
   Json left_out = Json::array();
@@ -429,7 +432,7 @@ Json outcome(Session& session, const Json& said, const Watched& watched) {
 
 namespace {
 
-/// Quotes a word for a shell.
+/// A text as one quoted word of a POSIX shell.
 std::string quoted(const std::string& text) {
   std::string safe = "'";
   for (const char symbol : text) {
@@ -441,14 +444,15 @@ std::string quoted(const std::string& text) {
   return safe + "'";
 }
 
-/// The plan with this step and the steps on which it depends, evaluated in the same voxels.
+/// The plan of one step: with the steps on which it depends, landmarks and head position, and with the step
+/// that determines the voxels.
 Json plan_to(const std::string& id, const Plan& plan) {
   std::set<std::string> kept = needed_for(plan, {id});
   bool has_first_scan = false;
   for (const Step& step : plan.steps) {
     const std::string& word = verb(step);
     if (word == "landmarks" || word == "head_position") kept.insert(step.id);
-    // The first scan that any step uses determines the voxels, so its step is kept.
+    // The first scan that a step uses determines the voxels, so that step is kept.
     if (!has_first_scan && !scans_used(step.action).empty()) {
       kept.insert(step.id);
       has_first_scan = true;
@@ -463,7 +467,7 @@ Json plan_to(const std::string& id, const Plan& plan) {
   return json;
 }
 
-/// JSON as Python writes it.
+/// A JSON value as a Python expression.
 std::string python_of(const Json& value) {
   if (value.is_null()) return "None";
   if (value.is_boolean()) return value.get<bool>() ? "True" : "False";

@@ -6,14 +6,15 @@
 
 namespace octotomy::planner::serve {
 
-/// A file of the page, embedded in the program.
+/// A file of the page, which the program contains.
 struct PageFile {
   std::string_view path;  ///< "/app.js"
   std::string_view type;  ///< its media type
   std::string_view bytes;
 };
 
-/// Generated from planner/browser/page when the program is built; "/index.html" is the page itself.
+/// The files of the page, generated from planner/browser/page when the program is built. "/index.html" is the
+/// page itself.
 const std::vector<PageFile>& page_files();
 
 }  // namespace octotomy::planner::serve

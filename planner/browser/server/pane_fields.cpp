@@ -14,7 +14,7 @@ glm::ivec2 size_px_of(const Json& said) {
   glm::ivec2 size_px(0);
   for (int axis = 0; fits && axis < 2; ++axis) {
     const Json& side = (*size)[static_cast<std::size_t>(axis)];
-    // Compares as double, which has room for any integer of JSON.
+    // The comparison is in double, so that no integer of JSON overflows.
     fits = side.is_number_integer() && side.get<double>() >= 1.0 && side.get<double>() <= most_pane_px;
     if (fits) size_px[axis] = side.get<int>();
   }

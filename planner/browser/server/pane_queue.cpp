@@ -67,7 +67,7 @@ void PaneQueue::shown(const PaneName& name, std::int64_t frame) {
   const std::lock_guard lock(mutex_);
   const auto pane = panes_.find(name);
   if (pane == panes_.end()) return;
-  // The page shows frames in order, so all earlier ones were shown or skipped.
+  // The page shows frames in order. Once it has shown this one, none of the earlier frames is pending.
   pane->second.in_flight.erase(pane->second.in_flight.begin(), pane->second.in_flight.upper_bound(frame));
   changed_.notify_all();
 }

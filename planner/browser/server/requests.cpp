@@ -102,8 +102,8 @@ Json open(Session& session, const Json& said, const Watched& watched) {
   return nullptr;
 }
 
-/// The DICOM series of a folder, for a person to choose one; empty if the path is not a folder of DICOM
-/// files. A scan that cannot be read is refused later, when it is opened.
+/// Lists the DICOM series of a folder, so that a person can choose one. Empty if the path is not a folder of
+/// DICOM files; opening the path then states why it cannot be read.
 Json series(Session& session, const Json& said, const Watched&) {
   const fs::path path = session.folders.need_within(said.at("path").get<std::string>());
   Json list = Json::array();
@@ -127,7 +127,7 @@ Json series(Session& session, const Json& said, const Watched&) {
   return {{"series", list}};
 }
 
-/// Whether a file is not a scan: a plan's history, or another JSON file.
+/// Whether a file beside scans is none itself: a plan's history, or another JSON file.
 bool is_beside(const std::string& name) {
   return name.find(".plan.json.") != std::string::npos || name.ends_with(".json");
 }
@@ -156,7 +156,7 @@ Json list(Session& session, const Json& said, const Watched&) {
   return {{"folder", folder.string()}, {"entries", entries}};
 }
 
-/// The plans of the opened folders; the most recently changed one is first.
+/// Lists the plans in the opened folders, the most recently changed one first.
 Json recent(Session& session, const Json&, const Watched&) {
   constexpr std::size_t most_plans = 8;
   struct Found {
@@ -190,7 +190,7 @@ Json recent(Session& session, const Json&, const Watched&) {
   return {{"plans", plans}};
 }
 
-/// A request that changes the document.
+/// The handler of a request that changes the document by `work`.
 template <typename Change>
 auto change(const Change& work) {
   return [work](Session& session, const Json& said, const Watched&) -> Json {
@@ -210,7 +210,7 @@ Json save(Session& session, const Json& said, const Watched&) {
   if (to.extension() != ".json")
     throw voxel::Error(voxel::ErrorCode::Input, to.string() + ": a plan's name ends in .plan.json");
   if (fs::exists(to))
-    throw voxel::Error(voxel::ErrorCode::Input, to.string() + ": is there already; choose another name");
+    throw voxel::Error(voxel::ErrorCode::Input, to.string() + ": exists already; choose another name");
   need_folder_of(to);
   voxel::write_whole(to, rebased(*plan, to.parent_path()).text);
   return {{"path", to.string()}};
@@ -226,15 +226,15 @@ Json evaluate(Session& session, const Json& said, const Watched& watched) {
       {"objects", state.at("objects")}, {"measurements", made.measurements}, {"scans", state.at("scans")}};
 }
 
-/// Whether a step defines names or directions for later steps. It precedes these, and there is only one of
-/// its kind.
+/// Whether a step defines names or directions for later steps. A plan has at most one such step of each kind,
+/// before the steps that use it.
 bool is_of_names(const Json& step) {
   return step["do"] == "landmarks" || step["do"] == "head_position";
 }
 
-/// Joins the steps of a plan and those of a procedure, whose scan is called "ct". A step of the procedure
-/// replaces the step with the same id, or, if it defines names, the step of the same kind; landmarks of other
-/// names are kept.
+/// Joins the steps of a plan with those of a procedure, in which the scan "ct" is renamed to `scan`. A
+/// procedure's step replaces the plan's step of the same id. A step that defines names replaces the plan's
+/// step of the same kind, but keeps its landmarks of other names.
 Json joined(const Json& steps, const Json& of_procedure, const std::string& scan) {
   Json names = Json::array(), kept = Json::array(), others = Json::array();
   for (Json step : of_procedure) {
@@ -275,8 +275,7 @@ ProcedureInput input_of(const Json& said, const Json& plan, const Procedure& pro
   return input;
 }
 
-/// Removes the steps that an earlier run of the same procedure added to the plan, whether it ran alone or
-/// after another procedure.
+/// The plan without all steps of the procedure, whether it was planned alone or after another procedure.
 Json without_steps_of(const Procedure& procedure, const Json& plan) {
   Json kept = plan;
   kept["steps"] = Json::array();
@@ -285,8 +284,8 @@ Json without_steps_of(const Procedure& procedure, const Json& plan) {
   return kept;
 }
 
-/// Whether a step of the plan names other views or landmarks than the procedure's step of the same id. The
-/// steps of zygoma_right differ from those of zygoma_left only in this.
+/// Whether a plan's step has other views or landmarks than the procedure's step of the same id. Steps of
+/// zygoma_right and zygoma_left have the same ids and differ only in these.
 bool names_others(const Procedure& procedure, const Json& own, const Json& planned,
                   const std::string& key = {}) {
   if (own.is_string() && planned.is_string())
@@ -305,7 +304,8 @@ bool names_others(const Procedure& procedure, const Json& own, const Json& plann
   });
 }
 
-/// Whether a plan has all steps of a procedure, under the names of its file.
+/// Whether a plan has all steps of a procedure under the ids in the procedure's file, that is, not after
+/// another procedure.
 bool has_own_steps(const Procedure& procedure, const Json& plan) {
   const Json& steps = plan.at("steps");
   return std::all_of(procedure.steps.begin(), procedure.steps.end(), [&](const Json& own) {
@@ -315,16 +315,15 @@ bool has_own_steps(const Procedure& procedure, const Json& plan) {
   });
 }
 
-/// The object on which the procedure would act after others, in the plan without its own steps. None if it
-/// would be the plan's first procedure, or if the plan contains its own steps under the names of its file;
-/// these are then replaced.
+/// The object on which the procedure acts: the result of an earlier procedure of the plan. None if there is
+/// no earlier one, or if the plan has the procedure's steps under the ids of its file. These steps are then
+/// replaced.
 std::optional<std::string> acted_on(const Procedure& procedure, const Json& whole, const Plan& before) {
   return has_own_steps(procedure, whole) ? std::nullopt : outcome_of(before);
 }
 
-/// Whether a step of a plan is a step of an option, by its name and operation. `chained`: compares the names
-/// that the steps have after another procedure, which begin with the procedure's name; otherwise those of the
-/// file.
+/// Whether a plan's step is one of an option, by id and operation. `chained`: the procedure was planned after
+/// another one, so its ids in the plan begin with the procedure's name. Otherwise they are those of the file.
 bool is_step_of(const Procedure& procedure, const ProcedureOption& option, bool chained, const Json& step) {
   const auto id = step.at("id").get<std::string>();
   const std::optional<std::string> name = chained ? name_before_chaining(procedure, id) : id;
@@ -333,8 +332,8 @@ bool is_step_of(const Procedure& procedure, const ProcedureOption& option, bool 
   });
 }
 
-/// Whether a plan has more than half of an option's steps. The user may have deleted some of them, or have
-/// given another step the name of one.
+/// Whether a plan has more than half of an option's steps. Not all are required, because the user may have
+/// deleted some. One is not enough, because another step may have the same id by chance.
 bool has_option(const Procedure& procedure, const ProcedureOption& option, bool chained, const Json& plan) {
   const Json& steps = plan.at("steps");
   const auto present = std::count_if(steps.begin(), steps.end(), [&](const Json& step) {
@@ -343,8 +342,7 @@ bool has_option(const Procedure& procedure, const ProcedureOption& option, bool 
   return 2 * static_cast<std::size_t>(present) > option.steps.size();
 }
 
-/// Removes the steps of options that the plan has and the user no longer chooses, for a procedure that is not
-/// chained.
+/// The plan without the steps of options that are not chosen, for a procedure that is not chained.
 Json without_other_options(const Procedure& procedure, const std::vector<std::string>& chosen,
                            const Json& plan) {
   Json kept = plan;
@@ -361,7 +359,7 @@ Json without_other_options(const Procedure& procedure, const std::vector<std::st
 }
 
 Procedure known_procedure(const Json& said) {
-  // Names are looked up in a list; a name that is a path could otherwise read any file.
+  // Only listed names are read. Otherwise a request could read any file by its path.
   const auto name = said.at("name").get<std::string>();
   const std::vector<std::string> known = procedures();
   if (std::find(known.begin(), known.end(), name) == known.end())
@@ -369,7 +367,8 @@ Procedure known_procedure(const Json& said) {
   return read_procedure(name);
 }
 
-/// The plan's steps of a procedure, named as in the procedure's file. `chained` as in is_step_of().
+/// The steps of a procedure in the plan, under the ids of the procedure's file; all other steps too, unless
+/// `chained`, which is as in is_step_of().
 Json steps_named_as_in_file(const Procedure& procedure, bool chained, const Json& plan) {
   Json steps = Json::array();
   for (Json step : plan.at("steps")) {
@@ -383,9 +382,9 @@ Json steps_named_as_in_file(const Procedure& procedure, bool chained, const Json
   return steps;
 }
 
-/// The threshold of bone that a window of the plan without an upper end states, as the procedure's value. In
-/// scans of another scanner or unit, the procedure's default would be another tissue. Null if the plan has no
-/// such window.
+/// The lower bound of the plan's window of bone, as the procedure's value for it. In a scan of another
+/// scanner or unit, the procedure's default could be another tissue. Null if the procedure or the plan has no
+/// such window, without an upper bound.
 Json chosen_bone(const Procedure& procedure, const Json& plan) {
   const auto bone = std::find_if(procedure.steps.begin(), procedure.steps.end(),
                                  [&](const Json& step) { return step.at("id") == procedure.acts_on; });
@@ -398,8 +397,8 @@ Json chosen_bone(const Procedure& procedure, const Json& plan) {
   return nullptr;
 }
 
-/// The object on which a procedure would act, and the options and values that the plan's steps of the
-/// procedure state. The page shows them in the procedure's form.
+/// Returns the contents of the procedure's form: the object on which the procedure would act, and the options
+/// and values of its steps in the plan.
 Json acts_on(Session& session, const Json& said, const Watched& watched) {
   const Procedure procedure = known_procedure(said);
   const auto [whole, folder] = session.with_document([](Document& document) {
@@ -426,8 +425,8 @@ Json acts_on(Session& session, const Json& said, const Watched& watched) {
           {"values", values}};
 }
 
-/// Adds a procedure's steps: in place of its earlier ones, after another procedure's result, or as the plan's
-/// first.
+/// Adds the steps of a procedure to the plan. They replace its earlier steps, follow another procedure's
+/// result, or come first.
 Json procedure(Session& session, const Json& said, const Watched& watched) {
   const Procedure known = known_procedure(said);
   const auto options = said.value("with", std::vector<std::string>{});
@@ -443,7 +442,8 @@ Json procedure(Session& session, const Json& said, const Watched& watched) {
   std::vector<std::string> added, carried;
   if (outcome) {
     input.further_scans.clear();  // the plan has them
-    // The page sends every value, including the defaults.
+    // chained() refuses a value that only the window uses. The page sends every value, so values that equal
+    // their default are left out.
     for (const ProcedureValue& value : procedure.values)
       if (const auto sent = input.values.find(value.name);
           sent != input.values.end() && sent->second == value.preset)
@@ -534,7 +534,7 @@ const RequestKind& find_request_kind(const std::string& name) {
     if (request_kind.name == name) return request_kind;
     names.push_back(request_kind.name);
   }
-  // The time to find the nearest kind grows with the name's length.
+  // The search for the nearest word takes longer the longer the typed word is.
   constexpr std::size_t longest_typed = 60;
   throw voxel::Error(
       voxel::ErrorCode::Input,

@@ -31,23 +31,23 @@ namespace net = boost::asio;
 namespace fs = std::filesystem;
 using Tcp = net::ip::tcp;
 
-/// The longest message of a page is a step with a mask of many polygons.
+/// The largest message from a page. The longest ones are steps with a mask of many polygons.
 constexpr std::uint64_t most_message_bytes = std::uint64_t{4} << 20;
 constexpr std::uint32_t most_header_bytes = 16384;
-/// If more bytes than this wait for a slow page, its messages are no longer read.
+/// While more bytes than this wait to be sent to a page, the page's messages are not read.
 constexpr std::size_t most_unsent_bytes = std::size_t{64} << 20;
 constexpr std::chrono::seconds patience{30};
 constexpr std::chrono::seconds upload_patience{3600};
-/// If file descriptors or memory are exhausted, new callers are accepted again after this time, when others
-/// may have left.
+/// Pause before callers are accepted again, after file descriptors or memory were exhausted. Others may have
+/// ended in the meantime.
 constexpr std::chrono::milliseconds want_pause{100};
 
 constexpr const char* page_policy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src "
     "'self'; "
     "worker-src 'self' blob:; frame-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-/// Content policy for output files such as reports, which contain styles, pictures and the one script that
-/// draws them. Any other script does not run.
+/// Content security policy of output files such as reports: they contain styles, pictures and one script that
+/// draws them. No other script runs.
 const std::string& file_policy() {
   static const std::string policy =
       "default-src 'none'; style-src 'unsafe-inline'; img-src data:; sandbox allow-scripts; base-uri "
@@ -73,7 +73,7 @@ Caller caller_of(const http::request<Body>& request, const Target& target) {
           token == target.query.end() ? "" : token->second};
 }
 
-/// One page's socket. Exists as long as one of its operations is pending.
+/// The WebSocket of one window. It lives until its last pending operation has ended.
 class Socket : public std::enable_shared_from_this<Socket> {
  public:
   Socket(beast::tcp_stream stream, Context& context, Access access)
@@ -152,7 +152,7 @@ class Socket : public std::enable_shared_from_this<Socket> {
   bool is_reading_ = false, is_closed_ = false;
 };
 
-/// One connection of HTTP, until it becomes a socket.
+/// One HTTP connection. A request for a WebSocket passes it on to a Socket.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(Tcp::socket socket, Context& context) : stream_(std::move(socket)), context_(context) {}
@@ -282,7 +282,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
     write(response);
   }
 
-  /// Writes the body to disk while it arrives, in a hidden folder until it is complete.
+  /// Receives a file. Its bytes are written to disk as they arrive, into a hidden folder until the file is
+  /// complete.
   void upload(const Target& target) {
     const auto named = target.query.find("name");
     const fs::path name = need_plain_name(named == target.query.end() ? "" : named->second);
@@ -317,16 +318,17 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::optional<http::request_parser<http::file_body>> upload_;
 };
 
-/// Whether a caller could not be accepted because a resource is exhausted that others will release.
+/// Whether a caller could not be accepted because a resource is exhausted that other connections will
+/// release.
 bool is_want(const beast::error_code& failed) {
   namespace errc = boost::system::errc;
   return failed == errc::too_many_files_open || failed == errc::too_many_files_open_in_system ||
          failed == errc::no_buffer_space || failed == errc::not_enough_memory;
 }
 
-/// Each connection has a strand, so that its messages are sent in the order in which they are posted. Without
-/// a strand, asio delays what a handler posts until the handler has ended, so that a message of another
-/// thread could overtake it.
+/// Accepts the next caller. Each connection has a strand, so that messages posted from several threads are
+/// sent in the order of posting. Without it, asio delays a message that a handler posts until the handler has
+/// ended, and a message of another thread can overtake it.
 void accept(Tcp::acceptor& acceptor, Context& context) {
   const net::any_io_executor strand = net::make_strand(acceptor.get_executor());
   acceptor.async_accept(strand, [&](beast::error_code failed, Tcp::socket socket) {
@@ -382,7 +384,7 @@ void Server::run(Service& service, Session& session, const std::stop_token& stop
   if (address.is_loopback()) hosts.push_back("localhost:" + port);
   if (address.is_unspecified()) hosts.clear();
   Context context{service, session, AccessControl(options_.token, hosts, options_.view_token)};
-  // The connections are destroyed together with `opened`, before the objects that they reference.
+  // Connections refer to `context`. Destroying `opened` first destroys them while it still exists.
   const std::unique_ptr<Port> opened = std::move(port_);
   net::io_context& io = opened->io;
   accept(opened->acceptor, context);
@@ -396,7 +398,8 @@ void Server::run(Service& service, Session& session, const std::stop_token& stop
     try {
       io.run();
     } catch (const std::exception&) {
-      // The connection with the error has already ended. Not logged, because memory may be exhausted.
+      // The connection of the failed handler has ended. The error is not logged, because memory may be
+      // exhausted.
     }
   }
 }

@@ -15,14 +15,14 @@ struct ServerOptions {
   std::string address = "127.0.0.1";  ///< address of the interface on which to listen
   int port = 0;                       ///< 0: a free one
   std::string token;
-  std::optional<std::string> view_token;  ///< of pages that may only look; none: there are none
-  /// Called once when the page can be opened, with its address, including the token, and with that of pages
-  /// that may only look; the latter is empty if there are none.
+  std::optional<std::string> view_token;  ///< token of windows that only show the plan, if there are any
+  /// Called once the server accepts callers, with the page's address including the token, and with the
+  /// address of windows that only show the plan. The latter is empty if there are none.
   std::function<void(const std::string& url, const std::string& view_url)> ready;
 };
 
-/// A server that listens before it runs: callers wait in the meantime, and an unavailable address is detected
-/// before other work is done.
+/// A server in two steps. The constructor listens, so that an unavailable address is detected before other
+/// work; callers wait until run().
 class Server {
  public:
   /// Throws std::runtime_error if it cannot listen there.
@@ -32,7 +32,7 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   /// Serves the page, its files and its WebSockets until a stop is requested. May be called once. Invalid
-  /// data from a caller end only that caller's connection.
+  /// data from a caller end only the connection of that caller.
   void run(Service& service, Session& session, const std::stop_token& stop);
 
  private:

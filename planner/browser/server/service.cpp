@@ -16,12 +16,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Time for drawing all moving panes, out of a thirtieth of a second; the page needs the rest.
+/// Time for one picture of every moving pane, of the 33 ms between two frames. The page needs the rest.
 constexpr double most_round_ms = 24.0;
-/// A single pane may take this time: a shorter one would only produce more frames than screens show.
+/// Time for a picture of a single moving pane. Shorter times would give more frames than a screen shows.
 constexpr double most_frame_ms = 14.0;
 
-/// The least time between reports of progress.
+/// The shortest time between two reports of progress.
 constexpr std::chrono::milliseconds tell_every{100};
 
 /// Whether a view's shading is computed along rays (ray_pictures.h).
@@ -31,7 +31,7 @@ bool is_ray_shading(const Json& said) {
   return std::any_of(names.begin(), names.end(), [&](const std::string& name) { return shading == name; });
 }
 
-/// A state of the plan, or a part of it, for a window that may only look: with file names in place of paths, because
+/// A plan's state, or a part of it, with file names in place of paths, for windows that only show the plan:
 /// folders may be named after patients.
 Json without_folders(Json said) {
   const auto shorten = [](Json& value) {
@@ -58,7 +58,7 @@ Json without_folders(Json said) {
                      "this window only shows the plan: it may not request '" + what + "'");
 }
 
-/// Runs work and passes every exception to `refuse`.
+/// Runs work. Passes every exception to `refuse`, and ignores exceptions of `refuse`.
 template <typename Work, typename Refuse>
 void guarded(const Work& work, const Refuse& refuse) noexcept {
   try {
@@ -159,7 +159,7 @@ void Service::take(std::uint64_t window, Request request) {
     for (Drawing& drawing : drawings_) drawing.panes.shown(pane(), said.value("frame", std::int64_t{0}));
     return;
   }
-  // A page asks this to find out whether its idle connection still works.
+  // Tests whether the connection still works.
   if (request.what == "alive") return send(window, answer_to(request.id, Json::object()));
   if (request.what == "cancel") {
     const std::int64_t target = said.value("target", std::int64_t{0});
@@ -184,8 +184,9 @@ void Service::take(std::uint64_t window, Request request) {
     // A preview evaluates steps that are not in the plan, which may read other files.
     if (request.access == Access::View && said.contains("preview")) refuse_viewer("preview");
     const bool is_along_rays = said.value("kind", "view") != "slice" && is_ray_shading(said);
-    // Answers the pane's older request before the newer one can be drawn, so that a pane's answers are in
-    // order. If the pane changes to the other kind of picture, its requests for the earlier kind are dropped.
+    // The older request of the pane is answered before the newer one can be drawn, so that a pane's answers
+    // arrive in order. Pictures along rays have their own queue; requests of the pane in the other queue are
+    // dropped.
     Drawing& other = drawings_[is_along_rays ? 0 : 1];
     if (const auto older = other.panes.close(pane())) drop(*older, "the pane shows another kind of picture");
     PaneQueue& panes = drawings_[is_along_rays ? 1 : 0].panes;
@@ -199,7 +200,8 @@ void Service::take(std::uint64_t window, Request request) {
   const bool may_edit = request.access == Access::Edit;
   if (!may_edit && !request_kind.may_view) refuse_viewer(request.what);
   if (of_window->waiting >= (may_edit ? most_waiting : most_waiting_of_viewer))
-    throw voxel::Error(voxel::ErrorCode::Resource, "too many requests wait for their answers");
+    throw voxel::Error(voxel::ErrorCode::Resource,
+                       "too many requests wait for their answers: try again when some have arrived");
   ++of_window->waiting;
   const auto asked = std::make_shared<const Request>(std::move(request));
   const auto leave = std::shared_ptr<void>(nullptr, [of_window](void*) { --of_window->waiting; });
@@ -284,7 +286,7 @@ void Service::draw(Drawing& drawing, const std::stop_token& over) {
           panes.shown(asked->name, asked->request.id);
           refuse(asked->name.window, asked->request.id, error);
         });
-    // Removes the views of closed windows.
+    // Destroys the drawing state of closed windows.
     guarded(
         [&] { std::erase_if(views, [&](const auto& view) { return find(view.first.window) == nullptr; }); },
         [](const auto&) {});

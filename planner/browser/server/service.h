@@ -21,34 +21,34 @@
 
 namespace octotomy::planner::serve {
 
-/// The windows on one session and the threads that handle their requests: one each for views and slices, for
-/// pictures along rays, which take longer, for edits, evaluation, certificates, overlaps and long tasks.
-/// Every request of an open window is answered exactly once, even if it fails, except "shown", which has no
-/// answer. All members may be called from any thread.
+/// The windows of one session, and the threads that handle their requests: one for views and slices, one for
+/// pictures along rays, which take longer, and one each for edits, evaluation, certificates, overlaps and
+/// long tasks. Every request of an open window is answered exactly once, even if it fails. Only "shown" has
+/// no answer. All members may be called from any thread.
 class Service {
  public:
   /// Sends a message to a window's socket; may be called from any thread and must not block.
   using Send = std::function<void(Message message)>;
 
-  /// `line_of` formats error messages. `view_token`, if there is one, is passed to windows that may edit, for
-  /// their links to pages that may only look.
+  /// `line_of` formats error messages. Windows that may edit receive `view_token`, if there is one, to make
+  /// links for windows that only show the plan.
   Service(Session& session, LineOf line_of, std::optional<std::string> view_token = {});
   ~Service();
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;
 
   const LineOf& line_of() const { return line_of_; }
-  /// A window with Access::View gets the plan without paths of folders, and answers only to requests that
-  /// look at it.
+  /// Adds a window and returns its number. With Access::View, the window receives no paths of folders and may
+  /// send only requests with `may_view`.
   std::uint64_t open_window(Send send, Access access);
   void close_window(std::uint64_t window);
-  /// Receives a window's message; it is answered later.
+  /// Handles a message of a window. The answer is sent later, from another thread.
   void receive(std::uint64_t window, const std::string& text);
 
  private:
-  /// The largest number of waiting requests per window; a page has far fewer.
+  /// Largest number of requests of a window that wait for their answers. A page sends far fewer.
   static constexpr int most_waiting = 500;
-  /// That of a window that may only look, so that it cannot hold up those that edit.
+  /// The same for a window that only shows the plan, so that it cannot delay windows that edit.
   static constexpr int most_waiting_of_viewer = 8;
   struct Window {
     Send send;
@@ -57,19 +57,19 @@ class Service {
   };
   std::shared_ptr<Window> find(std::uint64_t window);
   void send(std::uint64_t window, Message message);
-  /// Sends an event to all windows; to those that may only look without paths of folders.
+  /// Sends an event to all windows. Those that only show the plan receive it without paths of folders.
   void tell_all(const std::string& name, const Json& said);
   void tell_plan();
   void take(std::uint64_t window, Request request);
   void answer(std::uint64_t window, const Request& request, const RequestKind& request_kind,
               const std::stop_token& stop);
   void refuse(std::uint64_t window, std::int64_t id, const std::exception& error);
-  /// Answers a waiting request for a picture that is not drawn.
+  /// Answers a waiting request for a picture that will not be drawn; `why` is the reason.
   void drop(const PaneQueue::PaneRequest& asked, const char* why);
-  /// Draws pictures of one kind, one after the other.
+  /// The queue, state and thread that draw one kind of picture.
   struct Drawing {
     PaneQueue panes;
-    std::map<PaneName, std::unique_ptr<ViewPane>> views{};  ///< used by the thread only
+    std::map<PaneName, std::unique_ptr<ViewPane>> views{};  ///< only `thread` uses them
     std::jthread thread{};
   };
   void draw(Drawing& drawing, const std::stop_token& over);
@@ -81,7 +81,7 @@ class Service {
   std::map<std::uint64_t, std::shared_ptr<Window>> windows_;
   std::uint64_t last_window_ = 0;
   std::map<Lane, std::unique_ptr<LaneQueue>> lanes_;
-  std::array<Drawing, 2> drawings_;  ///< of views and slices; along rays
+  std::array<Drawing, 2> drawings_;  ///< first views and slices, then pictures along rays
 };
 
 }  // namespace octotomy::planner::serve

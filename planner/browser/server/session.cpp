@@ -24,8 +24,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Limits of a session's cache, for objects and for scans separately: the number of results and their memory.
-/// A certified head takes 400 MB, so the last two are stored, and undo and redo find theirs.
+/// Largest number of results in the session's cache, and largest size in bytes of their memory. Each limit
+/// applies to objects and to scans separately. A certified head takes 400 MB, so at least two are stored,
+/// which undo and redo find again.
 constexpr std::size_t most_answers = 512;
 constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30;
 
@@ -33,7 +34,7 @@ bool makes_object(const Step& step) {
   return step.action.operation().makes == Makes::Object;
 }
 
-/// Keys of steps, by which the session recognises a result of the current plan.
+/// The keys of a plan's steps. A stored result belongs to the current plan if its step has the same key.
 std::map<std::string, std::string> keys_of(const Plan& plan) {
   return step_keys(plan, plan.voxel_mm ? std::to_string(*plan.voxel_mm) : "", [&](const std::string& scan) {
     return state_of_path(scan_path(plan, plan.scans.at(scan)));
@@ -44,7 +45,7 @@ Json box_json(const voxel::Box& box) {
   return {planner::to_json(box.low_mm), planner::to_json(box.high_mm)};
 }
 
-/// The grey tones of slices: level and width between black and white.
+/// Level and width of a scan's slices, in its samples.
 Json tones_of(const ScanRecord& scan) {
   if (scan.meaning == voxel::Meaning::Hounsfield) return {500.0, 2000.0};
   return {0.5 * (scan.range.low + scan.range.high), std::max(1.0, scan.range.high - scan.range.low)};
@@ -77,8 +78,8 @@ Json certificate_json(const verify::Certificate& certificate) {
   return json;
 }
 
-/// The thin necks of an object whose parts were chosen: the necks that stay because one kernel connects them,
-/// and the necks that the certificate leaves open. Null if there are none.
+/// The thin necks of an object made by choosing parts: those that stay although only one kernel connects them
+/// ("kept"), and those that the certificate leaves undecided. Null if there are none.
 Json necks_json(const Object& object) {
   Json necks;
   const auto add = [&](const Json& at_mm, const Json& volume_mm3, bool is_kept) {
@@ -92,7 +93,7 @@ Json necks_json(const Object& object) {
   return necks;
 }
 
-/// An object of the plan as a page shows it; without a value if it is not evaluated yet.
+/// An object as a page shows it. Members without a value are not evaluated yet.
 struct ObjectState {
   std::string id;
   bool evaluated = false;
@@ -128,10 +129,11 @@ void add(const Object& object, ObjectState& state) {
   }
 }
 
-/// Prefix of the ids of temporary measure steps that compute an object's recommended sizes.
+/// Prefix of ids of temporary measure steps, which compute an object's recommended volume and area.
 constexpr const char* size_step_prefix = "size_of_";
 
-/// The measurements of a plan. Adds to `errors` the reason why a step failed, by the step's id.
+/// The results of a plan's measuring steps. For a step that failed, stores the reason in `errors` under the
+/// step's id.
 Json answered(const Plan& plan, const Evaluation& evaluation, std::map<std::string, std::string>& errors) {
   try {
     return measurements_json(plan, evaluation);
@@ -152,8 +154,8 @@ Json answered(const Plan& plan, const Evaluation& evaluation, std::map<std::stri
   return list;
 }
 
-/// The measurements of existing objects in the form that a page shows, and why measurements and scans failed;
-/// `errors` as in answered().
+/// The results of the measuring steps whose objects are evaluated, as a page shows them, and the reasons why
+/// measurements and scans failed. `errors` as in answered().
 Json measurements_of(const Plan& plan, const Evaluation& evaluation,
                      std::map<std::string, std::string>& errors) {
   const auto is_there = [&](const std::string& id) {
@@ -186,7 +188,7 @@ Json measurements_of(const Plan& plan, const Evaluation& evaluation,
   return list;
 }
 
-/// The wanted steps that do not depend on a failed one.
+/// Those of the wanted steps that need no failed step.
 std::vector<std::string> steps_without(const Plan& plan, const std::vector<std::string>& wanted,
                                        const std::map<std::string, std::string>& errors) {
   std::vector<std::string> kept;
@@ -225,7 +227,7 @@ void Session::open(const fs::path& path, const Watched& watched, const std::stri
     snapshot_ = {};
     certified_.clear();
   }
-  // Evaluates the scans first, so that the page has their audit and slices before any object.
+  // Scans are evaluated before any object, so that the page can show their audits and slices early.
   Plan without_steps = with_document([](const Document& opened) { return *opened.plan(); });
   without_steps.steps.clear();
   Snapshot scans;
@@ -274,13 +276,13 @@ Snapshot Session::evaluate(const std::vector<std::string>& steps, bool certify, 
     const std::lock_guard lock(mutex_);
     made.plan = need_document().plan();
     opened = opened_;
-    // A window may request steps that an undo has removed in the meantime.
+    // An undo may have removed a requested step in the meantime.
     std::erase_if(wanted, [&](const std::string& id) {
       const auto& all = made.plan->steps;
       return !certify &&
              std::none_of(all.begin(), all.end(), [&](const Step& step) { return step.id == id; });
     });
-    // Objects in the current snapshot stay in it.
+    // Objects of the current snapshot are evaluated too, so that the new one also contains them.
     if (!steps.empty() && !certify && snapshot_.evaluation)
       for (const Step& step : made.plan->steps)
         if (makes_object(step) && record_of<ObjectState>(object_json(snapshot_, step.id)).evaluated)
@@ -288,7 +290,7 @@ Snapshot Session::evaluate(const std::vector<std::string>& steps, bool certify, 
   }
   if (steps.empty())
     for (const Step& step : made.plan->steps)
-      // A certification also needs measurements and files, and the steps on which they depend.
+      // Certifying also runs measurements and exports.
       if (certify || makes_object(step) || step.action.operation().makes == Makes::Scan)
         wanted.push_back(step.id);
   std::string doing;
@@ -306,7 +308,7 @@ Snapshot Session::evaluate(const std::vector<std::string>& steps, bool certify, 
       break;
     } catch (const std::exception& error) {
       if (fault_of(error) == Fault::Cancelled) throw;
-      // Progress reports the current step as its verb and id.
+      // The text of the progress ends in the id of the step that is evaluated, after its verb.
       const std::string id = doing.substr(doing.find(' ') + 1);
       const auto& all = made.plan->steps;
       const bool is_step =
@@ -321,7 +323,7 @@ Snapshot Session::evaluate(const std::vector<std::string>& steps, bool certify, 
     put_certified(*made.plan, made.measurements);
   made.bone_lows = bone_lows_of(*made.evaluation);
   const std::lock_guard lock(mutex_);
-  // Certificates of an earlier state of the plan do not belong to the present one.
+  // A result of another document is not shown, nor are certificates of an earlier state of the plan.
   const bool is_present = document_ && opened == opened_ && (!certify || document_->plan() == made.plan);
   if (is_present && (!certify || steps.empty())) snapshot_ = made;
   return made;
@@ -399,8 +401,9 @@ voxel::GreyOctree Session::alone(const Snapshot& snapshot, const std::string& sc
 
 namespace {
 
-/// The voxel size for previews during a drag: the plan's size, or a multiple of it if the plan's universe has
-/// too many voxels along a side to compute each picture in time.
+/// The voxel size of previews during a drag, in mm. It is the plan's size (none: derived from the scan) or,
+/// in a large universe, the size that leaves 256 voxels along a side, so that each picture is computed in
+/// time.
 std::optional<double> coarse_voxel_mm(const Snapshot& snapshot, const Plan& plan) {
   constexpr int most_side = 256;
   if (!snapshot.evaluation) return plan.voxel_mm;

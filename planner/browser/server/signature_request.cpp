@@ -8,7 +8,7 @@
 namespace octotomy::planner::serve {
 namespace {
 
-/// In bytes, as of a branch's name.
+/// in bytes, as for the name of a branch
 constexpr std::size_t longest_text = 200;
 
 std::string text_in(const Json& said, const char* key, const std::string& usual) {

@@ -19,7 +19,7 @@ namespace {
 constexpr glm::vec3 threshold_tint{255.0f, 196.0f, 0.0f};
 constexpr float tint_share = 0.45f;
 
-/// The request as a value of the operation `slice`.
+/// The request as fields of the operation `slice`.
 Slice slice_asked(const Json& said, const voxel::Scene& scene) {
   Slice slice;
   const glm::ivec2 size_px = size_px_of(said);
@@ -69,7 +69,7 @@ void set_pixel(std::vector<std::uint8_t>& rgb, std::size_t pixel, const glm::vec
   }
 }
 
-/// Tints samples between two bounds; null: no bound.
+/// Tints the samples between two bounds. A bound that is null does not limit them.
 void draw_threshold(const Json& threshold, SlicePicture& picture) {
   if (!threshold.is_array() || threshold.size() != 2) return;
   for (std::size_t i = 0; i < picture.samples.inside.size(); ++i) {
@@ -80,7 +80,7 @@ void draw_threshold(const Json& threshold, SlicePicture& picture) {
   }
 }
 
-/// The frame of the pixels as JSON. For a curved sheet, the frame at the middle of its curve.
+/// The frame of a slice's pixels as JSON. For a curved slice, the frame is that at the middle of its curve.
 Json sheet_frame(const voxel::Sheet& sheet) {
   const glm::ivec2 size_px = sheet.size_px();
   const std::size_t left = static_cast<std::size_t>((size_px.x - 1) / 2);
@@ -138,7 +138,7 @@ Message draw_slice(Session& session, const Request& request, const std::stop_tok
       outlined.push_back({id, object.voxel.octree});
     }
   }
-  // A tried step makes an additional object if the one that it would replace is not drawn.
+  // The previewed object is added if no drawn object was replaced by it.
   if (const Object* made = preview.object(); made != nullptr && !made->voxel.octree.is_empty() &&
                                              std::find(drawn.begin(), drawn.end(), replaced) == drawn.end()) {
     drawn.push_back(replaced);

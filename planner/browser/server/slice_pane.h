@@ -8,9 +8,9 @@
 
 namespace octotomy::planner::serve {
 
-/// A frame for a request "pane" of the kind "slice": a plane of the scan in grey tones with the outlines of
-/// objects, with samples in `threshold` tinted. During a motion a JPEG; at rest a PNG with the samples of the
-/// pixels. Throws std::runtime_error for an invalid request; Stopped.
+/// A frame for a request "pane" of the kind "slice": a slice of the scan in grey tones with the outlines of
+/// objects; the samples in "threshold" are tinted. During a motion the frame is a JPEG; at rest it is a PNG
+/// with the sample at every pixel. Throws std::runtime_error for an invalid request; Stopped.
 Message draw_slice(Session& session, const Request& request, const std::stop_token& stop);
 
 }  // namespace octotomy::planner::serve

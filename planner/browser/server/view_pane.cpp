@@ -24,12 +24,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The smallest scale of a moving picture's sides: a coarser picture is useless.
+/// The smallest scale of a moving picture, relative to the pane. With fewer pixels nothing can be recognised.
 constexpr double least_scale = 0.375;
 
-/// Largest number of distance fields that a pane caches: both objects' fields for a few ranges.
+/// Largest number of cached distance fields of a pane: two objects, and a few ranges of each.
 constexpr std::size_t most_scalars = 8;
-/// Stops of the legend's ramp.
+/// Number of colours in the legend.
 constexpr int legend_colours = 9;
 
 double ms_since(const Clock::time_point& start) {
@@ -43,7 +43,7 @@ std::string view_text(const Json& view) {
   return exact(azimuth) + "," + exact(elevation);
 }
 
-/// The request as a value of the operation `render`.
+/// The request as fields of the operation `render`.
 Render render_of(const Json& said) {
   Render render;
   const glm::ivec2 size_px = size_px_of(said);
@@ -75,7 +75,7 @@ const Object* find(const Evaluation& evaluation, const std::string& id) {
   return nullptr;
 }
 
-/// A picture without depths. At rest it contains its frame, like pictures of the verbs.
+/// A picture without depths. At rest its PNG states its frame, as pictures of `octotomy render` do.
 Part flat_part(bool is_moving, const glm::ivec2& size_px, const std::vector<std::uint8_t>& rgb,
                const std::optional<PictureFrame>& frame = {}) {
   if (is_moving) return {"jpeg", jpeg_of(size_px, rgb)};
@@ -83,7 +83,8 @@ Part flat_part(bool is_moving, const glm::ivec2& size_px, const std::vector<std:
   return {"png", std::string(png.begin(), png.end())};
 }
 
-/// The equivalent command line, if the picture shows one window of a scan as it was read.
+/// The command line that draws the same picture. Null unless the picture shows only a window on a scan that
+/// no step has changed.
 Json command_of(const Plan& plan, const Render& render, const Object* object) {
   const Step* step = nullptr;
   for (const Step& each : plan.steps)
@@ -107,7 +108,7 @@ Json command_of(const Plan& plan, const Render& render, const Object* object) {
   return text;
 }
 
-/// Sets a picture's size and frame in the header.
+/// Adds a picture's quality, size and frame to its header.
 void set_frame(Json& header, bool is_moving, const glm::ivec2& size_px, const voxel::View& view,
                const glm::dvec3& centre_mm, double pixel_mm) {
   header["quality"] = is_moving ? "moving" : "rest";
@@ -116,7 +117,7 @@ void set_frame(Json& header, bool is_moving, const glm::ivec2& size_px, const vo
   header["view_frame"] = view_frame_json(view, centre_mm, pixel_mm);
 }
 
-/// One grey picture in red for the left eye and one in cyan for the right eye.
+/// Combines the grey pictures of both eyes: the left one in red, the right one in cyan.
 std::vector<std::uint8_t> red_and_cyan(const std::vector<std::uint8_t>& left,
                                        const std::vector<std::uint8_t>& right) {
   // Luma of ITU-R BT.601 in 256ths; the weights add up to 256.
@@ -138,22 +139,22 @@ glm::dvec3 on_plane(const voxel::View& view, const glm::dvec2& p_mm) {
 
 }  // namespace
 
-/// The objects to draw, and the header for the page.
+/// Everything needed to draw one picture: its objects, its settings and its header.
 struct ViewPane::Drawing {
   Snapshot snapshot;
   Render render;
   glm::vec3 background{1.0f};
   bool is_moving = false;
-  Access access = Access::Edit;      ///< of the window that shows it
-  bool is_of_plan = true;            ///< a plan's `render` step can draw the same picture
-  std::optional<double> stereo_deg;  ///< angle between the eyes of a picture for red and cyan glasses
+  Access access = Access::Edit;      ///< of the window that requested the picture
+  bool is_of_plan = true;            ///< whether a step `render` of a plan can draw the same picture
+  std::optional<double> stereo_deg;  ///< angle between the eyes, for red and cyan glasses
   std::vector<voxel::DrawnObject> objects;
   std::vector<const Object*> of_plan;      ///< those that are drawn
   const Object* last = nullptr;            ///< the last of them
-  std::shared_ptr<const Evaluation> held;  ///< keeps the objects of a preview
+  std::shared_ptr<const Evaluation> held;  ///< owns the objects of a preview while they are drawn
   Json header = Json::object();
 
-  /// Adds an object in the colour and opacity of its entry; an empty one is left out.
+  /// Adds an object with the colour and opacity of its entry in the request. An empty object is not drawn.
   void add(voxel::DrawnObject object, const std::string& id, const Json& entry) {
     if (object.octree.is_empty()) return;
     const std::string colour = entry.value("colour", text_of_colour(colour_of(objects.size())));
@@ -169,7 +170,7 @@ struct ViewPane::Drawing {
     header["objects"].push_back(id);
   }
 
-  /// An empty picture, if there is nothing to draw.
+  /// A picture of the background only, for a request without objects to draw.
   Message blank() {
     const glm::ivec2 size_px = size_of(render);
     const glm::ivec3 colour(glm::round(255.0f * background));
@@ -183,8 +184,8 @@ struct ViewPane::Drawing {
     return packed(header, {flat_part(is_moving, size_px, rgb)});
   }
 
-  /// A picture of values along rays through the samples of the first object that has some. It is drawn with
-  /// `scale` times the pane's pixels along each side.
+  /// A picture of values along rays through the samples of the first object that has samples. Its sides have
+  /// `scale` times the pane's pixels.
   Message along_rays(double scale, const std::stop_token& stop) {
     Timings timings;
     const auto first = std::find_if(objects.begin(), objects.end(),
@@ -210,8 +211,8 @@ struct ViewPane::Drawing {
     return made;
   }
 
-  /// The picture for red and cyan glasses. `eye` draws the picture of one eye. Depths and objects stay those
-  /// of the view between the eyes, in which the pointer picks.
+  /// A picture for red and cyan glasses. `eye` draws the picture of one eye. The depths and objects of the
+  /// frame remain those of the view between the eyes, from which positions under the pointer are computed.
   template <typename Eye>
   std::vector<std::uint8_t> in_stereo(voxel::RenderOptions made, const Eye& eye) const {
     std::array<std::vector<std::uint8_t>, 2> rgb;
@@ -236,7 +237,7 @@ struct ViewPane::Drawing {
     if (is_of_plan) {
       header["step"] = {{"do", "render"}};
       header["step"].update(print_fields(find_operation("render")->fields, &render));
-      // A command names the scan's folder.
+      // A command names the scan's folder, which windows that only show the plan must not see.
       if (objects.size() == 1 && access == Access::Edit)
         header["command"] = command_of(*snapshot.plan, render, last);
     }
@@ -289,7 +290,7 @@ void ViewPane::add_objects(Session& session, const Json& said, Drawing& drawing,
   }
   const Object* moved = preview.evaluation ? find(*preview.evaluation, Session::Preview::moved) : nullptr;
   const Json difference = difference_json(asked, preview);
-  // Three parts are drawn in place of the piece and the other object.
+  // The parts of the difference are drawn in place of the piece and the other object.
   if (!difference.is_null()) moved = nullptr;
   const auto is_in_parts = [&](const std::string& id) {
     return !difference.is_null() && (id == dragged || id == difference["to"]);
@@ -363,7 +364,7 @@ void ViewPane::colour(const Json& colour_by, Drawing& drawing) {
                          (is_mutual ? ", and the reverse" : "") + ", positive outside of it"}};
   drawing.render.colour_by = "distance:" + reference;
   drawing.render.range_mm = range_mm;
-  // The operation `render` colours only its first object.
+  // `render` colours only its first object, so it could not draw this picture.
   if (is_mutual || drawing.objects.front().name != of) drawing.is_of_plan = false;
 }
 
@@ -396,11 +397,11 @@ Message ViewPane::draw(Session& session, const Request& request, double most_ms,
     colour(colour_by, drawing);
   if (stop.stop_requested()) throw Stopped("stopped before the picture was drawn");
   if (!drawing.is_moving) return drawing.at_rest();
-  // The time for moving a dragged piece is subtracted from the time for drawing.
+  // The time that the preview took is subtracted from the time for drawing.
   return moving(drawing, std::max(0.3 * most_ms, most_ms - ms_since(start)));
 }
 
-/// Scales in steps of an eighth, so that the size of frames does not change constantly.
+/// A multiple of 1/8, so that the size of frames does not change with every frame.
 double ViewPane::scale_within(double most_ms) const {
   return full_frame_ms_ > most_ms
              ? std::max(least_scale, std::floor(8.0 * std::sqrt(most_ms / full_frame_ms_)) / 8.0)
@@ -414,7 +415,7 @@ void ViewPane::learn_frame_time(const Clock::time_point& start, double scale) {
 
 Message ViewPane::along_rays(Drawing& drawing, double most_ms, const std::stop_token& stop) {
   if (!drawing.is_moving) return drawing.along_rays(1.0, stop);
-  // Before the first frame its time is unknown, so the smallest scale is used.
+  // Before the first frame, the time of a frame is unknown, so the smallest scale is used.
   const double scale = full_frame_ms_ == 0.0 ? least_scale : scale_within(most_ms);
   const Clock::time_point start = Clock::now();
   Message message = drawing.along_rays(scale, stop);

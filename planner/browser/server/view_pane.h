@@ -12,31 +12,33 @@
 
 namespace octotomy::planner::serve {
 
-/// Draws one pane's views, frame after frame. Only one thread at a time may use it.
+/// Draws the views of one pane. Remembers how long earlier frames took. Only one thread at a time may use it.
 class ViewPane {
  public:
-  /// A frame for a request "pane" of the kind "view". During a motion a JPEG, with fewer pixels if all would
-  /// take longer than `most_ms`; at rest the PNG of `octotomy render`, with the depth and the object of every
-  /// pixel. Throws std::runtime_error for an invalid request; Stopped.
+  /// A frame for a request "pane" of the kind "view". During a motion it is a JPEG, with fewer pixels if all
+  /// would take longer than `most_ms`. At rest it is the PNG of `octotomy render`, with depth and object of
+  /// every pixel. Throws std::runtime_error for an invalid request; Stopped.
   Message draw(Session& session, const Request& request, double most_ms, const std::stop_token& stop);
 
  private:
   struct Drawing;
-  /// Adds the objects of a request; a dragged one at its new position.
+  /// Adds the objects of a request. A dragged piece is added at its new position.
   void add_objects(Session& session, const Json& said, Drawing& drawing, const std::stop_token& stop);
-  /// Colours one object by its distance to another; with "mutual", both by their distance to each other.
+  /// Colours an object by its distance to another; with "mutual", each of the two by its distance to the
+  /// other.
   void colour(const Json& colour_by, Drawing& drawing);
-  /// A window of a scan that is not a step yet; with "alone", in a universe around the scan.
+  /// A window on a scan that is not a step of the plan; with "alone", in a universe around the scan.
   voxel::DrawnObject threshold(Session& session, const Snapshot& snapshot, const Json& window);
   Message moving(Drawing& drawing, double most_ms);
-  /// A picture computed along rays; during a motion with fewer pixels if all would take too long.
+  /// A picture computed along rays. During a motion it has fewer pixels if all would take longer than
+  /// `most_ms`.
   Message along_rays(Drawing& drawing, double most_ms, const std::stop_token& stop);
-  /// The share of pixels along each side that can be drawn in this time.
+  /// The scale of a picture's sides that can be drawn in this time, from least_scale to 1.
   double scale_within(double most_ms) const;
   void learn_frame_time(const std::chrono::steady_clock::time_point& start, double scale);
 
   voxel::Renderer renderer_;
-  double full_frame_ms_ = 0.0;  ///< time of a frame with all pixels, from the last frames
+  double full_frame_ms_ = 0.0;  ///< estimated from the last frames; 0: not known yet
   std::string threshold_of_;
   std::shared_ptr<const voxel::Octree> threshold_;
   std::shared_ptr<const Evaluation> scalar_evaluation_;

@@ -5,7 +5,7 @@ import {Volume} from "./volume_file";
 export interface Measured {
   voxels: number;
   volume_mm3: number;
-  area_mm2: number;  ///< Crofton's formula over 13 directions
+  area_mm2: number;  ///< by Crofton's formula over 13 directions
   centroid_mm: [number, number, number]|null;  ///< LPS
   bytes: number;
 }
@@ -20,11 +20,12 @@ interface Exports {
   draw(width: number, height: number, lx: number, ly: number, lz: number, ux: number, uy: number, uz: number): number;
 }
 
-/// The kernel has thrown an error, whose message this is, and its instance has ended.
+/// An error of the kernel, with the kernel's message. The instance that threw it has ended and cannot be used
+/// again.
 export class Refusal extends Error {}
 
-/// The four calls of WASI that the kernel links: only writing its last message and ending have an effect
-/// here.
+/// The four functions of WASI that the kernel imports. Only fd_write(), which collects the kernel's last
+/// message, and proc_exit() have an effect.
 function wasi(memory: () => ArrayBuffer): WebAssembly.ModuleImports {
   let words = "";
   return {
@@ -50,14 +51,14 @@ function wasi(memory: () => ArrayBuffer): WebAssembly.ModuleImports {
 export class Kernel {
   private constructor(private readonly exports: Exports) {}
 
-  /// A kernel with the scan open. Throws Refusal.
+  /// Starts a kernel and opens a scan in it. Throws Refusal.
   static async open(module: WebAssembly.Module, volume: Volume): Promise<Kernel> {
     let exports: Exports;
     const instance =
         await WebAssembly.instantiate(module, {wasi_snapshot_preview1: wasi(() => exports.memory.buffer)});
     exports = instance.exports as unknown as Exports;
     exports._initialize();
-    // Each call may move the memory, so views of it are made anew.
+    // A call may move the kernel's memory, so each access makes a new view of it.
     const samples = exports.new_scan(...volume.dims) >>> 0;
     new Int16Array(exports.memory.buffer, samples, volume.samples.length).set(volume.samples);
     const matrix = exports.lps_from_voxel() >>> 0;
@@ -66,14 +67,15 @@ export class Kernel {
     return new Kernel(exports);
   }
 
-  /// Makes the samples low..high the object.
+  /// Makes the voxels with samples from `low` to `high` the object, and returns its measures.
   choose_window(low: number, high: number): Measured {
     const at = this.exports.choose_window(low, high) >>> 0;
     const [voxels, volume_mm3, area_mm2, x, y, z, bytes, any] = new Float64Array(this.exports.memory.buffer, at, 8);
     return {voxels, volume_mm3, area_mm2, centroid_mm: any ? [x, y, z] : null, bytes};
   }
 
-  /// The object seen along `look`; both are unit vectors in LPS, at right angles.
+  /// Draws the object as seen along `look`, with `up` upwards, as RGBA from the top left. Both are unit
+  /// vectors in LPS, at right angles.
   draw(width: number, height: number, look: number[], up: number[]): Uint8ClampedArray {
     const at = this.exports.draw(width, height, look[0], look[1], look[2], up[0], up[1], up[2]) >>> 0;
     return new Uint8ClampedArray(this.exports.memory.buffer, at, 4 * width * height).slice();

@@ -5,7 +5,7 @@ declare module "page_kernel.gz" {
   export default bytes;
 }
 
-// All browsers have this class since 2023, but the compiler's declarations lack it.
+// All browsers have had this class since 2023, but the compiler's declarations lack it.
 declare class DecompressionStream {
   constructor(format: "gzip");
   readonly readable: ReadableStream<Uint8Array>;

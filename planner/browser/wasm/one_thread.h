@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-// Replaces the parts of oneTBB and of the standard library's threads that the voxel kernel uses, on a
+// Replaces the parts of oneTBB and of the standard library's threads that the voxel kernel uses, for a
 // platform with one thread and a library without threads. The build includes it before every source. Loops
-// run in order; nothing is ever stopped.
+// run in order, and a stop is never requested.
 
 #include <algorithm>
 #include <cstddef>
@@ -13,7 +13,7 @@
 #include <utility>
 
 #ifndef _LIBCPP_HAS_NO_THREADS
-#error "this library has threads of its own"
+#error "this library has threads: do not include one_thread.h"
 #endif
 
 namespace std {  // NOLINT(cert-dcl58-cpp): these names are free where the library has no threads

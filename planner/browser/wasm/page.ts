@@ -19,7 +19,8 @@ function say(text: string, is_refusal = false): void {
   by_id("said").className = is_refusal ? "refusal" : "";
 }
 
-/// Runs work and shows its error. An error ends the kernel's instance, so the scan is opened in a new one.
+/// Runs work and shows its error. After an error the kernel cannot be used any more, so the scan is opened in
+/// a new one.
 async function attempt(work: () => void|Promise<void>): Promise<void> {
   try {
     await work();
@@ -33,10 +34,10 @@ async function attempt(work: () => void|Promise<void>): Promise<void> {
   }
 }
 
-/// The directions as in the program's views: the observer's azimuth from the front towards the patient's
-/// left, then the elevation.
+/// The view's look and up directions in LPS. The observer's azimuth counts from the front towards the
+/// patient's left, the elevation upwards, as in the program's views.
 function directions(): [number[], number[]] {
-  // Values along the axes are exact, so that the kernel traces nodes.
+  // The kernel traces nodes only if a direction is exactly along an axis, so rounding errors are removed.
   const exact = (value: number) => Math.abs(value - Math.round(value)) < 1e-12 ? Math.round(value) : value;
   const a = azimuth_deg * Math.PI / 180, e = elevation_deg * Math.PI / 180;
   const sa = exact(Math.sin(a)), ca = exact(Math.cos(a)), se = exact(Math.sin(e)), ce = exact(Math.cos(e));
@@ -52,7 +53,7 @@ function draw(): void {
   by_id("time").textContent = `drawn in ${milliseconds.toFixed(0)} ms`;
 }
 
-/// A number of four significant digits in groups of three; whole numbers in full.
+/// A number with four significant digits, in groups of three digits. Integer digits are never rounded.
 function text(value: number): string {
   const digits = Math.max(0, 3 - Math.floor(Math.log10(Math.max(Math.abs(value), 1))));
   return value.toLocaleString("en", {maximumFractionDigits: digits, useGrouping: true}).replaceAll(",", " ");
@@ -103,7 +104,7 @@ async function open(file: File): Promise<void> {
     kernel = await Kernel.open(module, read);
     volume = read;
     const [least, most] = range(volume.samples);
-    // The first window: bone of a CT, or the upper half of other samples.
+    // The window at first: bone in a CT, the upper half of the range in other scans.
     low.value = String(least < 0 && most > 300 ? 300 : Math.round((least + most) / 2));
     high.value = String(most);
     say([`${file.name}: ${volume.dims.join(" x ")} samples, ${least} to ${most}`, ...volume.remarks].join("; "));

@@ -38,7 +38,8 @@ PageState& page_state() {
 
 extern "C" {
 
-/// Allocates the samples of a new scan, x fastest, and frees the scan before it.
+/// Frees the previous scan and allocates the samples of a new one with these numbers of samples, x fastest.
+/// The page writes them to the returned address.
 [[clang::export_name("new_scan")]] std::int16_t* new_scan(int x, int y, int z) {
   page_state() = PageState();
   page_state().scene.lattice.dims = {x, y, z};
@@ -46,12 +47,12 @@ extern "C" {
   return std::get<Int16Samples>(page_state().scene.samples).data();
 }
 
-/// The memory of lps_from_voxel: 16 numbers, column by column.
+/// The address of the 16 numbers of lps_from_voxel, column by column, to which the page writes the matrix.
 [[clang::export_name("lps_from_voxel")]] double* lps_from_voxel() {
   return &page_state().scene.lattice.lps_from_voxel[0][0];
 }
 
-/// Uses the samples and the matrix that were written. Voxels keep the scan's lattice.
+/// Opens the scan whose samples and matrix the page has written. The voxels are those of the scan.
 [[clang::export_name("open_scan")]] void open_scan() {
   Scene& scene = page_state().scene;
   check(scene);
@@ -64,8 +65,9 @@ extern "C" {
   scene.samples = Int16Samples();
 }
 
-/// The octree of the samples low..high. Returns the number of voxels, volume in mm³, area by Crofton's
-/// formula in mm², the centroid in LPS mm, bytes of nodes, and 1 if there is any voxel.
+/// Makes the voxels with samples from `low` to `high` the object. Returns eight numbers: voxels, volume in
+/// mm³, area by Crofton's formula in mm², three coordinates of the centroid in LPS mm, bytes of the octree,
+/// and 1 if the object is not empty.
 [[clang::export_name("choose_window")]] const double* choose_window(double low, double high) {
   PageState& the = page_state();
   the.low = low;
@@ -83,8 +85,8 @@ extern "C" {
   return the.numbers.data();
 }
 
-/// The object seen along `look` with `up`, unit vectors in LPS at right angles: rows of RGBA from the top
-/// left. Traced by nodes if the view is along the scan's axes, else by rays.
+/// Draws the object as seen along `look` with `up` upwards, unit vectors in LPS at right angles. Returns rows
+/// of RGBA from the top left. Traces nodes if the view is along an axis of the scan, else rays.
 [[clang::export_name("draw")]] const std::uint8_t* draw(int width_px, int height_px, double look_x,
                                                         double look_y, double look_z, double up_x,
                                                         double up_y, double up_z) {

@@ -22,7 +22,7 @@ void __cxa_free_exception(void* memory) noexcept {  // NOLINT(bugprone-reserved-
   std::_Exit(2);
 }
 
-/// The only thread does not end.
+/// Destructors of thread-local objects are not called, because the only thread does not end.
 int __cxa_thread_atexit(void (*)(void*), void*, void*) noexcept {  // NOLINT(bugprone-reserved-identifier)
   return 0;
 }

@@ -3,13 +3,13 @@
 // and meanings of NIfTI's header are from nifti1.h by R. Cox and others; NRRD's fields are from the format's
 // definition by G. Kindlmann. Other features are refused by name.
 
-/// Samples x fastest, and the matrix from voxels to LPS millimetres, column by column.
+/// A scan: its samples, x fastest, and the matrix from voxels to LPS millimetres, column by column.
 export interface Volume {
   dims: [number, number, number];
   lps_from_voxel: number[];
   samples: Int16Array;
-  /// Sentences for the user about what reading assumed or changed: rounded samples, a unit that is not
-  /// stated.
+  /// Sentences for the user on what was assumed or changed, such as rounded samples or a unit that the file
+  /// does not state.
   remarks: string[];
 }
 
@@ -35,7 +35,7 @@ export async function inflated(bytes: Uint8Array): Promise<Uint8Array> {
   }
 }
 
-/// The numbers from an offset on, turned to this machine's byte order.
+/// Reads `count` numbers from an offset on, in the byte order of the file.
 function numbers(bytes: Uint8Array, at: number, count: number, type: NumberType, little: boolean): Numbers {
   const array = arrays[type], size = array.BYTES_PER_ELEMENT;
   if (at + count * size > bytes.length)
@@ -46,8 +46,8 @@ function numbers(bytes: Uint8Array, at: number, count: number, type: NumberType,
   return new array(own.buffer);
 }
 
-/// Stored samples as the kernel takes them: rescaled, rounded to the nearest integer, halves upward, and
-/// limited to 16 bits.
+/// Converts samples to the kernel's type: applies slope and intercept, rounds halves upward, and limits the
+/// values to 16 bits. Adds remarks on changed values.
 function to_int16(stored: Numbers, slope: number, intercept: number, remarks: string[]): Int16Array {
   if (stored instanceof Int16Array && slope === 1 && intercept === 0) return stored;
   const samples = new Int16Array(stored.length);
@@ -95,8 +95,9 @@ export function read_nifti(bytes: Uint8Array): Volume {
   const dims = checked(Array.from({length: Math.max(0, axes)}, (_, i) => int16(42 + 2 * i)), axes);
   const type = nifti_types[int16(70)];
   if (type === undefined) throw new Error(`its samples have type ${int16(70)}, which is not read here`);
-  // The sform, else the qform. Without both, only spacings are known: axes are then left, front and head,
-  // with the volume's centre at the origin, as in Analyze. RAS becomes LPS.
+  // The matrix is the sform or, without one, the qform. Without both, only spacings are known: the axes then
+  // point to the left, the front and the head, with the volume's centre at the origin, as in Analyze. RAS
+  // becomes LPS.
   let rows: number[][];
   const remarks: string[] = [];
   if (int16(254) > 0)
@@ -115,7 +116,7 @@ export function read_nifti(bytes: Uint8Array): Volume {
   if (unit === undefined) remarks.push("the file states no unit of length: millimetres are assumed");
   const lps_from_voxel = [0, 1, 2, 3].flatMap(
       column => [...[0, 1, 2].map(row => rows[row][column] * (row < 2 ? -1 : 1) * (unit ?? 1)), column === 3 ? 1 : 0]);
-  // If the slope is zero or not finite, samples are not scaled.
+  // Samples are scaled only by a slope that is finite and not zero.
   const is_scaled = Number.isFinite(float(112)) && float(112) !== 0;
   const slope = is_scaled ? float(112) : 1, intercept = is_scaled ? float(116) : 0;
   if (!Number.isFinite(intercept)) throw new Error("its intercept is not a finite number, but its slope is");
@@ -139,7 +140,7 @@ const millimetres: Record<string, number> = {
   "um": 0.001, "\u00b5m": 0.001, "\u03bcm": 0.001, "micron": 0.001, "micrometer": 0.001, "in": 25.4, "inch": 25.4
 };
 
-/// The millimetres in the unit of each of a NRRD's axes; none if it states no units.
+/// Millimetres in the unit of each axis of a NRRD file. Undefined if the file states no units.
 function units_of(text: string|undefined): number[]|undefined {
   return text === undefined ? undefined : [...text.matchAll(/"([^"]*)"/g)].map(([, word]) => {
     const name = word.trim().toLowerCase().replace(/metre/, "meter").replace(/(.{3})s$/, "$1");
@@ -149,7 +150,7 @@ function units_of(text: string|undefined): number[]|undefined {
   });
 }
 
-/// "(1,0,0) (0,1,0)" as rows of numbers.
+/// The rows of numbers in a text such as "(1,0,0) (0,1,0)".
 function vectors(text: string): number[][] {
   return [...text.matchAll(/\(([^)]*)\)/g)].map(match => match[1].split(",").map(Number));
 }
@@ -196,7 +197,8 @@ export async function read_nrrd(bytes: Uint8Array): Promise<Volume> {
   return {dims, lps_from_voxel, samples: to_int16(stored, 1, 0, remarks), remarks};
 }
 
-/// Determines the format from the file's content, not from its name. Throws Error with the reason.
+/// Reads a scan. The format is recognised by the content of the file, not by its name. Throws Error with the
+/// reason.
 export async function read_volume(bytes: Uint8Array): Promise<Volume> {
   if (bytes[0] === 0x1f && bytes[1] === 0x8b) bytes = await inflated(bytes);
   return new TextDecoder().decode(bytes.subarray(0, 7)) === "NRRD000" ? read_nrrd(bytes) : read_nifti(bytes);

@@ -84,7 +84,8 @@ WebArchive web_archive(const ArchiveText& text) {
   return {text.address, text.tls, user == nullptr ? "" : user, text.timeout_s};
 }
 
-/// The DICOM files among the paths and in folders, sorted. Refuses a named file that is not DICOM.
+/// The DICOM files among the paths and below folders among them. Refuses a path that is a file but not DICOM.
+/// A file below a folder that is not DICOM is left out, with a finding.
 std::vector<OutgoingFile> files_to_send(const std::vector<fs::path>& paths,
                                         std::vector<std::string>& findings) {
   std::vector<OutgoingFile> files;
@@ -145,7 +146,7 @@ int send(const Program& program, const SendText& text) {
   return done;
 }
 
-/// A unique identifier of the command line (PS3.5, 9.1).
+/// Refuses an option's text if it is no unique identifier (PS3.5, 9.1).
 void need_uid(const std::string& uid, const char* option) {
   if (uid.empty() || uid.size() > 64 || uid.find_first_not_of("0123456789.") != std::string::npos)
     throw std::runtime_error(std::string(option) + " '" + uid +
@@ -157,12 +158,13 @@ std::string resource_of(const ReceiveText& text) {
   std::string resource = "studies/" + text.study;
   if (!text.series.empty()) need_uid(text.series, "--series"), resource += "/series/" + text.series;
   if (text.instance.empty()) return resource;
-  if (text.series.empty()) throw std::runtime_error("--instance needs --series: give it");
+  if (text.series.empty()) throw std::runtime_error("--instance needs --series: add --series UID");
   need_uid(text.instance, "--instance");
   return resource + "/instances/" + text.instance;
 }
 
-/// First value of an attribute of DICOM's JSON (PS3.18, F.2); null if there is none.
+/// First value of an attribute in DICOM's JSON form (PS3.18, F.2); null if the attribute is absent, empty or
+/// no text or number. Of a person's name, its alphabetic group.
 Json first_value(const Json& found, const char* tag) {
   if (!found.contains(tag) || !found[tag].is_object() || !found[tag].contains("Value")) return nullptr;
   const Json& values = found[tag]["Value"];
@@ -230,7 +232,7 @@ void listen(Program& program, const ReceiveText& text, ReceivedFiles& folder) {
 int receive(Program& program, const ReceiveText& text) {
   if (!text.port && text.address.empty())
     throw std::runtime_error("give --port N to wait for objects, or --from URL to fetch them");
-  if (text.port && !text.address.empty()) throw std::runtime_error("give one of --port and --from");
+  if (text.port && !text.address.empty()) throw std::runtime_error("give only one of --port and --from");
   if (!text.address.empty() && !is_web(text.address))
     throw std::runtime_error(text.address + ": objects are fetched by DICOMweb: give http:// or https://");
   if (!text.find.empty()) {
@@ -317,7 +319,7 @@ void add_archive_verbs(Program& program) {
       [&program, got] { return receive(program, *got); });
   receives.add_option("-o,--out", got->out, "The folder");
   receives.add_option("--from", got->address, "http:// or https:// of a DICOMweb service");
-  receives.add_option("--study", got->study, "The study to fetch, its unique identifier");
+  receives.add_option("--study", got->study, "Unique identifier of the study to fetch");
   receives.add_option("--series", got->series, "Only this series of the study");
   receives.add_option("--instance", got->instance, "Only this instance of the series");
   receives.add_option("--find", got->find,

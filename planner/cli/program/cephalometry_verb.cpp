@@ -25,7 +25,8 @@ struct CephalometryText : PlanIn {
   int size_px = 900;
 };
 
-/// Landmarks, their moved positions, and the head's orientation.
+/// Landmarks with their positions before and after the operation, and the head's orientation. `evaluation` is
+/// set if they come from a plan.
 struct Face {
   std::vector<MovedLandmark> landmarks;
   glm::dmat3 lps_from_head{1.0};
@@ -96,7 +97,7 @@ std::string table_of(const CephalometricResults& found) {
   }
   std::string text = lines(rows);
   for (const auto& [name, landmarks] : found.unpredicted) {
-    text += "not predicted: " + name + ", because nothing states where these go:";
+    text += "not predicted: " + name + ", because nothing states how these landmarks move:";
     for (const std::string& landmark : landmarks) text += " " + landmark;
     text += "; add a landmark_ratios step with them\n";
   }

@@ -41,21 +41,21 @@ struct CohortText {
   bool again = false, reports = false, dry_run = false;
 };
 
-/// The plan with paths relative to the place where the cohort stores it, so that later calls without --plan
-/// read the same files.
+/// The plan of --plan, or the plan that the cohort has stored. The paths of files that its steps read are
+/// made relative to the stored plan's folder, so that later calls without --plan read the same files.
 Plan plan_of(const CohortText& text) {
   const fs::path path = text.plan.empty() ? cohort_plan(text.out) : text.plan;
   if (text.plan.empty() && !fs::exists(path))
     throw std::runtime_error("--plan is missing: name the plan to run on every subject's scans");
   const Plan plan = read_plan(path);
-  // The scans come from the subjects, so a plan whose steps read no file is stored unchanged.
+  // Paths of scans need no change, because each subject has its own scans.
   const bool reads_files = std::any_of(plan.steps.begin(), plan.steps.end(),
                                        [](const Step& step) { return !files_read(step).empty(); });
   return reads_files ? rebased(plan, cohort_plan(text.out).parent_path()) : plan;
 }
 
-/// The command for a process of an engine. Leaves out the time limit: it applies to this process, whose end
-/// also ends serial and parallel engines, and --slurm=--time limits a job.
+/// The command with which an engine starts a process for `level`. Omits --time-limit: it ends this process,
+/// and with it the processes of the engines serial and parallel. Jobs of slurm have --slurm=--time.
 std::vector<std::string> command(const Program& program, const CohortText& text, const std::string& level) {
   std::vector<std::string> words{
       fs::read_symlink("/proc/self/exe").string(),
@@ -72,7 +72,7 @@ std::vector<std::string> command(const Program& program, const CohortText& text,
   return words;
 }
 
-/// The files and folders that the command writes into the cohort's folder.
+/// The files and folders that this call will write into the cohort's folder.
 CohortNeeds needs_of(const CohortText& text, const Plan& plan, const std::vector<Subject>& subjects) {
   CohortNeeds needs;
   if (!text.plan.empty()) needs.plan_text = plan.text;
@@ -95,9 +95,9 @@ Json json_of(const Subject& subject, const SubjectRecord& record) {
           {"peak_mb", record.peak_mb}};
 }
 
-/// Prints the records of the subjects with the WARN and FAIL of their scans' audits. Returns the exit status.
-/// Where a subject has no answer it is 70 for a mistake in the program, else 3 if a process ran out of time,
-/// memory or disk, else 2.
+/// Prints the subjects' records, and the WARN and FAIL of their scans' audits. Returns the exit status: 0 if
+/// jobs were submitted, or if every subject has an answer or another process works on it; else 70 if a
+/// mistake in the program ended one, else 3 if a process ran out of time, memory or disk (`ran_out`), else 2.
 int say_records(const Program& program, const std::vector<Subject>& subjects,
                 const std::vector<SubjectRecord>& records, const std::vector<std::string>& jobs,
                 const std::vector<std::string>& findings, bool ran_out) {
@@ -117,7 +117,7 @@ int say_records(const Program& program, const std::vector<Subject>& subjects,
     if (!records[i].has_answer() && !records[i].is_another_at_work && jobs.empty())
       warn_finding(subjects[i].label + ": " + records[i].reason);
   }
-  // Doubtful subjects first, because only the first findings are printed.
+  // Findings of doubtful subjects come first, because only the first findings of a run are printed.
   for (const bool are_doubtful : {true, false})
     for (std::size_t i = 0; i < records.size() && jobs.empty(); ++i)
       for (const std::string& finding : records[i].audit_findings)
@@ -166,7 +166,7 @@ int participants(const Program& program, const CohortText& text, const Plan& pla
   return say_records(program, subjects, records, jobs, findings, ran_out);
 }
 
-/// Prints an estimate of the subjects' resources, based on those that are done.
+/// Prints the time and memory that the remaining subjects will need, estimated from finished subjects.
 int dry_run(const Program& program, const CohortText& text, const std::vector<Subject>& subjects) {
   std::vector<SubjectRecord> done_records;
   std::uint64_t bytes = 0, largest = 0;
@@ -206,7 +206,8 @@ int dry_run(const Program& program, const CohortText& text, const std::vector<Su
       json, lines({{"to do", std::to_string(to_do) + " of " + std::to_string(subjects.size()) + " subjects"},
                    {"scans", grouped(static_cast<double>(bytes) / 1e9, 2) + " GB"},
                    {"time", knows ? grouped(seconds / 3600.0 / jobs, 2) + " h with " + std::to_string(jobs) +
-                                        " at a time, estimated from " + std::to_string(forecast.learnt_from)
+                                        " at a time; finished subjects in this estimate: " +
+                                        std::to_string(forecast.learnt_from)
                                   : "not known: run three subjects of different size first"},
                    {"memory", knows ? grouped(peak_mb / 1024.0, 2) + " GB each" : "not known"}}));
   return done;
@@ -217,7 +218,8 @@ int cohort(Program& program, const CohortText& text) {
   const Plan plan = plan_of(text);
   const std::vector<Subject> all = find_subjects(text.in, plan);
   const std::vector<Subject> subjects = chosen_subjects(all, text.labels);
-  // If subjects are requested by label, reports no doubts on the others, because an engine requests each one.
+  // Doubts about the whole cohort are printed only if no labels are given. Engines give one label to each
+  // process, and each would repeat them.
   std::vector<std::string> doubts;
   if (text.labels.empty()) doubts = doubts_of_cohort(text.in, plan, all);
   if (text.dry_run) return dry_run(program, text, subjects);
@@ -253,7 +255,7 @@ Json read_result(const fs::path& path) {
   return json;
 }
 
-/// Refuses an output path that would replace a result or a part of one.
+/// Refuses an output path at which a result, or a file of a result, would be replaced.
 void need_table_output(const TableText& text) {
   need_extension(text.out, {".csv"}, "a table is");
   need_unread(text.out, text.results);
@@ -291,7 +293,7 @@ int table(Program& program, const TableText& text) {
   json["path"] = text.out.string();
   json["results"] = labels.size();
   json["numbers"] = count;
-  // Failures first, because only the first findings are printed.
+  // Inputs that failed come first, because only the first findings of a run are printed.
   findings.insert(findings.begin(), failures.begin(), failures.end());
   for (const std::string& finding : findings) warn_finding(finding);
   json["findings"] = std::move(findings);

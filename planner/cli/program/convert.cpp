@@ -31,7 +31,8 @@ bool is_volume(const fs::path& path) {
                      [&](const char* extension) { return name.ends_with(extension); });
 }
 
-/// Refuses options for DICOM if another format is written, because they would have no effect.
+/// Refuses options that apply only to DICOM or to segments if the output has none, because they would have no
+/// effect.
 void need_used(const ConvertText& text, bool writes_dicom, bool writes_segments) {
   const auto need = [&](bool is_given, const std::string& option, bool is_used, const std::string& of) {
     if (is_given && !is_used)
@@ -42,7 +43,7 @@ void need_used(const ConvertText& text, bool writes_dicom, bool writes_segments)
   need(!text.source.empty(), "--source", writes_dicom, "DICOM (a folder or .dcm)");
   need(text.other_identity, "--other-identity", writes_dicom, "DICOM (a folder or .dcm)");
   if (text.other_identity && text.source.empty())
-    throw std::runtime_error("--other-identity needs --source: give it, or leave both out");
+    throw std::runtime_error("--other-identity needs --source: add --source, or leave --other-identity out");
 }
 
 voxel::DicomSegKind kind_of(const ConvertText& text) {
@@ -73,7 +74,7 @@ int convert_octree(const Program& program, const ConvertText& text) {
     const Stopwatch watch(timings, "source");
     options.source = source_of(program, text, false, {}, findings);
   }
-  if (!options.source) warn("no --source: the segmentation gets a study of its own and refers to no images");
+  if (!options.source) warn("no --source: the segmentation gets a new study and refers to no images");
   if (options.source) need_on_source(text, *options.source, corners_of(std::vector{object}), findings);
   {
     const Stopwatch watch(timings, "write");
@@ -90,7 +91,8 @@ int convert_octree(const Program& program, const ConvertText& text) {
   return done;
 }
 
-/// Converts a label map to a DICOM segmentation of its labels, on its own slices and with its own names.
+/// Converts a label map to a DICOM segmentation with one segment for each label. The segmentation has the
+/// label map's slices and the labels' names.
 int convert_labels(const Program& program, const ConvertText& text) {
   need_used(text, true, true);
   need_folder_of(text.out);
@@ -114,7 +116,7 @@ int convert_labels(const Program& program, const ConvertText& text) {
   options.kind = kind_of(text);
   options.progress.stop = program.stop.get_token();
   options.source = source_of(program, text, false, scene.identity, findings);
-  if (!options.source) warn("no --source: the segmentation gets a study of its own and refers to no images");
+  if (!options.source) warn("no --source: the segmentation gets a new study and refers to no images");
   if (options.source) need_on_source(text, *options.source, corners_of(segments), findings);
   {
     const Stopwatch watch(timings, "write");
@@ -129,7 +131,7 @@ int convert_labels(const Program& program, const ConvertText& text) {
   return done;
 }
 
-/// Writes the kind of DICOM object that --as names; none if it names none.
+/// Writes the kind of DICOM object that --as states. None if --as is not given and the input needs none.
 std::optional<int> convert_as(const Program& program, const ConvertText& text) {
   if (text.planes != "images" && text.as != "structures")
     throw std::runtime_error("--planes applies only to --as structures: leave it out");
@@ -140,7 +142,7 @@ std::optional<int> convert_as(const Program& program, const ConvertText& text) {
     throw std::runtime_error(text.out.string() +
                              ": is one DICOM object, not a series of images: leave --dicom out");
   if (text.other_identity && text.source.empty())
-    throw std::runtime_error("--other-identity needs --source: give it, or leave both out");
+    throw std::runtime_error("--other-identity needs --source: add --source, or leave --other-identity out");
   need_folder_of(text.out);
   if (is_report && !text.as.empty())
     throw std::runtime_error(text.in.string() + ": is a PDF, which has one form in DICOM: leave --as out");
@@ -159,8 +161,8 @@ std::optional<int> convert_as(const Program& program, const ConvertText& text) {
   return std::nullopt;
 }
 
-/// Removes texts in a scan's file that may name a person: names of labels, and words that the standard does
-/// not define.
+/// Removes texts of a scan's file that could name a person: names of labels, and values that the standard
+/// does not define.
 void leave_out_words(voxel::Scene& scene, LabelTable& table, std::vector<std::string>& changes) {
   constexpr std::array<const char*, 3> units{"HU", "US", "OD"};
   if (!table.names.empty()) changes.emplace_back("Names of labels: removed");
@@ -203,7 +205,7 @@ int convert(const Program& program, const ConvertText& text) {
     if (folder) {
       if (!table.names.empty())
         findings.push_back(
-            "the names of the labels are left out, as a DICOM series of images has no place "
+            "the names of the labels are left out, because a DICOM series of images has no place "
             "for them: a DICOM segmentation (.dcm without --dicom) keeps them");
       voxel::DicomOptions options;
       options.series_description = "Octotomy, derived";
@@ -212,7 +214,7 @@ int convert(const Program& program, const ConvertText& text) {
       if (voxel::is_written_as_secondary_capture(scene))
         findings.push_back("the modality " + scene.modality + " is written as Secondary Capture images" +
                            (scene.declared_unit.empty() ? "" : " with the unit " + scene.declared_unit) +
-                           ": the attributes of its own kind of image are left out");
+                           ": attributes that only this modality's own kind of image has are left out");
       {
         std::vector<std::string> words = std::move(*text.changes);
         options.source = source_of(program, text, is_dicom(scene), scene.identity, findings);
@@ -225,11 +227,11 @@ int convert(const Program& program, const ConvertText& text) {
                                    ? "Anonymous"
                                    : scene.identity.patient_name;
         findings.push_back("no --source: the series is of '" + options.patient_name +
-                           "', in a study of its own, and refers to no images");
+                           "', in a new study, and refers to no images");
       }
       if (const double off = voxel::dicom_rounding(scene); off > 0.0)
         findings.push_back("values are rounded by up to " + three_figures(off) +
-                           " as DICOM stores them in 16 bits: a .nrrd or .nii.gz keeps them");
+                           ", because DICOM stores them in 16 bits: a .nrrd or .nii.gz keeps them exactly");
       voxel::write_dicom_series(scene, text.out, options);
     } else {
       voxel::write_scene(scene, text.out);
@@ -301,8 +303,7 @@ void add_convert(Program& program) {
       verb, text->identity,
       "The patient and study of written DICOM: keep those of --source (default); remove them by the Basic "
       "Application Level Confidentiality Profile of PS3.15, also names of labels and files; or new, a "
-      "patient "
-      "without a name in a study of its own");
+      "patient without a name in a new study");
   verb.add_option("--label", text->label,
                   "Label of the DICOM object; default: the octree's or the file's name");
   add_scan_options(verb, text->scan);

@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The objects of an .octree or a label map.
+/// The objects in an .octree or a label map. Sets `identity` to that of the label map.
 std::vector<voxel::DicomSegment> read_objects(const Program& program, const ConvertText& text,
                                               Timings& timings, voxel::Identity& identity,
                                               std::vector<std::string>& findings) {
@@ -38,7 +38,8 @@ std::vector<voxel::DicomSegment> read_objects(const Program& program, const Conv
   return std::move(read.objects);
 }
 
-/// The series of --source, with findings on where the objects lie in it; warns if there is none.
+/// The series of --source, after a check that the points of the output lie in it. None, with a warning, if no
+/// series is given.
 std::optional<voxel::DicomSource> source_around(const Program& program, const ConvertText& text,
                                                 const voxel::Identity& identity,
                                                 const std::vector<glm::dvec3>& points_mm, const char* kind,
@@ -48,7 +49,7 @@ std::optional<voxel::DicomSource> source_around(const Program& program, const Co
   if (source)
     need_on_source(text, *source, points_mm, findings);
   else
-    warn(std::string("no --source: the ") + kind + " gets a study of its own and refers to no images");
+    warn(std::string("no --source: the ") + kind + " gets a new study and refers to no images");
   return source;
 }
 
@@ -56,8 +57,9 @@ double volume_mm3(const voxel::Octree& octree) {
   return static_cast<double>(octree.voxel_count()) * octree.universe().lattice().voxel_mm3();
 }
 
-/// The objects on the samples of the source's images, to which contours belong. A finding states the change
-/// of volume, unless the voxels are these samples.
+/// Replaces each object by its samples on the lattice of the source's images, because contours are drawn on
+/// these. Adds a finding for each object whose volume changes. Throws std::runtime_error if an object
+/// contains no sample.
 void put_on_samples(const voxel::Lattice& lattice, std::vector<voxel::DicomSegment>& objects,
                     std::vector<std::string>& findings) {
   const voxel::Octree none = voxel::Octree::empty(voxel::universe_on(lattice));
@@ -66,8 +68,8 @@ void put_on_samples(const voxel::Lattice& lattice, std::vector<voxel::DicomSegme
         voxel::chosen_samples(lattice, none, voxel::Octree::empty(each.object.universe()), each.object);
     if (on_samples.is_empty())
       throw std::runtime_error("'" + each.label +
-                               "' contains none of the source's samples: leave this object out, or name the "
-                               "scan from which it was made by --source");
+                               "' contains none of the source's samples: leave this object out, or give the "
+                               "scan from which it was made as --source");
     const double before_mm3 = volume_mm3(each.object), after_mm3 = volume_mm3(on_samples);
     if (on_samples.voxel_count() != each.object.voxel_count() ||
         std::abs(after_mm3 - before_mm3) > 1e-6 * before_mm3)
@@ -78,17 +80,17 @@ void put_on_samples(const voxel::Lattice& lattice, std::vector<voxel::DicomSegme
   }
 }
 
-/// Objects as shares of voxels on one lattice.
+/// Objects, each as the filled share of every voxel of one lattice.
 struct Shares {
   voxel::Lattice lattice;
   std::vector<voxel::DicomFractions> segments = {};
-  std::vector<double> volumes_mm3 = {};     ///< before the shares are rounded
-  std::vector<std::uint64_t> partial = {};  ///< numbers of partly filled voxels
+  std::vector<double> volumes_mm3 = {};     ///< computed before the shares are rounded
+  std::vector<std::uint64_t> partial = {};  ///< number of partly filled voxels of each object
 };
 
 constexpr double most_fraction = 255.0;
 
-/// Adds an object whose voxels begin at `first` of its universe and fill the lattice.
+/// Adds an object of partly filled voxels. The lattice begins at the voxel `first` of the object's universe.
 void add_partial(const std::string& label, const voxel::PartialOctree& partial, const glm::ivec3& first,
                  Shares& shares) {
   const glm::ivec3 dims = shares.lattice.dims;
@@ -127,13 +129,14 @@ void add_partial(const std::string& label, const voxel::PartialOctree& partial, 
   shares.segments.push_back(std::move(made));
 }
 
-/// Adds shares from 0 to 1, in the order of the lattice's samples.
+/// Adds an object by its shares, one for each sample of the lattice in the lattice's order. Shares above 1
+/// count as 1.
 template <typename Share>
 void add_shares(const std::string& label, const std::vector<Share>& from, Shares& shares) {
   voxel::DicomFractions made{label, std::vector<std::uint8_t>(shares.lattice.sample_count())};
   double sum = 0.0;
   std::uint64_t partly = 0;
-  // Sums of lengths that end this near to a whole voxel count as ending on it.
+  // A share within this distance of 0 or 1 differs from it only by rounding.
   constexpr double rounding = 1e-9;
   for (std::size_t i = 0; i < made.fractions.size(); ++i) {
     const auto share = static_cast<double>(from[i]);
@@ -146,8 +149,8 @@ void add_shares(const std::string& label, const std::vector<Share>& from, Shares
   shares.segments.push_back(std::move(made));
 }
 
-/// Adds an object by its voxels' exact shares; where its axes are turned against the lattice's, by the
-/// shares of digitise_partial(), with a finding on its volume.
+/// Adds an object by the exact share of each voxel. If the object's axes are rotated against the lattice's,
+/// digitise_partial() estimates the shares, and a finding states their volume.
 void add_object(const voxel::DicomSegment& object, const voxel::Progress& progress, Shares& shares,
                 std::vector<std::string>& findings) {
   if (const auto exact = voxel::occupancy(object.object, shares.lattice, progress)) {
@@ -160,11 +163,11 @@ void add_object(const voxel::DicomSegment& object, const voxel::Progress& progre
   findings.push_back(
       "'" + object.label +
       "': its voxels are rotated relative to the source's voxels, so their shares are estimated: " +
-      three_figures(shares.volumes_mm3.back()) + " mm3 of " + three_figures(volume_mm3(object.object)) +
-      " mm3; a surface's shares are exact");
+      three_figures(shares.volumes_mm3.back()) + " mm3 in place of " +
+      three_figures(volume_mm3(object.object)) + " mm3; shares of a surface are exact");
 }
 
-/// Whether samples are shares, and not labels: all from 0 to 1, and one between.
+/// Whether samples are shares, not labels: all lie from 0 to 1, and at least one lies between.
 bool holds_shares(const voxel::Scene& scene) {
   const auto* const samples = std::get_if<voxel::FloatSamples>(&scene.samples);
   const voxel::Range range = voxel::range(scene);
@@ -174,13 +177,14 @@ bool holds_shares(const voxel::Scene& scene) {
          });
 }
 
-/// The label of --label, else the file's name, which may name the patient.
+/// The object's label: that of --label, or else the file's name. If the identity is not kept, "Object"
+/// replaces the file's name, because it may name the patient.
 std::string label_of(const ConvertText& text) {
   if (!text.label.empty()) return text.label;
   return text.keeps_identity() ? text.in.stem().string().substr(0, 64) : "Object";
 }
 
-/// The voxels of a universe around an object as a lattice, and the first of them.
+/// The block of a universe's voxels around an object, as a lattice, and the index of the block's first voxel.
 std::pair<voxel::Lattice, glm::ivec3> lattice_around(const voxel::Octree& object) {
   const voxel::Universe& universe = object.universe();
   const voxel::Box box = voxel::extents_of(object).value_or(voxel::Box{});
@@ -199,7 +203,8 @@ std::pair<voxel::Lattice, glm::ivec3> lattice_around(const voxel::Octree& object
   return {lattice, first};
 }
 
-/// The objects' shares of the voxels of the source's images; for an octree of shares, its own shares.
+/// Computes how much of each voxel of the source's images the objects fill. An input that consists of shares
+/// keeps its own shares.
 class ShareMaker {
  public:
   ShareMaker(const Program& program, const ConvertText& text, Timings& timings,
@@ -271,7 +276,7 @@ class ShareMaker {
       return of_objects(read.objects, read.scene.identity);
     }
     ConvertText words = text_;
-    words.scan.series.clear();  // the input's series, not the source's
+    words.scan.series.clear();  // --series names a series of the input, not of the source
     source = source_around(program_, words, scene.identity, corners_of(scene.lattice), "segmentation",
                            timings_, findings_);
     Shares shares{scene.lattice};
@@ -367,7 +372,7 @@ int convert_fractions(const Program& program, const ConvertText& text) {
     double sum = 0.0;
     for (const std::uint8_t fraction : shares.segments[i].fractions) sum += fraction;
     const double written_mm3 = sum / most_fraction * shares.lattice.voxel_mm3();
-    // Rounding moves a share by at most half a step.
+    // Rounding changes a share by at most half a step of 1/255.
     const double bound_mm3 =
         static_cast<double>(shares.partial[i]) * 0.5 / most_fraction * shares.lattice.voxel_mm3();
     json["segments"].push_back({{"segment", i + 1},
@@ -410,7 +415,7 @@ int convert_report(const Program& program, const ConvertText& text) {
     const Stopwatch watch(timings, "source");
     options.source = source_of(program, text, false, {}, findings);
   }
-  if (!options.source) warn("no --source: the report gets a study of its own and names no patient");
+  if (!options.source) warn("no --source: the report gets a new study and names no patient");
   {
     const Stopwatch watch(timings, "write");
     voxel::write_dicom_document(bytes, voxel::DocumentFormat::Pdf, text.out, options);
@@ -446,7 +451,7 @@ int convert_model(const Program& program, const ConvertText& text) {
   options.source = source_around(program, text, {}, triangles.points_mm, "surface", timings, findings);
   {
     const Stopwatch watch(timings, "write");
-    // Written again, because the file's own coordinates may not be LPS millimetres.
+    // The mesh is written to a new file in LPS millimetres, because the input may have another frame or unit.
     const voxel::StagedFiles staging(text.out.parent_path());
     const fs::path file = staging.folder() / (is_obj ? "model.obj" : "model.stl");
     brep::write_mesh(triangles, file);

@@ -35,7 +35,7 @@ Json plan_json(const std::string& text, const std::string& where) {
   return plan;
 }
 
-/// The views of a result of this plan.
+/// The views in a result's folder. Refuses a folder that is not the result of this plan.
 std::vector<voxel::PlanPicture> pictures_of(const fs::path& result, const Json& plan) {
   Json made;
   try {
@@ -58,23 +58,23 @@ std::vector<voxel::PlanPicture> pictures_of(const fs::path& result, const Json& 
     }
   }
   if (pictures.empty())
-    refuse(result.string(), "holds no views: give a folder that octotomy run wrote, as --pictures");
+    refuse(result.string(), "contains no views: give a folder that octotomy run wrote, as --pictures");
   return pictures;
 }
 
 void need_result(const fs::path& result) {
   if (!fs::is_regular_file(result / "result.json"))
-    refuse(result.string(), "holds no result.json: give a folder that octotomy run wrote, as --pictures");
+    refuse(result.string(), "contains no result.json: give a folder that octotomy run wrote, as --pictures");
 }
 
-/// Refuses options that do not fit a plan.
+/// Refuses options of convert that do not apply to a plan.
 void need_plan_words(const ConvertText& text) {
   if (text.out.has_extension())
     refuse(text.out.string(), "a plan and its pictures are several DICOM objects: give a folder");
   if (text.dicom || !text.as.empty())
     refuse(text.in.string(), "is a plan, which has one form in DICOM: leave --dicom and --as out");
   if (text.other_identity && text.source.empty())
-    refuse("", "--other-identity needs --source: give it, or leave both out");
+    refuse("", "--other-identity needs --source: add --source, or leave --other-identity out");
   need_folder_of(text.out, OutputKind::Folder);
   if (!text.pictures.empty()) need_result(text.pictures);
   if (fs::file_size(text.in) > most_plan_bytes) refuse(text.in.string(), "is larger than any plan");
@@ -98,7 +98,7 @@ int convert_plan(const Program& program, const ConvertText& text) {
     const Stopwatch watch(timings, "source");
     source = source_of(program, text, false, {}, findings);
   }
-  if (!source) warn("no --source: the plan gets a study of its own and names no patient");
+  if (!source) warn("no --source: the plan gets a new study and names no patient");
   if (!text.keeps_identity()) {
     bytes = plan_without_names(bytes, *text.changes);
     text.changes->emplace_back("plan: name and paths of scans removed");
@@ -153,7 +153,7 @@ std::optional<int> unpack_archived(const Program& program, const ConvertText& te
            "does not fit " + text.in.string() + ", " + found->kind + ": name a file that ends in " + wanted);
   if (!text.source.empty() || !text.label.empty() || !text.as.empty() || !text.keeps_identity())
     refuse(text.out.string(),
-           "is the file as the archive keeps it: leave --source, --label, --as and --identity out");
+           "is written exactly as the archive stores it: leave --source, --label, --as and --identity out");
   need_folder_of(text.out);
   Timings timings;
   std::uint64_t size = 0;
@@ -217,7 +217,8 @@ std::optional<int> info_of_archived(const Program& program, const fs::path& path
       const Json plan = plan_json(bytes, path.string());
       const std::size_t steps = plan.contains("steps") ? plan["steps"].size() : 0;
       json["plan"] = {{"name", plan.value("name", "")}, {"steps", steps}, {"bytes", bytes.size()}};
-      said = plan.value("name", "") + ", " + std::to_string(steps) + " steps, whole by its SHA-256";
+      said =
+          plan.value("name", "") + ", " + std::to_string(steps) + " steps, complete according to its SHA-256";
     } catch (const std::exception& error) {
       json["finding"] = error.what();
       said = error.what();

@@ -99,7 +99,7 @@ void need_on_source(const ConvertText& text, const voxel::DicomSource& source,
       throw std::runtime_error(said + " If this is intended, --other-identity continues and reports a FAIL");
     findings.push_back("FAIL: " + said);
   } else if (beyond_mm > std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z})) {
-    // Less than a voxel is normal for objects whose voxels differ from those of the images.
+    // Points may lie less than a voxel outside if the object's voxels differ from those of the images.
     findings.push_back(text.in.string() + ": reaches beyond" + images + " by " + three_figures(beyond_mm) +
                        " mm: was it made of another scan?");
   }
@@ -115,7 +115,7 @@ LabelObjects read_label_objects(const Program& program, const ConvertText& text,
                                 std::vector<std::string>& findings) {
   ScanIn in = text.scan;
   if (!text.source.empty() && voxel::volume_format(text.in)) {
-    // A volume file has one series, so these options choose among the series of the source.
+    // A volume file has only one series, so --series, --slices and --join apply to the source.
     in.series.clear();
     in.slices.clear();
     in.join = false;

@@ -13,7 +13,7 @@
 #include "voxel/scan/write_dicom_seg.h"
 #include "voxel/tree/octree_file.h"
 
-// The words of `octotomy convert`, and the series of images to which written DICOM refers.
+// The command line of `octotomy convert`, and the DICOM series to which its output refers.
 namespace octotomy::planner::cli {
 
 struct ConvertText {
@@ -22,54 +22,55 @@ struct ConvertText {
   ScanIn scan;
   bool dicom = false, other_identity = false;
   std::string identity = "keep";
-  /// What source_of() changed in the source's identity.
+  /// The changes that source_of() has made to the patient's identity, one sentence each.
   std::shared_ptr<std::vector<std::string>> changes = std::make_shared<std::vector<std::string>>();
   std::filesystem::path pictures;  ///< a plan's result folder
 
   bool keeps_identity() const { return identity == "keep"; }
 };
 
-/// The DICOM series to which the output refers, with the identity that --identity chooses; none if the input
-/// was not made from a series. Refuses a series of another patient than the input's. Adds findings on values
-/// that could not be compared and, for --source, each WARN and FAIL of its audit.
+/// The DICOM series to which the output refers: --source, or the input if `reads_dicom`; none if there is
+/// neither. Its identity is kept, removed or replaced as --identity states. Refuses a series of another
+/// patient than `identity`. Adds findings on values that could not be compared and, for --source, each WARN
+/// and FAIL of its audit.
 std::optional<voxel::DicomSource> source_of(const Program& program, const ConvertText& text, bool reads_dicom,
                                             const voxel::Identity& identity,
                                             std::vector<std::string>& findings);
 
-/// Points in LPS millimetres whose convex hull contains an object, all objects or a lattice: the corners of
-/// the smallest block of voxels, along the object's own axes, that contains it.
+/// Points in LPS millimetres whose convex hull contains all objects, or a lattice: corners of the smallest
+/// blocks of voxels that contain them, along their own axes.
 std::vector<glm::dvec3> corners_of(const std::vector<voxel::DicomSegment>& objects);
 std::vector<glm::dvec3> corners_of(const voxel::Lattice& lattice);
 
-/// Compares the output's points, in LPS millimetres, with the images of --source. Refuses points wholly outside
-/// them, because the input was made from another scan or has a wrong frame, unless --other-identity allows
-/// it. Adds a finding if they extend beyond the images. Does nothing if nothing is written.
+/// Compares points of the output, in LPS millimetres, with the images of --source. Refuses points that all
+/// lie outside of the images, unless --other-identity is given: the input was made from another scan, or its
+/// frame is wrong. Adds a finding if some points lie outside by more than a voxel.
 void need_on_source(const ConvertText& text, const voxel::DicomSource& source,
                     const std::vector<glm::dvec3>& points_mm, std::vector<std::string>& findings);
 
-/// Adds findings, and the changes of the identity, to the JSON; prints findings as warnings.
+/// Adds findings and changes of the identity to the JSON, and prints the findings as warnings.
 void tell(const ConvertText& text, const std::vector<std::string>& findings, Json& json);
 
-/// The labels of a label map as objects on its own lattice, with their names.
+/// The labels of a label map, each as an object on the map's own lattice.
 struct LabelObjects {
   voxel::Scene scene;
   std::vector<voxel::Label> labels;
   std::vector<voxel::DicomSegment> objects;  ///< one for each label
 };
-/// Reads a label map; names are left out if --identity removes or replaces the identity, because they may
-/// name the patient. Adds findings on its labels and names. Throws std::runtime_error if the file is not a
-/// label map.
+/// Reads a label map. Replaces the labels' names if --identity is not keep, because names may identify the
+/// patient. Adds findings on labels and names. Throws std::runtime_error if the file is not a label map.
 LabelObjects read_label_objects(const Program& program, const ConvertText& text, Timings& timings,
                                 std::vector<std::string>& findings);
 
-/// The binary octree of a file, with the name that --label gives, else with its own name unless --identity
-/// removes it. Throws std::runtime_error if the file holds another kind of octree.
+/// The object in a file with a binary octree. Its name is that of --label, or else the file's own, unless
+/// --identity removes it. Throws std::runtime_error if the file contains another kind of octree.
 voxel::DicomSegment binary_object(const ConvertText& text, const voxel::OctreeFile& file);
 
-/// Writes the objects of an .octree or a label map as a DICOM structure set.
+/// Writes the objects of an .octree or a label map as a DICOM structure set. Returns the exit status, like
+/// all functions below.
 int convert_structures(const Program& program, const ConvertText& text);
-/// Writes the share that objects, a surface or samples from 0 to 1 fill of each voxel as a FRACTIONAL
-/// segmentation.
+/// Writes a fractional DICOM segmentation: the share of each voxel that is filled by the objects or the
+/// surface of the input. Samples from 0 to 1 are such shares.
 int convert_fractions(const Program& program, const ConvertText& text);
 /// Writes an STL or OBJ file as an encapsulated DICOM document.
 int convert_model(const Program& program, const ConvertText& text);
@@ -77,10 +78,10 @@ int convert_model(const Program& program, const ConvertText& text);
 int convert_report(const Program& program, const ConvertText& text);
 /// Writes a plan, and the views in the folder of --pictures, as DICOM objects of one study.
 int convert_plan(const Program& program, const ConvertText& text);
-/// Writes an archive's document as the original file, byte for byte, or an archive's picture from its pixels. None if
-/// the input or the output is of another kind.
+/// Writes a document of an archive as the original file, byte for byte, or a picture of an archive from its
+/// pixels. None if the input is no such object, or the output is of another kind.
 std::optional<int> unpack_archived(const Program& program, const ConvertText& text);
-/// Describes an archive's document or picture; none if the file is another kind.
+/// Prints the facts of an archive's document or picture. None if the file is no such object.
 std::optional<int> info_of_archived(const Program& program, const std::filesystem::path& path);
 
 }  // namespace octotomy::planner::cli

@@ -52,7 +52,7 @@ int info_of_mesh(const Program& program, const std::filesystem::path& path) {
   return done;
 }
 
-/// The series of a DICOM folder, numbered as for --series; null for other inputs.
+/// The series of a DICOM folder, with the numbers that --series accepts. Null for other inputs.
 Json series_of(const std::filesystem::path& path, const voxel::Scene& scene) {
   if (!is_dicom(scene)) return nullptr;
   Json list = Json::array();

@@ -22,8 +22,8 @@ constexpr std::size_t least_aligned = 8 * huge_page;
 constexpr std::size_t least_advised = huge_page / 8;
 
 #if defined(__linux__)
-/// Requests huge pages for a block at any address. Other blocks on its first and last huge page are affected
-/// too. It is only advice: a system may ignore it and use small pages.
+/// Requests huge pages for a block of memory. The request also applies to other blocks on the same first and
+/// last huge page. A system may ignore it.
 void advise_huge_pages(void* memory, std::size_t bytes) {
   const std::uintptr_t before = reinterpret_cast<std::uintptr_t>(memory) % huge_page;
   const std::size_t advised = (before + bytes + huge_page - 1) / huge_page * huge_page;
@@ -31,7 +31,7 @@ void advise_huge_pages(void* memory, std::size_t bytes) {
 }
 #endif
 
-/// Allocates a block; null if there is no memory.
+/// Allocates a block of at least `bytes`; null if there is no memory.
 void* block_of(std::size_t bytes) {
 #if defined(__linux__)
   if (bytes >= least_advised && bytes < std::size_t(-1) / 2) {

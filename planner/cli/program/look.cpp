@@ -32,7 +32,7 @@ int look(Program& program, LookText& text) {
     first.anonymous = text.anonymous;
     write_result_files(first, output.path(), {program.stop.get_token(), {}});
     early = output.publish_early();
-    // Only on a terminal: scripts expect one line on how the verb ended.
+    // Printed only on a terminal: scripts expect a single line, on how the verb ended.
     if (early && program.shows_progress())
       warn("audit and pictures: " + (text.out / "report.html").string() + "; certificates follow");
   };
@@ -78,7 +78,8 @@ void add_look(Program& program) {
   verb.add_option("--bone", text->options.bone_low, "Lower bound of bone in sample units; default 300 HU")
       ->check(finite())
       ->type_name("LOW");
-  verb.add_option("--skin", text->options.skin_low, "Lower bound of all within the skin; default -300 HU")
+  verb.add_option("--skin", text->options.skin_low,
+                  "Lower bound of everything inside the skin, in sample units; default -300 HU")
       ->check(finite())
       ->type_name("LOW");
   add_anonymous(verb, text->anonymous);

@@ -44,15 +44,16 @@ using octotomy::planner::Fault;
 std::atomic<int> interrupts{0};
 std::atomic<bool> is_processor_time_over{false};
 
-/// Installs a handler, unless the signal was ignored when the program started, as nohup does with SIGHUP.
+/// Installs a handler. A signal that was ignored when the program started remains ignored, as nohup does with
+/// SIGHUP.
 void heed(int signal, void (*handler)(int)) {
   if (std::signal(signal, handler) == SIG_IGN) std::signal(signal, SIG_IGN);
 }
 
-/// Installs handlers for signals that request an end, and for those that a failed call reports anyway. A
-/// second SIGINT or SIGTERM ends the process at once; SIGHUP counts once, because a closing terminal may send
-/// it twice. SIGXCPU, of a limit on processor time, acts like --time-limit. SIGQUIT keeps its default action,
-/// an immediate end with a core file; as after SIGKILL, the next run removes leftovers.
+/// Installs handlers for signals that request an end. A second SIGINT or SIGTERM ends the process at once.
+/// SIGHUP counts once, because a closing terminal may send it twice. SIGXCPU, sent at a limit on processor
+/// time, acts like --time-limit. SIGQUIT keeps its default action: the process ends with a core file, and the
+/// next run removes its unfinished files, as after SIGKILL.
 void heed_signals() {
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { ++interrupts; });
   heed(SIGHUP, [](int) {
@@ -60,13 +61,13 @@ void heed_signals() {
     interrupts.compare_exchange_strong(none, 1);
   });
   heed(SIGXCPU, [](int) { is_processor_time_over = true; });
-  // If the reader closes a pipe or a file-size limit is reached, the writing call fails with EPIPE or EFBIG.
-  // The signals are handled instead of ignored, because child programs inherit ignored signals.
+  // At a closed pipe or a limit on file size, the failed call already reports the error. The signals are
+  // caught instead of ignored, because child programs would inherit ignored signals.
   for (const int signal : {SIGPIPE, SIGXFSZ}) heed(signal, [](int) {});
 }
 
-/// Prints the reason and ends the process, although the verb's threads may still be running: removes their
-/// unfinished files; processes that they started end with this one.
+/// Prints the reason and ends the process with status 3, even if the verb's threads still run. Removes their
+/// unfinished files. Child processes end with this one.
 [[noreturn]] void end_now(const char* why) {
   octotomy::voxel::remove_unfinished();
   cli::end_progress();
@@ -78,9 +79,9 @@ constexpr const char* out_of_memory =
     "out of memory: nothing was written; use larger voxels (universe, voxel_mm), a smaller scan, or raise "
     "--memory";
 
-/// Called if an allocation failed, or a thread had an error that nothing could handle, most likely because no
-/// further thread could be started. Ends the process at once: code that continues without its memory may
-/// crash or wait forever.
+/// Ends the process at once for lack of memory or threads. Called if an allocation failed, or if a thread had
+/// an error that nothing handles, most likely because no further thread could be started. Code that continues
+/// without its memory could crash or wait forever.
 [[noreturn]] void end_for_want(const char* why) {
   static std::atomic_flag ending;
   if (ending.test_and_set()) ::pause();
@@ -88,7 +89,7 @@ constexpr const char* out_of_memory =
   end_now(why);
 }
 
-/// The handler of std::terminate, for unhandled errors on any thread, including lack of memory or threads.
+/// The handler of std::terminate: reports an exception that no thread has caught, and ends the process.
 [[noreturn]] void end_of_no_handler() {
   std::string what = "an error without a handler";
   try {
@@ -109,8 +110,9 @@ constexpr const char* out_of_memory =
   std::_Exit(cli::internal_error);
 }
 
-/// Requests the verb to stop when its time is over or the user interrupts, and ends the process if the verb
-/// does not stop or a second interrupt arrives. Active until the end of its scope.
+/// Watches the verb from its own thread. Requests the verb to stop when its time is over or the user
+/// interrupts, and ends the process if the verb does not stop soon or a second interrupt arrives. Ends with
+/// its scope.
 class Watch {
  public:
   explicit Watch(Program& program)
@@ -118,7 +120,7 @@ class Watch {
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// A verb that checks its stop token ends within this time and prints its own message.
+  /// Time for the verb to stop and print its own message. Then the process is ended.
   static constexpr std::chrono::milliseconds grace{150};
   static constexpr std::chrono::milliseconds look_every{5};
 
@@ -128,7 +130,7 @@ class Watch {
     std::optional<Clock::time_point> asked;
     std::mutex mutex;
     std::unique_lock lock(mutex);
-    std::condition_variable_any end;  // wakes immediately; a sleep would delay the program's end
+    std::condition_variable_any end;  // in contrast to a sleep, wakes at once when the verb has ended
     while (!end.wait_for(lock, over, look_every, [&over] { return over.stop_requested(); })) {
       if (octotomy::voxel::is_memory_over()) end_for_want(out_of_memory);
       if (shows) cli::show_silent_work();
@@ -140,7 +142,8 @@ class Watch {
       program.stop.request_stop();
       if (!asked) asked = Clock::now();
       if (Clock::now() < *asked + grace) continue;
-      // A verb that has its answer may print it unless interrupted, because its reader may never read.
+      // A verb that has begun to print its answer may finish, because the answer is complete. Only an
+      // interrupt ends it then: the reader of its output may never read.
       if (has_last_word(cli::Speaker::Watch))
         end_now(interrupts > 0 ? "interrupted: nothing was written" : "out of time: nothing was written");
       if (interrupts > 0) end_now("interrupted while the answer was written");
@@ -150,21 +153,22 @@ class Watch {
   std::jthread thread_;
 };
 
-/// Prints an error on one line: what, where and a remedy.
+/// Prints an error on one line and returns its exit status. Waits forever if the watch already prints how the
+/// process ends.
 int refuse(const std::string& text, int status) {
   while (!has_last_word(cli::Speaker::Verb)) std::this_thread::sleep_for(std::chrono::seconds(1));
   cli::warn(text);
   return status;
 }
 
-/// The exit status of an error.
+/// The exit status for a kind of error.
 int status_of(Fault fault) {
   if (fault == Fault::Internal) return cli::internal_error;
   return fault == Fault::Cancelled || fault == Fault::Resource ? cli::out_of_resources : cli::bad_input;
 }
 
-/// Refuses with an error's text and status. The text of an internal error also names the verb, because a
-/// report needs it; texts for users name the file or the option.
+/// Prints an error and returns its exit status. The text of an internal error also names the verb, which a
+/// report of the error needs. Other texts name a file or an option.
 int refuse(const std::exception& error, const std::string& verb) {
   const Fault fault = octotomy::planner::fault_of(error);
   if (fault != Fault::Internal || verb.empty())
@@ -173,7 +177,7 @@ int refuse(const std::exception& error, const std::string& verb) {
   return refuse(octotomy::planner::message_of(named), status_of(fault));
 }
 
-/// The verb on the command line; empty where it names none.
+/// The name of the verb on the command line; empty if there is none.
 std::string verb_of(const CLI::App& app) {
   const std::vector<CLI::App*> verbs = app.get_subcommands();
   return verbs.empty() ? "" : verbs.front()->get_name();
@@ -200,7 +204,7 @@ int run_chosen(Program& program) {
   }
 }
 
-/// Refuses an empty output name, which an unset variable in a script produces.
+/// Refuses an empty output path, which can come from an unset variable in a script.
 void need_named_outputs(const CLI::App& verb) {
   for (const CLI::Option* option : verb.get_options())
     if (option->check_sname("o") && option->count() > 0 && option->results().back().empty())
@@ -208,7 +212,8 @@ void need_named_outputs(const CLI::App& verb) {
   for (const CLI::App* chosen : verb.get_subcommands()) need_named_outputs(*chosen);
 }
 
-/// Help and version go to standard output, which may be full.
+/// Prints the help or version to standard output. Fails if that cannot be written, for example to a full
+/// disk.
 int say_help(const CLI::App& app, const CLI::ParseError& error) {
   app.exit(error);
   std::cout.flush();
@@ -257,7 +262,7 @@ int parse_and_run(int count, char** arguments) {
       return refuse(cli::unknown_verb(app, arguments[1]), cli::bad_input);
     return refuse(std::string(error.what()) + "; see octotomy --help", cli::bad_input);
   } catch (const std::filesystem::filesystem_error& error) {
-    // A path that is too long, or in an inaccessible folder.
+    // a path is too long or lies in an inaccessible folder
     return refuse(error.path1().string() + ": " + error.code().message(), cli::bad_input);
   }
   return run_chosen(program);
@@ -271,7 +276,7 @@ int main(int count, char** arguments) {
   try {
     return parse_and_run(count, arguments);
   } catch (const std::bad_alloc&) {
-    // The only error that run_chosen() may throw. Printing this line needs no allocation.
+    // run_chosen() throws no other error. Printing this text needs no allocation.
     std::fputs("octotomy: out of memory\n", stderr);
     return cli::out_of_resources;
   } catch (const std::exception& error) {

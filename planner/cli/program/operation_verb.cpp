@@ -37,7 +37,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The words of the command line.
+/// The command line of an operation's verb.
 struct OperationText {
   FieldWords words;
   fs::path out;
@@ -47,7 +47,8 @@ struct OperationText {
   CLI::App* verb = nullptr;
 };
 
-/// The fields available on the command line: positionals and options.
+/// The fields of an operation that its verb has as positionals and options: all but those that only plans
+/// have.
 std::vector<Field> fields_of(const Operation& operation) {
   std::vector<Field> fields;
   for (const std::vector<Field>* all : {&operation.fields, &operation.verb_fields})
@@ -56,7 +57,7 @@ std::vector<Field> fields_of(const Operation& operation) {
   return fields;
 }
 
-/// One run of a verb whose answer is the object that the kernels make.
+/// One run of a verb that makes an object in both kernels.
 class OperationRun {
  public:
   OperationRun(const Program& program, const Action& action, const OperationText& text)
@@ -98,7 +99,7 @@ class OperationRun {
   }
 
  private:
-  /// Computes the operation's values that both kernels share.
+  /// Computes values of the operation that both kernels then use, such as a fitted plane.
   void settle(Object& made) {
     if (!operation_.settle) return;
     settled_ = operation_.settle(
@@ -139,15 +140,15 @@ class OperationRun {
     try {
       return text_.orient ? read_turned_solid(path, timings_, mended_) : read_solid(path, timings_);
     } catch (const brep::Error& error) {
-      throw brep::Error(error.code(),
-                        std::string(error.what()) +
-                            (text_.orient ? "; or take --mend"
-                                          : "; or take --mend, or --orient where triangles only face the "
-                                            "wrong way"));
+      throw brep::Error(
+          error.code(),
+          std::string(error.what()) +
+              (text_.orient ? "; or take --mend"
+                            : "; or use --mend, or --orient if triangles only face the wrong way"));
     }
   }
 
-  /// If no operand is an octree, the universe is around all operands.
+  /// Chooses a universe around all operands, unless an operand is an octree, whose universe is used.
   void choose_universe() {
     if (has_octree_) return;
     voxel::Box box{glm::dvec3(1e300), glm::dvec3(-1e300)};
@@ -155,7 +156,7 @@ class OperationRun {
       const brep::Size& size = object.mesh.whole->size();
       box = {glm::min(box.low_mm, size.low_mm), glm::max(box.high_mm, size.high_mm)};
     }
-    const double room_mm = 0.25 * longest_side_mm(box);  // for operations that add a margin
+    const double room_mm = 0.25 * longest_side_mm(box);  // some operations add a margin
     universe_ = universe_around({box.low_mm - room_mm, box.high_mm + room_mm}, longest_side_mm(box));
   }
 
@@ -164,7 +165,7 @@ class OperationRun {
     return std::max({extent.x, extent.y, extent.z});
   }
 
-  /// Voxels of the size --voxel, or a 128th of `shown_mm`.
+  /// A universe around a box, with voxels of the size --voxel or, by default, a 128th of `shown_mm`.
   voxel::Universe universe_around(const voxel::Box& box, double shown_mm) const {
     return voxel::universe_around(box, text_.voxel_mm.value_or(shown_mm / 128.0));
   }
@@ -177,7 +178,7 @@ class OperationRun {
     object.voxel.lineage = "voxel centres inside of " + object.definition;
   }
 
-  /// Makes the surface of an octree that is combined with meshes.
+  /// Makes a mesh of an octree that is combined with meshes: the boundary of its voxels.
   void add_surface(Object& object) {
     if (object.mesh.whole) return;
     if (object.voxel.octree.is_empty()) throw std::runtime_error(object.id + ": holds no voxel");
@@ -188,13 +189,14 @@ class OperationRun {
     object.mesh.lineage = "boundary of the voxels of " + object.definition;
   }
 
-  /// Both kernels' operands come from the same file.
+  /// States as the origin of both kernels' operands the file from which they come.
   static void add_file_maker(Object& object) {
     const std::string lineage = object.mesh.whole ? object.mesh.lineage : object.voxel.lineage;
     object.voxel.makers = object.mesh.makers = {"file: " + lineage};
   }
 
-  /// The operands' files, and the code by which each kernel made the answer; sorted, each once.
+  /// States as the origin of each kernel's answer its code and the operands' files, sorted and without
+  /// repetitions.
   void add_makers(Object& made) const {
     const auto add = [&](std::vector<std::string>& all, const std::string& lineage, auto of_operand) {
       all.push_back(operation_.name + ": " + lineage);
@@ -213,8 +215,8 @@ class OperationRun {
         [](const Object& object) -> const auto& { return object.mesh.makers; });
   }
 
-  /// The answer's universe is that of the operand that is an octree. Reports a mesh that extends beyond it,
-  /// because its voxels are cut off there.
+  /// Checks that a mesh lies within the octree's universe, in which the answer's voxels are made. Beyond it,
+  /// voxels are cut off: throws with --certify, otherwise adds a warning.
   void check_room(const Object& object) {
     if (!object.mesh.whole || object.mesh.whole->empty()) return;
     const voxel::Lattice lattice = universe_.lattice();
@@ -247,13 +249,13 @@ class OperationRun {
     operation_.mesh(value(), {box.low_mm, box.high_mm, objects_, no_scan_, expressions, timings_, progress()},
                     made.mesh);
     made.findings.insert(made.findings.end(), made.mesh.findings.begin(), made.mesh.findings.end());
-    // An empty result is valid: its volume is 0 and its file has no triangles.
+    // An empty result is valid: its volume is 0, and its file contains no triangle.
     if (made.mesh.whole->empty())
       made.findings.push_back("empty: nothing is left of " + made.definition + ", so " +
                               text_.out.filename().string() + " has no triangles");
   }
 
-  /// Voxelises an answer that only the mesh kernel has.
+  /// Makes the voxels of an answer that the mesh kernel alone has computed.
   void voxelise_answer(Object& made) {
     const Stopwatch watch(timings_, "voxelise");
     const brep::Solid& solid = *made.mesh.whole;
@@ -333,11 +335,11 @@ class OperationRun {
   std::vector<std::string> beyond_;  ///< meshes that the octree's universe cuts off
   std::vector<Object> inputs_;
   Objects objects_;
-  std::shared_ptr<void> settled_;  ///< the operation's value after settle(); empty: as typed
+  std::shared_ptr<void> settled_;  ///< the value made by settle(); empty: the typed one
   nlohmann::ordered_json settled_details_ = nlohmann::ordered_json::object();
 };
 
-/// One run of a verb that answers from files by itself.
+/// One run of a verb whose operation reads files and returns the answer itself. Returns the exit status.
 int answer_from_files(const Program& program, const Action& action, const OperationText& text) {
   Timings timings;
   for (const auto& [field, words] : text.words)
@@ -373,7 +375,7 @@ void add_object_options(CLI::App& verb, const Operation& operation, OperationTex
   if (!by_both) certify->group("");  // hidden: it is refused with a reason
 }
 
-/// Whether the command line names objects, that is, files of meshes or octrees.
+/// Whether a field of the operation names objects. On the command line these are files of meshes or octrees.
 bool names_files(const Operation& operation, const std::vector<Field>& fields) {
   const std::shared_ptr<void> fresh = operation.fresh();
   return std::any_of(fields.begin(), fields.end(),

@@ -35,8 +35,8 @@ struct PhantomText {
   std::string digitise = "centre";
 };
 
-/// Writes a phantom's scan in the format of the path. Throws std::runtime_error before the scan is made if
-/// there is no such format.
+/// Writes the scan of a phantom; the path's extension states the format. The constructor throws
+/// std::runtime_error for an unknown extension, before the scan is computed.
 class ScanOut {
  public:
   ScanOut(const PhantomText& text, std::string series) : path_(text.out), series_(std::move(series)) {
@@ -48,7 +48,7 @@ class ScanOut {
       throw std::runtime_error(path_.string() +
                                ": unknown kind of scan; use .nrrd, .nii.gz or .mha, or a folder for DICOM");
   }
-  /// Throws voxel::Error (Resource) if a scan of the box does not fit on the disk.
+  /// Throws voxel::Error (Resource) if the disk has no room for a scan of this box and spacing.
   void need_disk_of(const voxel::Box& box, double voxel_mm, double slice_mm) const {
     voxel::Lattice least;
     least.dims = glm::floor((box.high_mm - box.low_mm) / glm::dvec3(voxel_mm, voxel_mm, slice_mm));
@@ -78,7 +78,8 @@ int head(const Program& program, const PhantomText& text) {
     const Stopwatch watch(timings, "phantom");
     scene = verify::head_phantom(text.head);
   }
-  // Sampling the closed form takes longer than the scan and is reported only in the JSON.
+  // The true volume is reported only in the JSON. Sampling it takes longer than the scan, so it is left out
+  // otherwise.
   verify::SampledVolume bone;
   if (program.json) {
     const Stopwatch watch(timings, "truth");
@@ -131,7 +132,8 @@ bool is_tooth_scan(const PhantomText& text) {
   return text.kind == "upper_teeth" || text.kind == "lower_teeth";
 }
 
-/// Writes a scan of teeth. The JSON has the data that tooth_scan needs to place the scan on the head phantom.
+/// Writes a mesh of teeth as a scanner in the mouth shows them. The JSON contains the fields with which the
+/// operation tooth_scan places it on the head phantom.
 int teeth(const Program& program, const PhantomText& text) {
   need_mesh_extension(text.out);
   Timings timings;
@@ -263,7 +265,7 @@ void add_head_options(CLI::App& verb, PhantomText& text) {
 }
 
 void add_solid_options(CLI::App& verb, PhantomText& text) {
-  verb.add_option("--voxels", text.voxels, "Voxels a side of the universe, a power of two; default 256")
+  verb.add_option("--voxels", text.voxels, "Voxels along a side of the universe, a power of two; default 256")
       ->group(solid_group);
   verb.add_option("--radius", text.radius_voxels, "R in voxels; default a quarter of the side")
       ->check(above_zero())

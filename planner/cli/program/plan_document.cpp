@@ -59,7 +59,7 @@ int merge_plans(const Program& program, const Paths& paths) {
   if (!merged.conflicts.empty()) {
     if (program.json) program.say(json, "");
     warn("nothing was written, because both plans changed the same values: " + conflicts +
-         "; make one of them agree and merge again");
+         "; change one plan to the other's values and merge again");
     return bad_input;
   }
   voxel::write_whole(paths.out, merged.text);
@@ -107,7 +107,7 @@ int history_of(const Program& program, const HistoryText& text) {
     throw std::runtime_error(
         "--undo, --redo and --go-to each choose a state: give only one of these options");
   const Plan plan = read_plan(text.plan);
-  // Listing alone needs no writable folder.
+  // Listing states does not write to the folder.
   const bool only_lists = !text.undo && !text.redo && text.go_to.empty() && text.branch.empty() &&
                           text.name.empty() && !PlanHistory::can_write(text.plan);
   PlanHistory history(text.plan, only_lists ? PlanHistory::Access::Read : PlanHistory::Access::Write);

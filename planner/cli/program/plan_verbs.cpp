@@ -61,15 +61,15 @@ int preview_step(Program& program, PreviewText& text) {
   return done;
 }
 
-/// Writes the result's folder; returns the contents of result.json.
+/// Writes the result's folder. Returns the contents of its result.json.
 Json written(Program& program, Result& result, const std::filesystem::path& out) {
   if (program.stop.stop_requested()) throw Stopped("stopped before the result was written");
   return write_result(result, out, {program.stop.get_token(), program.progress()});
 }
 
-/// Refuses a result if one of its label maps does not fit on the disk, as soon as the first scan and thus the
-/// universe is known. Requires space only for the largest map, because the others may compress to almost
-/// nothing.
+/// Refuses a plan if the disk has no room for one of its label maps. Checks this when the first scan is read,
+/// because its lattice determines the size of the maps. Requires room only for the largest map, because the
+/// others may compress to almost nothing.
 void need_disk_of_label_maps(const Plan& plan, const std::filesystem::path& out, EvaluateOptions& options) {
   const auto is_first = std::make_shared<bool>(true);
   options.read_scene = [&plan, out, is_first](const std::filesystem::path& path,

@@ -28,7 +28,8 @@ struct PrepareText {
   ScanIn scan;
 };
 
-/// The operations that make a scan from another scan alone. Those that also take objects are steps of plans only.
+/// The operations that make a scan from another scan alone. Operations that also need objects can only be
+/// steps of plans.
 std::vector<const Operation*> known_steps() {
   std::vector<const Operation*> known;
   for (const Operation& operation : operations())
@@ -36,7 +37,7 @@ std::vector<const Operation*> known_steps() {
   return known;
 }
 
-/// The action of a step as written: NAME or NAME=VALUE,VALUE,...
+/// The action of a step in the form NAME or NAME=VALUE,VALUE,...
 Action step_of(const std::string& text, const PrepareText& given) {
   const auto equals = text.find('=');
   const std::string name = text.substr(0, equals);
@@ -71,13 +72,13 @@ Action step_of(const std::string& text, const PrepareText& given) {
   return action;
 }
 
-/// The file that a restore step reads; empty for other steps.
+/// The file that a step "restore" reads; empty for other steps.
 fs::path read_by(const std::string& step) {
   constexpr std::string_view restore = "restore=";
   return step.starts_with(restore) ? step.substr(restore.size()) : "";
 }
 
-/// Refuses outputs that cannot be written, before anything is read.
+/// Refuses outputs that cannot be written, before any input is read.
 void check_outputs(const PrepareText& text) {
   if (!voxel::volume_format(text.out))
     throw std::runtime_error(text.out.string() + ": unknown kind of scan; use .nrrd, .nii.gz or .mha");

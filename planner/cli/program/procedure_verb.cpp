@@ -45,7 +45,8 @@ Json json_of(const std::vector<ProcedureValue>& values,
   return json;
 }
 
-/// Prints the inputs of a procedure, or the names of all procedures.
+/// Prints the inputs of a procedure, or the names of all procedures if none is named. Returns the exit
+/// status.
 int explain(const Program& program, const ProcedureText& text) {
   Json json = answer({});
   if (text.name.empty()) {
@@ -115,7 +116,8 @@ ProcedureInput input_of(const ProcedureText& text) {
   return input;
 }
 
-/// The procedure's plan, alone or after another one's; sets `carried` to the landmarks that moved with a piece.
+/// The plan of a procedure, alone or after the plan of --after. Sets `carried` to the landmarks that lie on a
+/// moved piece and move with it.
 Json planned(Program& program, const ProcedureText& text, std::vector<std::string>& carried) {
   const Procedure procedure = with_options(read_procedure(text.name), text.options);
   const ProcedureInput input = input_of(text);

@@ -33,9 +33,9 @@ struct ServeText {
   bool open = false, share = false;
 };
 
-/// Starts the desktop's browser; does nothing if there is none. The URL contains the token and every user can
-/// read the arguments of a process, so the browser opens a page that only its owner can read and that
-/// redirects to the URL.
+/// Opens the page in the desktop's browser; does nothing if there is no browser. The URL contains the token,
+/// and every user can read the arguments of a process. So the browser opens a file that only its owner can
+/// read, which redirects to the URL.
 void open_browser(const std::string& url, const fs::path& closed_folder) {
   const fs::path page = closed_folder / "planner.html";
   const int file = ::open(page.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
@@ -51,26 +51,28 @@ void open_browser(const std::string& url, const fs::path& closed_folder) {
   }
 }
 
-/// The plan or scan with which to begin. Throws std::runtime_error if two are named.
+/// The plan or scan with which the server starts; none if only folders are named. Throws std::runtime_error
+/// if the command line names several.
 std::optional<fs::path> beginning_of(const std::vector<fs::path>& paths) {
   std::optional<fs::path> beginning;
   for (const fs::path& path : paths) {
     if (fs::is_directory(path) && paths.size() > 1) continue;
-    if (beginning) throw std::runtime_error("name one plan or scan; others may be folders");
+    if (beginning) throw std::runtime_error("name at most one plan or scan; other paths must be folders");
     beginning = fs::canonical(path);
   }
   return beginning;
 }
 
-/// Allows a plan from the command line to read its scans and files in any folder.
+/// Allows the server to read the scans and files of a plan from the command line, wherever they are.
 void allow_reading_of(const Plan& plan, serve::Folders& folders) {
   for (const auto& [name, scan] : plan.scans) folders.allow_reading(scan_path(plan, scan));
   for (const Step& step : plan.steps)
     for (const fs::path& file : files_read(step)) folders.allow_reading(plan.folder / file);
 }
 
-/// Ends the program after the server: every edit is on disk, nobody waits for running work, and stopping it
-/// may take long. Waits for a running edit before renaming is disabled, because an edit renames files.
+/// Ends the program after the server has ended. Running work is not awaited: every edit is on disk, and
+/// stopping the work may take long. Only a running edit is awaited for a short time, because it renames files
+/// and remove_unfinished() disables that.
 [[noreturn]] void end_program(serve::Session& session, bool is_out_of_time) {
   constexpr std::chrono::milliseconds longest_edit{100};
   while (!has_last_word(Speaker::Verb)) ::pause();
@@ -83,7 +85,7 @@ void allow_reading_of(const Plan& plan, serve::Folders& folders) {
 int run(Program& program, ServeText& text) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
-  // Checks everything that can be refused before a plan is written.
+  // Everything that can be refused is checked before a plan is written.
   const std::optional<fs::path> beginning = beginning_of(text.paths);
   text.options.token = text.token_file.empty() ? serve::new_token() : serve::token_in(text.token_file);
   if (text.share)
@@ -113,7 +115,7 @@ int run(Program& program, ServeText& text) {
   if (beginning) session.open(*beginning, {program.stop.get_token(), program.progress()});
   serve::Service service(session, line_of, text.options.view_token);
   server.run(service, session, program.stop.get_token());
-  // The watch started shortly before or after this verb.
+  // The watch that enforces the time limit started up to this time before or after this verb.
   constexpr std::chrono::duration<double> margin{0.1};
   end_program(session, program.time_limit_s && Clock::now() - start + margin >=
                                                    std::chrono::duration<double>(*program.time_limit_s));
@@ -136,10 +138,9 @@ void add_serve(Program& program) {
                   "Stores the address's token in this file: with the same --port, open pages reconnect to a "
                   "restarted server");
   verb.add_flag("--open", text->open, "Opens the desktop's browser");
-  verb.add_flag(
-      "--share", text->share,
-      "Prints a second address, with a token of its own, whose pages show the open plan as it changes "
-      "and change nothing. With --token-file FILE, its token is stored in FILE.view");
+  verb.add_flag("--share", text->share,
+                "Also prints a second address, whose pages show the open plan and every change of it but "
+                "cannot change it. It has another token, which --token-file FILE stores in FILE.view");
   verb.add_option("--listen", text->options.address,
                   "Address of another interface, so that other machines reach the server; default 127.0.0.1");
 }

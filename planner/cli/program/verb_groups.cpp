@@ -28,7 +28,7 @@ constexpr std::string_view checking = "Check the kernels";
 constexpr std::string_view exchanging = "Exchange with an archive";
 constexpr std::string_view many = "Many scans";
 
-/// The groups in their order in the help.
+/// The groups, in the order in which help prints them.
 constexpr std::array group_order{looking,  planning,  scans,      cutting,  shaping,
                                  elements, measuring, exchanging, checking, many};
 
@@ -104,8 +104,8 @@ constexpr bool each_verb_stands_once() {
 }
 static_assert(each_verb_stands_once());
 
-/// Prints groups in the table's order; CLI11 would use the order in which verbs were added. Groups that are
-/// not in the table come last.
+/// Prints the groups of verbs in the order of the table, then other groups. CLI11 itself prints them in the
+/// order in which verbs were added.
 class GroupedHelp : public CLI::Formatter {
  public:
   std::string make_subcommands(const CLI::App* app, CLI::AppFormatMode mode) const override {
@@ -123,7 +123,7 @@ class GroupedHelp : public CLI::Formatter {
   }
 
  private:
-  /// The verb's name and description on one line of any length.
+  /// A verb's name and description, without a line break.
   static std::string line_of_verb(const CLI::App& verb) {
     constexpr std::size_t name_width = 16;
     std::string line = "  " + verb.get_name();

@@ -7,9 +7,9 @@ class App;
 
 namespace octotomy::planner::cli {
 
-/// Sorts the program's verbs into groups by task, in which its help lists them. Precondition: all verbs have
-/// been added. Throws CLI::OptionNotFound if a name in the table is not a verb. A verb that is not in the
-/// table stays in the help's group "Subcommands", which a test refuses.
+/// Sorts the program's verbs into groups by task, under which the help lists them. Precondition: all verbs
+/// have been added. Throws CLI::OptionNotFound if the table of groups names a verb that does not exist. A
+/// verb that is missing in the table stays in the help's group "Subcommands"; a test refuses this.
 void group_verbs(CLI::App& app);
 
 }  // namespace octotomy::planner::cli

@@ -3,11 +3,11 @@
 
 #include "planner/cli/verb/verb.h"
 
-// Each function adds the verbs of one source file.
+// Each function adds the verbs of one source file to the program.
 namespace octotomy::planner::cli {
 
-/// A verb for every operation of the table that works on files: a plan of one step. Its options, their
-/// checks and its help come from the operation's fields.
+/// Adds a verb for every operation of the table that works on files. Such a verb is a plan of one step. Its
+/// options, checks and help come from the operation's fields.
 void add_operation_verbs(Program& program);
 void add_info(Program& program);
 void add_convert(Program& program);

@@ -15,7 +15,8 @@
 namespace octotomy::planner::cli {
 namespace {
 
-/// A table of detected per tried faults: one row per fault, one column per size.
+/// A table of the faults that were detected, as "detected/tried": a row for each fault, a column for each
+/// size.
 std::string table(const std::vector<verify::DetectionPower>& powers) {
   std::vector<std::pair<std::string, std::string>> rows;
   for (const verify::DetectionPower& power : powers) {
@@ -30,8 +31,8 @@ std::string table(const std::vector<verify::DetectionPower>& powers) {
   return lines(rows);
 }
 
-/// The scans of --scan NAME=PATH, each with the window of its bone: from 300 HU, or the brightest of three
-/// classes for other units.
+/// The scans of --scan NAME=PATH, each with its window of bone: from 300 HU or, in other units, the brightest
+/// of three classes.
 std::vector<verify::ScanToAlter> scans_to_alter(Program& program, const VerifyText& text) {
   constexpr double bone_hu = 300.0;
   std::vector<verify::ScanToAlter> scans;
@@ -52,7 +53,8 @@ std::vector<verify::ScanToAlter> scans_to_alter(Program& program, const VerifyTe
   return scans;
 }
 
-/// A table of the alterations of each kind above the limit, and of those that passed.
+/// A table of the alterations: for each kind, those above the detection limit and those that a certificate
+/// passed.
 std::string table(const std::vector<verify::Alteration>& alterations) {
   std::map<std::string, std::array<int, 3>> kinds;
   for (const verify::Alteration& one : alterations) {
@@ -101,7 +103,7 @@ SuiteAnswer run_faults(Program& program, const VerifyText& text) {
                      {"reasons", trial.certificate.reasons}};
     tried.push_back(place);
     if (trial.fault.empty()) {
-      // The unaltered twins have the kernels' real certificates.
+      // A trial without a fault has the certificate of the kernels' unaltered answers.
       answer.certificates.push_back(to_json(trial.certificate));
       add(answer.counts, trial.certificate);
     } else if (trial.must_be_caught && trial.voxels >= verify::resolved_size && !trial.caught()) {
@@ -147,10 +149,10 @@ SuiteAnswer run_faults(Program& program, const VerifyText& text) {
   answer.text =
       table(verify::detection_power(trials)) + table(alterations) +
       "unaltered answers: " + std::to_string(doubted) + " of " + std::to_string(twins) +
-      " doubted\nrandom alterations over the detection limit: " + std::to_string(passed) + " of " +
+      " doubted\nrandom alterations above the detection limit: " + std::to_string(passed) + " of " +
       std::to_string(over) + " passed\n" +
       (answer.held
-           ? "from 64\u00b3 on, every fault that must be detected is, and every clean twin passes"
+           ? "from 64\u00b3 on, every fault that must be detected is detected, and every clean twin passes"
            : "NOT HELD: a fault was missed from 64\u00b3 on, or a clean twin did not pass; see --json") +
       "\n";
   return answer;

@@ -43,7 +43,7 @@ brep::Operation operation_of(const std::string& word) {
   throw CLI::ValidationError("OP", "'" + word + "' is none of union, intersection, difference, |, & and -");
 }
 
-/// A question, and the answer to check.
+/// Two operands and an operation, and optionally the answer of another program that is checked.
 struct Question {
   std::string name;
   fs::path a, b;
@@ -51,8 +51,8 @@ struct Question {
   std::optional<fs::path> answer;
 };
 
-/// All voxels of an .octree file, or all labelled samples of a label map; on the lattice `onto` if it is
-/// given and contains them.
+/// The voxels of an .octree file, or the labelled samples of a label map. Sets `lattice` to theirs. A label
+/// map is placed on the lattice `onto`, if that is given and contains its samples.
 voxel::Octree labelled(const Program& program, const fs::path& path, Timings& timings,
                        voxel::Lattice& lattice, const voxel::Lattice* onto = nullptr,
                        bool may_be_empty = false) {
@@ -62,7 +62,7 @@ voxel::Octree labelled(const Program& program, const fs::path& path, Timings& ti
     if (octree == nullptr)
       throw std::runtime_error(
           path.string() +
-          ": holds grey values: make a binary octree of its scan first (octotomy octree SCAN --window "
+          ": contains grey values: make a binary octree of its scan first (octotomy octree SCAN --window "
           "LOW:)");
     lattice = octree->universe().lattice();
     if (octree->is_empty() && !may_be_empty) throw std::runtime_error(path.string() + ": holds no voxel");
@@ -84,7 +84,7 @@ voxel::Octree labelled(const Program& program, const fs::path& path, Timings& ti
   return voxel::combine(universe, all);
 }
 
-/// Both kernels' answers and their certificates.
+/// The answers of both kernels to one question, and the certificates for them and for the answer to check.
 struct Answered {
   verify::KernelAnswers kernels;
   std::vector<verify::Certificate> certificates;
@@ -97,7 +97,8 @@ struct Answered {
 };
 
 Answered of_label_maps(Program& program, const Question& asked, Timings& timings) {
-  // A label map is converted to the lattice of the octree or of the other map.
+  // Both sets must have one lattice. That of the octree is preferred, because a label map can be placed on
+  // it.
   voxel::Lattice lattice_a, lattice_b;
   const bool is_b_first = is_octree(asked.b) && !is_octree(asked.a);
   const voxel::Octree first = labelled(program, is_b_first ? asked.b : asked.a, timings, lattice_a),
@@ -120,20 +121,21 @@ Answered of_label_maps(Program& program, const Question& asked, Timings& timings
       {std::move(given.octree), std::move(given.solid), given.shift_mm, std::move(given.findings)}, {}, {}};
   const std::string question = asked.a.string() + " " + asked.operation + " " + asked.b.string();
   given.certificate.operation = question;
-  // Sets that touch themselves at an edge may have no manifold Boolean; then only the test in general
-  // position applies.
+  // If sets touch themselves or each other at an edge, there may be no manifold Boolean. Then only the sets
+  // in general position are certified.
   if (answered.kernels.solid)
     answered.certificates.push_back(std::move(given.certificate));
   else
     answered.not_covered.push_back(question + " on the sets as given: " + given.certificate.reasons.front());
   answered.certificates.push_back(verify::certify_exact(verify::exact_answers(expression, progress)));
   answered.certificates.back().operation =
-      question + ", both sets refined and smaller by a quarter of a voxel all round, no faces shared";
+      question +
+      ", both sets refined and shrunk by a quarter of a voxel on all sides, so that they share no faces";
   answered.lattice = lattice_a;
   return answered;
 }
 
-/// The boundary of a set's voxels, and the set's universe.
+/// The boundary of a set's voxels as a solid, and the set's universe.
 struct SetAsSolid {
   brep::Solid solid;
   voxel::Universe universe;
@@ -147,7 +149,7 @@ SetAsSolid solid_of_set(const Program& program, const fs::path& path, Timings& t
           set.universe()};
 }
 
-/// Whether a solid lies within a universe, so that no voxel of it is lost.
+/// Whether a solid lies within a universe, so that voxelising loses no part of it.
 bool holds(const voxel::Universe& universe, const brep::Solid& solid) {
   const voxel::Lattice lattice = universe.lattice();
   const brep::Size& size = solid.size();
@@ -163,9 +165,9 @@ bool holds(const voxel::Universe& universe, const brep::Solid& solid) {
   return true;
 }
 
-/// A mesh and a set of voxels: both kernels represent the set by the boundary of its voxels. If the set's
-/// universe contains the mesh, they are compared in the set's own voxels, so that the octree is the set
-/// itself.
+/// Answers a question on a mesh and a set of voxels. For the mesh kernel, the set is the boundary of its
+/// voxels. If the set's universe contains the mesh and no --voxel is given, the voxel kernel uses that
+/// universe, in which the set is exact.
 Answered of_mesh_and_set(Program& program, const Question& asked, const VerifyText& text, Timings& timings) {
   const bool is_mesh_first = is_mesh(asked.a);
   const fs::path &mesh_file = is_mesh_first ? asked.a : asked.b,
@@ -175,7 +177,7 @@ Answered of_mesh_and_set(Program& program, const Question& asked, const VerifyTe
   verify::MeshOperationOptions options{text.operand_voxel_mm, {}, {program.stop.get_token(), {}}};
   if (asked.answer && !is_mesh(*asked.answer) && !holds(set.universe, mesh))
     throw std::runtime_error(mesh_file.string() + ": reaches beyond the voxels of " + set_file.string() +
-                             ", so that voxels cannot hold the answer: give the answer as a mesh");
+                             ", so that voxels cannot represent the answer: give the answer as a mesh");
   if (text.operand_voxel_mm && asked.answer && !is_mesh(*asked.answer))
     throw CLI::ValidationError("--voxel", "the answer's voxels are those of " + set_file.string());
   if (!text.operand_voxel_mm) {
@@ -198,7 +200,7 @@ Answered of_mesh_and_set(Program& program, const Question& asked, const VerifyTe
 Answered of_meshes(Program& program, const Question& asked, const VerifyText& text, Timings& timings) {
   const brep::Solid left = read_solid(asked.a, timings), right = read_solid(asked.b, timings);
   verify::MeshOperationOptions options{text.operand_voxel_mm, {}, {program.stop.get_token(), {}}};
-  // An answer of voxels is compared in its own universe.
+  // If the answer consists of voxels, both kernels' answers are computed in its universe.
   if (asked.answer && is_octree(*asked.answer))
     options.universe = voxel::universe(voxel::read_octree(*asked.answer));
   else if (asked.answer && !is_mesh(*asked.answer))
@@ -210,7 +212,8 @@ Answered of_meshes(Program& program, const Question& asked, const VerifyText& te
   return {{*answers.octree, answers.solid, answers.shift_mm, answers.findings}, {answers.certificate}, {}};
 }
 
-/// Reads the answer and compares it with both kernels'. `operands` is the lattice of label maps, or null.
+/// Compares another program's answer with the answers of both kernels. `operands` is the lattice of the
+/// operands if these are label maps, else null.
 std::vector<verify::Certificate> judged(const fs::path& answer, const verify::KernelAnswers& kernels,
                                         const voxel::Lattice* operands, Program& program, Timings& timings) {
   if (is_mesh(answer)) {
@@ -232,11 +235,12 @@ std::vector<verify::Certificate> judged(const fs::path& answer, const verify::Ke
   return verify::judge_voxels(kernels, voxels);
 }
 
-/// The kernels' certificates, then those of the answer.
+/// Computes the certificates of a question: first those of the kernels' own answers, then those of the answer
+/// to check.
 Answered answered(Program& program, const Question& asked, const VerifyText& text, Timings& timings) {
   const bool a_is_mesh = is_mesh(asked.a), b_is_mesh = is_mesh(asked.b);
   if (!a_is_mesh && !b_is_mesh && text.operand_voxel_mm)
-    throw CLI::ValidationError("--voxel", "label maps and octrees have voxels of their own");
+    throw CLI::ValidationError("--voxel", "label maps and octrees have voxels already: leave --voxel out");
   Answered found = a_is_mesh != b_is_mesh ? of_mesh_and_set(program, asked, text, timings)
                    : a_is_mesh            ? of_meshes(program, asked, text, timings)
                                           : of_label_maps(program, asked, timings);
@@ -264,8 +268,8 @@ std::string what_of(const verify::Certificate& certificate) {
   return lines(rows);
 }
 
-/// Reads "operands", "operation" and optionally "result" of one question; paths are relative to the file's
-/// folder.
+/// Reads a question from JSON: "operands", "operation" and, optionally, "result". Paths are relative to
+/// `folder`; `where` names the file in error messages.
 Question question_of(const nlohmann::json& json, const std::string& where, const fs::path& folder) {
   check_keys(json, where, {"operands", "operation", "result", "name"});
   const nlohmann::json& operands = need(json, "operands", where);
@@ -291,7 +295,7 @@ std::vector<Question> questions_of_file(const fs::path& path) {
   return all;
 }
 
-/// The only file of a folder with this name and any extension.
+/// The file of a folder with this name and any extension. None if there is none; throws if there are two.
 std::optional<fs::path> file_called(const fs::path& folder, const std::string& stem) {
   std::vector<fs::path> found;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
@@ -302,8 +306,8 @@ std::optional<fs::path> file_called(const fs::path& folder, const std::string& s
   return found.empty() ? std::nullopt : std::optional(found.front());
 }
 
-/// The questions of a folder: its .json files, and each folder in it with files a and b and one or more of
-/// union, intersection and difference. In the order of their names.
+/// The questions of a folder, in the order of their names: those in its .json files, and those in subfolders
+/// that contain files a, b and at least one of union, intersection and difference.
 std::vector<Question> questions_of_folder(const fs::path& folder) {
   std::vector<fs::path> entries;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) entries.push_back(entry.path());
@@ -321,9 +325,10 @@ std::vector<Question> questions_of_folder(const fs::path& folder) {
         all.push_back({entry.filename().string() + " " + operation, *a, *b, operation, std::move(answer)});
   }
   if (all.empty())
-    refuse(folder.string(),
-           "holds no question: give .json files with operands, operation and result, or folders with files "
-           "a, b and union, intersection or difference");
+    refuse(
+        folder.string(),
+        "contains no question: give .json files with operands, operation and result, or folders with files "
+        "a, b and union, intersection or difference");
   return all;
 }
 
@@ -331,7 +336,7 @@ std::string volume_text(double volume_mm3) {
   return grouped(volume_mm3, 3);
 }
 
-/// A row of the table, with the worst verdict of a question's certificates.
+/// A row of the table of questions, with the worst verdict among the certificates of one question.
 Json row_of(const Question& asked, const Answered& found) {
   const std::vector<verify::Certificate>& certificates = found.certificates;
   const auto worst = std::max_element(

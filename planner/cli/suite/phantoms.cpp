@@ -44,8 +44,8 @@ Json study_json(const verify::PhantomSuite& suite) {
   return json;
 }
 
-/// Adds the coverage of the recommended values' intervals: a row for each kind of solid, and two rows that
-/// must pass.
+/// Adds how often the recommended values' intervals contain the truth: a row for each kind of solid, and two
+/// rows that must pass.
 void add_intervals(const std::vector<verify::IntervalCoverage>& table,
                    std::vector<std::pair<std::string, std::string>>& rows, SuiteAnswer& answer) {
   Json json = Json::array();
@@ -78,8 +78,8 @@ void add_intervals(const std::vector<verify::IntervalCoverage>& table,
   answer.more["intervals"] = std::move(json);
 }
 
-/// Adds the rows for random solids, by class; classes that were not used for calibration are separate. Every
-/// row must pass.
+/// Adds rows for random solids, one for each class; classes that were not used for calibration are marked.
+/// Every row must pass.
 void add_drawn(const std::vector<verify::IntervalCoverage>& table,
                std::vector<std::pair<std::string, std::string>>& rows, SuiteAnswer& answer) {
   Json json = Json::array();
@@ -161,7 +161,7 @@ SuiteAnswer run_phantoms(Program& program, const VerifyText& text) {
 
 CLI::Option* add_phantoms(CLI::App& verb, VerifyText& text) {
   verb.add_option("--poses", text.poses,
-                  "For --phantoms: poses of each solid, spacing and sampling; default 6")
+                  "For --phantoms: number of poses for each solid, spacing and sampling; default 6")
       ->check(CLI::Range(1, 1000))
       ->type_name("N");
   verb.add_option("--solids", text.solids,

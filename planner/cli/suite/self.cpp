@@ -22,12 +22,12 @@ extern "C" const char octotomy_build_mark[];
 namespace octotomy::planner::cli {
 namespace {
 
-/// The mark without its last word, which identifies the build.
+/// The beginning of the build's mark, up to the word that identifies the build.
 std::string mark_prefix() {
   return "octotomy build mark ";
 }
 
-/// The mark in a file's bytes; empty: it has none.
+/// The build's mark in a file; empty if the file contains none.
 std::string mark_in(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
@@ -66,7 +66,7 @@ bool mesh3_fills() {
   return is_filled(convert::run_mesh3(input, convert::Mesh3Sizes(), {}), 100.0, 200.0);
 }
 
-/// Meshes a cube of six voxels a side with an empty border.
+/// Whether the mesher fills the labels of a cube of six voxels along a side, with an empty border.
 bool mesh3_fills_labels() {
   constexpr int side = 12, low = 3, high = 8;
   convert::LabelImage image{
@@ -83,11 +83,11 @@ bool mesh3_fills_labels() {
   return is_filled(convert::run_mesh3(image, {2.0, 0.3, 3.0}, {}), 150.0, 230.0);
 }
 
-/// Decompresses two rows of three pixels in run lengths: 0 1 2, 3 3 3.
+/// Whether the codec decompresses two rows of three run-length coded pixels, 0 1 2 and 3 3 3.
 bool codec_decompresses() {
   std::string frame(64, '\0');
   frame[0] = 1;   // segments
-  frame[4] = 64;  // where the first one begins
+  frame[4] = 64;  // offset of the first segment
   frame += std::string("\x02\x00\x01\x02\xfe\x03", 6);
   voxel::CompressedFrame compressed{"1.2.840.10008.1.2.5", 3, 2, 8, 8, 7, false, {frame}};
   return voxel::decompress(compressed) == std::string("\x00\x01\x02\x03\x03\x03", 6);
@@ -109,7 +109,7 @@ constexpr Part parts[] = {{"octotomy-tetgen", "tetrahedra by TetGen", tetgen_fil
                           {"octotomy_dicom_codec", "compressed DICOM", codec_decompresses},
                           {"octotomy_image_io.so", "pictures", image_is_encoded}};
 
-/// The fault of a part; empty if there is none. Sets `path` to its location.
+/// The fault of a part of the installation; empty if the part works. Sets `path` to the part's file.
 std::string trouble_of(const Part& part, std::filesystem::path& path) {
   try {
     path = voxel::helper_file(part.file);
@@ -132,7 +132,7 @@ Json versions_of_all() {
   return versions;
 }
 
-/// Whether the decoding process is confined; none if it does not start.
+/// Whether the process that decodes DICOM is confined. None if it does not start.
 std::optional<bool> decoder_is_confined() {
   try {
     return voxel::codec_facts().is_confined;
@@ -141,7 +141,7 @@ std::optional<bool> decoder_is_confined() {
   }
 }
 
-/// The consequence of a fault on this system, as a line.
+/// A line on a known fault of a library and its effect in this installation.
 std::string meaning_of(const KnownFault& fault, const Json& versions, bool is_confined) {
   std::string text = fault.library;
   if (versions.contains(fault.library)) text += " " + versions[fault.library].get<std::string>();
@@ -157,7 +157,7 @@ std::string meaning_of(const KnownFault& fault, const Json& versions, bool is_co
     case KnownFault::Place::InDecoder:
       break;
   }
-  return text + (is_confined ? ": ends at worst the confined process that decodes"
+  return text + (is_confined ? ": can at worst end the confined process that decodes"
                              : ": WARN, the process that decodes is not confined on this system");
 }
 
@@ -192,7 +192,7 @@ SuiteAnswer run_self(Program& program, const VerifyText&) {
                                  ? "which may use no network, start no program and change no file outside of "
                                    "its own folder"
                                  : "WARN, not confined: this system lacks Landlock or seccomp";
-  rows.emplace_back("decoder", is_confined ? "a process of its own of at most 4 GB, " + limits : limits);
+  rows.emplace_back("decoder", is_confined ? "a separate process of at most 4 GB, " + limits : limits);
   Json faults = Json::array();
   for (const KnownFault& fault : faults_of(libraries)) {
     const std::string meaning = meaning_of(fault, libraries, is_confined.value_or(false));

@@ -16,19 +16,20 @@ namespace CLI {
 class Option;
 }  // namespace CLI
 
-// `octotomy verify`: a plan's certificates, or one of the suites that test the verifier itself.
+// The verb `octotomy verify`: certifies a plan or a question, or runs one of the suites that test the
+// verifier itself.
 namespace octotomy::planner::cli {
 
-/// The command line of `verify`. A suite adds fields for its own options.
+/// The command line of `verify`, including the options of all suites.
 struct VerifyText : PlanIn {
-  std::vector<std::string> subject;  ///< a plan, or A OP B; no suite was named
+  std::vector<std::string> subject;  ///< a plan, or A, OP and B; empty if a suite is named
   std::optional<double> operand_voxel_mm;
   std::optional<std::filesystem::path> report;  ///< a folder for report.html and result.json
-  std::optional<std::filesystem::path> answer;  ///< another program's answer to A OP B
+  std::optional<std::filesystem::path> answer;  ///< for A OP B: the answer of another program, to be compared
   bool accept_unresolved = false;
   bool faults = false, phantoms = false, self = false, thesis = false;
   int poses = 6;         ///< number of poses of --phantoms
-  int solids = 400;      ///< number of solids for its intervals
+  int solids = 400;      ///< for --phantoms: number of solids whose intervals are compared with the truth
   int alterations = 60;  ///< number of alterations of --faults
   int random_count = 0;
   std::vector<RandomTier> random_tiers;  ///< none: all
@@ -36,20 +37,21 @@ struct VerifyText : PlanIn {
   std::filesystem::path failures = "disagreements";
 };
 
-/// The results of a suite. The JSON has its certificates, the counts and the members of `more`.
+/// The results of a suite. The JSON output consists of the certificates, their counts and the members of
+/// `more`.
 struct SuiteAnswer {
   Timings timings;
   Json certificates = Json::array();
   VerdictCounts counts;
   Json more = Json::object();
-  std::vector<std::string> not_covered;    ///< requests without a certificate, one sentence each
-  std::optional<verify::Contested> worst;  ///< the worst of the certificates' objects, if they are available
+  std::vector<std::string> not_covered;    ///< why questions have no certificate, one sentence each
+  std::optional<verify::Contested> worst;  ///< the object with the worst certificate, for the report
   std::string text;                        ///< text for standard output
-  bool held = true;                        ///< false: exit status 1, besides a count of FAIL
+  bool held = true;                        ///< false: exit status 1, even if no certificate is a FAIL
 };
 
-/// A suite: its options on the command line and the function that runs it. It checks program.stop between
-/// cases, throws Stopped, and reports each case to program.progress().
+/// A suite of tests. `run` checks program.stop between cases and throws Stopped, and reports its progress by
+/// program.progress().
 struct Suite {
   /// Adds the suite's flag and options to the verb; returns the option that selects the suite.
   CLI::Option* (*add)(CLI::App& verb, VerifyText& text);

@@ -44,12 +44,12 @@ SuiteAnswer verify_plan(Program& program, const VerifyText& text) {
                                     : object.findings.empty() ? "there is no mesh"
                                                               : object.findings.front()));
   }
-  if (!uncertified.empty()) warn("no certificate of " + uncertified + ": the findings say why");
+  if (!uncertified.empty()) warn("no certificate of " + uncertified + ": the findings state why");
   return answer;
 }
 
-/// The series to which a replay's DICOM objects refer, as those of the pack did; none if it has no such
-/// objects.
+/// The DICOM series to which the replayed pack's DICOM objects refer. None if the pack has no such objects.
+/// Throws std::runtime_error if the scans were not read from a DICOM series.
 std::optional<SeriesOfPlan> objects_wanted(const PackContents& packed, const Result& result,
                                            const std::filesystem::path& path) {
   if (!packed.manifest.contains("dicom")) return std::nullopt;
@@ -62,7 +62,7 @@ std::optional<SeriesOfPlan> objects_wanted(const PackContents& packed, const Res
   return series;
 }
 
-/// Replays a pack and compares every value and entry with the packed ones.
+/// Replays a pack's plan, packs the result, and compares every value and every entry with those of the pack.
 SuiteAnswer verify_pack(Program& program, const VerifyText& text, const std::filesystem::path& path) {
   const PackContents packed = read_pack(path);
   Result result;
@@ -86,7 +86,7 @@ SuiteAnswer verify_pack(Program& program, const VerifyText& text, const std::fil
   answer.certificates = replayed.result["certificates"];
   answer.more["pack"] = to_json(comparison);
   answer.more["pack"]["packed_by"] = packed.manifest["octotomy"];
-  // Another version may write the same values into other bytes.
+  // Another version may write equal values as other bytes, so only its values must agree.
   const bool is_of_this_version = packed.manifest["octotomy"] == OCTOTOMY_VERSION;
   answer.held =
       comparison.different_values.empty() && (comparison.different_entries.empty() || !is_of_this_version);
@@ -109,13 +109,13 @@ SuiteAnswer verify_pack(Program& program, const VerifyText& text, const std::fil
   return answer;
 }
 
-/// Runs the suite selected by its option, or verifies the plan.
+/// Runs the suite whose option is given, or verifies a plan, a pack or questions.
 SuiteAnswer chosen(Program& program, VerifyText& text, const std::vector<CLI::Option*>& named) {
   const Suite* suite = nullptr;
   for (std::size_t i = 0; i < named.size(); ++i) {
     if (named[i]->count() == 0) continue;
     if (suite != nullptr || !text.subject.empty())
-      throw CLI::ValidationError(named[i]->get_name(), "one thing at a time: a plan or a single suite");
+      throw CLI::ValidationError(named[i]->get_name(), "give only one: a plan, or a single suite");
     suite = &suites()[i];
   }
   if (suite != nullptr) return suite->run(program, text);
@@ -126,16 +126,16 @@ SuiteAnswer chosen(Program& program, VerifyText& text, const std::vector<CLI::Op
     if (!std::filesystem::exists(text.subject[i]))
       throw CLI::ValidationError("subject", "no such file: " + text.subject[i]);
   if (operands) return verify_operands(program, text);
-  if (text.answer) throw CLI::ValidationError("--answer", "for A OP B only");
+  if (text.answer) throw CLI::ValidationError("--answer", "applies only to A OP B");
   if (holds_questions(text.subject.front())) return verify_questions(program, text);
-  if (text.operand_voxel_mm) throw CLI::ValidationError("--voxel", "for A OP B with a mesh only");
+  if (text.operand_voxel_mm) throw CLI::ValidationError("--voxel", "applies only to A OP B with a mesh");
   if (std::filesystem::path(text.subject.front()).extension() == ".zip")
     return verify_pack(program, text, text.subject.front());
   text.plan = text.subject.front();
   return verify_plan(program, text);
 }
 
-/// The subject as written on the command line.
+/// The subject of the verification, in the words of the command line.
 std::string subject_of(const VerifyText& text, const std::vector<CLI::Option*>& named) {
   std::string subject;
   for (const std::string& word : text.subject) subject += (subject.empty() ? "" : " ") + word;

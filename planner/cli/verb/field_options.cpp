@@ -11,7 +11,8 @@
 namespace octotomy::planner::cli {
 namespace {
 
-/// A field's option: its name without the unit, words joined by hyphens.
+/// The name of a field's option: "-o,--out" for "out"; for others the field's name without its unit, with
+/// hyphens.
 std::string option_of(const Field& field) {
   std::string name = field.option.empty() ? field.name : field.option;
   if (name == "out") return "-o,--out";
@@ -21,19 +22,19 @@ std::string option_of(const Field& field) {
   return "--" + name;
 }
 
-/// The sentence of a field with its unit and default.
+/// The help of a field's option: the field's sentence with its unit and default.
 std::string help_of(const Field& field, void* fresh) {
   std::string text = field.says;
   if (const std::string unit = field.unit(); !unit.empty()) text += " In " + unit + ".";
   if (field.is_required || is_flag(field, fresh)) return text;
-  // Fields that are read on a condition have a default, too.
+  // A field that is read only under a condition is not printed, but its default belongs in the help too.
   Field always = field;
   if (const auto* conditional = field.slot.target<ConditionalSlot>()) always.slot = conditional->slot;
   const auto printed = print_fields({always}, fresh);
   return printed.empty() ? text : text + " Default: " + printed.begin()->dump() + ".";
 }
 
-/// An error message with the names of fields replaced by those of options, "--out" for "-o,--out".
+/// Replaces the names of fields in an error message by those of their options, such as "--out".
 std::string in_options(std::string text, const std::string& operation, const std::vector<Field>& fields) {
   for (const Field& field : fields) {
     const std::string option = option_of(field), name = option.substr(option.rfind(',') + 1);
@@ -44,8 +45,8 @@ std::string in_options(std::string text, const std::string& operation, const std
   return text;
 }
 
-/// Removes the field's name from the start of an error message. Puts the option's words in quotes before the
-/// message unless it contains the last of them.
+/// Removes a field's name at the beginning of an error message. If the message does not contain the last of
+/// the option's words, puts the words before it, in quotes.
 std::string with_words(std::string text, const Field& field, const std::vector<std::string>& words) {
   if (text.starts_with(field.name + ": ")) text.erase(0, field.name.size() + 2);
   if (text.find(words.back()) != std::string::npos) return text;

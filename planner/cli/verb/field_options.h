@@ -8,19 +8,20 @@
 #include "planner/cli/verb/verb.h"
 #include "planner/operation/table/operation.h"
 
-// Converts an operation's fields to options of its verb, and words to values.
+// Converts the fields of an operation to options of its verb, and the words of a command line to an
+// operation's value.
 namespace octotomy::planner::cli {
 
-/// The words on the command line, by field.
+/// For each field's name, the words that the command line gives for it.
 using FieldWords = std::map<std::string, std::vector<std::string>>;
 
-/// Adds an option or a positional for each field that is available on the command line; `words` must outlive
-/// the verb.
+/// Adds an option or a positional for each of the fields. `words` receives their words and must outlive the
+/// verb.
 void add_field_options(CLI::App& verb, const Operation& operation, const std::vector<Field>& fields,
                        FieldWords& words);
 
-/// The operation's value from the words. Throws CLI::ValidationError if a word is not valid for its field,
-/// std::runtime_error if the operation refuses the combination.
+/// The operation's value for these words. Throws CLI::ValidationError if a word is invalid for its field, and
+/// std::runtime_error if the operation refuses the values together.
 Action read_action(const Operation& operation, const FieldWords& words);
 
 }  // namespace octotomy::planner::cli

@@ -11,7 +11,7 @@ namespace {
 using Options = std::vector<const CLI::Option*>;
 using Verbs = std::vector<const CLI::App*>;
 
-/// The options that help shows.
+/// The options of a verb that its help shows.
 Options shown_options(const CLI::App& app) {
   Options options = app.get_options([](const CLI::Option* option) { return !option->get_group().empty(); });
   return options;
@@ -25,7 +25,7 @@ bool takes_value(const CLI::Option& option) {
   return option.get_items_expected_max() > 0;
 }
 
-/// "-o,--out" as separate words; none for a positional.
+/// The names of an option, such as "-o" and "--out"; none for a positional.
 std::vector<std::string> names_of(const CLI::Option& option) {
   std::vector<std::string> names;
   for (const std::string& name : option.get_snames()) names.push_back("-" + name);
@@ -39,7 +39,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-/// Escapes text for a man page: backslash, minus and leading dot.
+/// Escapes text for a man page: backslashes, minus signs, and a dot or quote that begins a line.
 std::string troff(const std::string& text) {
   std::string safe = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
   safe = replaced(safe, "\n.", "\n\\&.");
@@ -60,12 +60,12 @@ std::string troff_options(const CLI::App& app) {
   return text;
 }
 
-/// The "Example:" lines of a footer, unformatted.
+/// The footer of a verb, such as its examples, as lines that the man page does not fill.
 std::string troff_footer(const CLI::App& app) {
   return app.get_footer().empty() ? "" : ".PP\n.nf\n" + troff(app.get_footer()) + "\n.fi\n";
 }
 
-/// The section of a verb, or the sections of a group's verbs.
+/// The section of a verb; for a group, the sections of all its verbs.
 std::string troff_verb(const CLI::App& verb, const std::string& name) {
   if (verb.get_subcommands([](const CLI::App*) { return true; }).empty())
     return ".SS " + troff(name) + "\n" + troff(verb.get_description()) + "\n" + troff_options(verb) +
@@ -87,7 +87,7 @@ std::string man_page(const CLI::App& app) {
   return text + ".SH EXAMPLES\n" + troff_footer(app);
 }
 
-/// The words that may follow a verb: the verbs of a group, and options.
+/// The words that may follow a verb, separated by spaces: its options and, for a group, its verbs.
 std::string joined_names(const CLI::App& app, const Options& options) {
   std::string text;
   for (const CLI::App* verb : app.get_parent() == nullptr ? Verbs() : shown_verbs(app))
@@ -115,7 +115,7 @@ std::string bash_completion(const CLI::App& app) {
          "}\ncomplete -o default -F _octotomy octotomy\n";
 }
 
-/// Escapes text for a zsh word in single quotes and a description in brackets.
+/// Escapes text for a zsh word in single quotes with a description in brackets.
 std::string zsh(const std::string& text) {
   std::string safe = replaced(text, "'", "'\\''");
   for (const char* mark : {"[", "]", ":"}) safe = replaced(safe, mark, std::string("\\") + mark);

@@ -9,8 +9,9 @@ class App;
 
 namespace octotomy::planner::cli {
 
-/// Documentation generated from the program's options, verbs and examples: "man" is a page in troff, "bash"
-/// and "zsh" are completions. Throws CLI::ValidationError for another kind.
+/// Documentation generated from the program's verbs, options and examples. `kind` is "man" for a manual page
+/// in troff, or "bash" or "zsh" for a script that completes command lines. Throws CLI::ValidationError for
+/// other words.
 std::string manual(const CLI::App& app, const std::string& kind);
 
 /// Adds the hidden option --manual KIND, which prints manual() and exits successfully.

@@ -18,7 +18,7 @@ std::vector<std::string> words_of(const CLI::App& verb, const char* name) {
 void add_mesh_options(CLI::App& verb) {
   const auto add = [&](const char* name, const char* says) {
     if (verb.get_option_no_throw(name) != nullptr) return;
-    // The option stores the words; nothing else to do.
+    // CLI11 stores the words in the option, so the function has nothing to do.
     verb.add_option_function<std::vector<std::string>>(
             name, [](const std::vector<std::string>&) {}, says)
         ->expected(1)

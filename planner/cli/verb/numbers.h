@@ -10,10 +10,10 @@
 
 namespace octotomy::planner::cli {
 
-/// The finite number in a text, or none.
+/// The finite number that a text states; none if the whole text is not one.
 std::optional<double> parse_number(const std::string& text);
 
-/// Exactly `Count` finite numbers separated by commas, or none.
+/// `Count` finite numbers separated by commas. None if the text is anything else.
 template <std::size_t Count>
 std::optional<std::array<double, Count>> parse_numbers(const std::string& text) {
   std::array<double, Count> numbers{};
@@ -27,7 +27,7 @@ std::optional<std::array<double, Count>> parse_numbers(const std::string& text) 
   return numbers;
 }
 
-/// As parse_numbers(), but throws CLI::ValidationError, which names the option, the text and the example.
+/// As parse_numbers(), but throws CLI::ValidationError with the option, the text and an example.
 template <std::size_t Count>
 std::array<double, Count> numbers_of(const std::string& option, const std::string& text,
                                      const std::string& example) {
@@ -37,7 +37,7 @@ std::array<double, Count> numbers_of(const std::string& option, const std::strin
   throw CLI::ValidationError(option, message);
 }
 
-/// Checks of numeric options. CLI11's own checks accept NaN, because comparisons with it are false.
+/// Validators of numeric options. CLI11's own ones accept NaN, because every comparison with it is false.
 CLI::Validator finite();
 CLI::Validator above_zero();
 CLI::Validator between(double low, double high);

@@ -10,14 +10,14 @@
 #include "planner/plan/evaluate.h"
 #include "planner/plan/plan.h"
 
-// Common options and steps of verbs that replay a plan.
+// Options and functions that verbs share if they replay a plan.
 namespace octotomy::planner {
 struct Result;
 }  // namespace octotomy::planner
 
 namespace octotomy::planner::cli {
 
-/// A plan on the command line, and options for its scans.
+/// A plan on the command line, and the options for reading its scans.
 struct PlanIn {
   std::filesystem::path plan;
   std::vector<std::string> scans;  ///< NAME=PATH each
@@ -25,25 +25,25 @@ struct PlanIn {
 };
 /// Adds --scan; each verb adds its own argument for the plan.
 void add_scan_paths(CLI::App& verb, PlanIn& text);
-/// Adds --scan and the options for reading the plan's scan.
+/// Adds --scan and the options for reading a plan's only scan.
 void add_plan_options(CLI::App& verb, PlanIn& text);
 
-/// Reads the plan and replaces its scans' paths by those of NAME=PATH, which are relative to the working
-/// folder. Throws as read_plan() does, and std::runtime_error if --scan names no scan of the plan.
+/// Reads the plan and replaces paths of scans by those of --scan NAME=PATH, which are relative to the working
+/// folder. Throws as read_plan() does, and std::runtime_error if the plan has no scan NAME.
 Plan plan_of(const Program& program, const PlanIn& text);
-/// As above, for a plan that was already read.
+/// As above, for a plan that is already read.
 Plan plan_of(const Program& program, const PlanIn& text, Plan plan);
 
-/// Options with the program's progress and stop, and with certificates.
+/// Options to evaluate a plan with certificates, under the program's stop and with its progress.
 EvaluateOptions evaluate_options(Program& program);
 
-/// Evaluates the plan and notes its scans for say().
+/// Evaluates a plan and stores the audits of its scans for say().
 Evaluation evaluated(Program& program, const Plan& plan, const EvaluateOptions& options);
 
-/// When a replay's certificates are computed.
+/// When the certificates of a result are computed.
 enum class Certify {
   Now,
-  Later,  ///< the result is written without certificates first, and again with them
+  Later,  ///< the result is written twice: first without certificates, then with them
   Never
 };
 struct RunText : PlanIn {
@@ -53,7 +53,7 @@ struct RunText : PlanIn {
   bool anonymous = false;
   std::string identity = "keep";
 };
-/// Replays a plan into a result's folder and prints a summary; returns the exit status.
+/// Replays a plan into a result's folder and prints a summary. Returns the exit status.
 int run(Program& program, const RunText& text);
 /// As run() above, for a plan that was already read. `beside` is called once when the result is first
 /// written, for files that must appear together with it.
@@ -67,10 +67,11 @@ void add_identity(CLI::App& verb, std::string& identity, const std::string& does
 /// Adds --certify to a verb that replays a plan.
 void add_certify(CLI::App& verb, Certify& certify);
 
-/// Text with one line per object: its verdict and both answers. Prints findings to standard error.
+/// Text with a line for each object: its verdict and the answers of both kernels. Prints findings to standard
+/// error.
 std::string verdict_text(const Evaluation& evaluation);
-/// The exit status by the verdicts of certificates and measurements; prints a line to standard error for a FAIL.
-/// Precondition: the result's measurements were made, as write_result() does.
+/// The exit status for the verdicts of a result's certificates and measurements. Prints a line to standard
+/// error if one is a FAIL. Precondition: the measurements have been computed, as write_result() does.
 int status_of(const Result& result);
 
 }  // namespace octotomy::planner::cli

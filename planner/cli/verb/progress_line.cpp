@@ -57,7 +57,8 @@ class Line {
     told_ = now;
   }
 
-  /// Works even if another thread holds the lock, because the process may end in the middle of its output.
+  /// Erases the line. Works even if another thread holds the lock, because the process may end while that
+  /// thread prints.
   void leave(bool for_good) {
     const std::unique_lock lock(mutex_, std::try_to_lock);
     erase();
@@ -72,7 +73,7 @@ class Line {
   }
   void show(const std::string& text) {
     if (is_over_) return;
-    // Erases the line first, so that no part of a longer text remains.
+    // The line is erased first, so that nothing remains of a longer text.
     std::fprintf(stderr, "\r\x1b[2K%s", line_of(text).c_str());
     std::fflush(stderr);
     is_shown_ = true;
@@ -85,14 +86,15 @@ class Line {
   }
 
   std::mutex mutex_;
-  std::string doing_;  ///< empty if no task reports its progress
+  std::string doing_;  ///< name of the current task; empty if no task has reported progress
   double fraction_ = 0.0, start_fraction_ = 0.0;
-  /// Start of the growing fractions, start of the current task, and time of the last report.
+  /// When the current task's fraction began to grow, when the task began, and when progress was last
+  /// reported.
   Clock::time_point start_, doing_start_, told_ = Clock::now();
   bool is_shown_ = false, is_over_ = false;
 };
 
-/// Never destroyed, because a thread may still report progress while the process ends.
+/// The line is never destroyed, because a thread may report progress while the process ends.
 Line& line() {
   static auto& only = *new Line;
   return only;

@@ -4,27 +4,28 @@
 #include <chrono>
 #include <string>
 
-// The progress line of the process, on standard error. Any thread may call. Callers must check that standard
-// error is a terminal.
+// The process's line of progress on standard error. All functions may be called from any thread. Callers
+// check that standard error is a terminal.
 
 namespace octotomy::planner::cli {
 
 using Seconds = std::chrono::duration<double>;
 
-/// The remaining time, extrapolated from the fraction done: "about 40 s left". Empty before two seconds and a
-/// fiftieth of the work, when the estimate would be unreliable.
+/// The remaining time as text, such as "about 40 s left", extrapolated from the fraction done. Empty if two
+/// seconds or a fiftieth of the work have not passed yet, because an estimate would be unreliable.
 std::string left_text(double done, double rest, Seconds time);
 
-/// Shows the fraction of a task that is done, 0..1; 1 ends the task.
+/// Shows the fraction of a task that is done, from 0 to 1. A fraction of 1 ends the task.
 void show_progress(const std::string& doing, double fraction);
 
-/// To be called a few times a second. If no progress was reported for a second, shows the current task and
-/// its elapsed time: the last task that reported progress, else the stage of the running Stopwatch.
+/// Must be called a few times a second. If nothing has reported progress for a second, shows the current task
+/// and its elapsed time. The task is the last one that reported progress, or else the stage that a Stopwatch
+/// measures.
 void show_silent_work();
 
-/// Erases the line before other output.
+/// Erases the line, so that other output can be printed. The next report shows it again.
 void erase_progress();
-/// Erases the line permanently, because the verb has ended.
+/// Erases the line and prints no further progress, because the verb has ended.
 void end_progress();
 
 }  // namespace octotomy::planner::cli

@@ -29,7 +29,7 @@ std::vector<voxel::SliceRange> slices_of(const std::string& text) {
   }
 }
 
-/// The result of `parse` for an option's text, if it is given.
+/// Parses the text of an option. None if it is empty. Throws CLI::ValidationError if it is invalid.
 template <typename Value>
 std::optional<Value> parsed(const char* option, const std::string& text, Value (*parse)(const std::string&)) {
   if (text.empty()) return std::nullopt;
@@ -68,7 +68,7 @@ void add_scan_options(CLI::App& verb, ScanIn& in, const std::string& heading) {
       ->group(heading);
   verb.add_flag("--join", in.join,
                 "Join all DICOM series of the folder, of one patient and modality: for an export in which "
-                "each image has a series, study or frame of reference of its own. The audit then has a FAIL")
+                "each image states another series, study or frame of reference. The audit then has a FAIL")
       ->group(heading);
   verb.add_option("--slices", in.slices,
                   "FROM:TO of the DICOM series' images to keep, 1 the lowest along their normal, for example "

@@ -27,12 +27,13 @@ namespace {
 
 std::atomic<Speaker> last_speaker{Speaker::None};
 
-constexpr std::size_t most_findings = 40;  ///< largest number of printed findings, about a page
-std::size_t findings = 0;                  ///< number of findings in this run
+constexpr std::size_t most_findings = 40;  ///< largest number of findings that one run prints, about a page
+std::size_t findings = 0;                  ///< number of findings of this run, printed or not
 
-/// Writes the whole text or throws. A closed pipe is not an error, because its reader needs no more.
+/// Writes a text to standard output completely, or throws. A closed pipe is no error, because its reader
+/// needs no more.
 void put(const std::string& text) {
-  // If the watch has printed how the program ends, waits for this end.
+  // If the watch prints how the process ends, waits for this end.
   while (!has_last_word(Speaker::Verb)) std::this_thread::sleep_for(std::chrono::seconds(1));
   end_progress();
   errno = 0;
@@ -45,7 +46,7 @@ void put(const std::string& text) {
 
 CLI::App& Program::verb(const std::string& name, const std::string& does, const std::string& example,
                         std::function<int()> action) {
-  // "plan diff" means the verb diff in the group plan.
+  // A name such as "plan diff" is the verb diff in the group plan.
   CLI::App* parent = &app;
   const auto blank = name.find(' ');
   if (blank != std::string::npos) parent = app.get_subcommand(name.substr(0, blank));
@@ -76,8 +77,8 @@ bool Program::is_asked(const std::string& name) const {
 
 namespace {
 
-/// A finding if a scan is not of the first one's patient, or a label map not of its study or frame. Scans of
-/// one patient may be of several studies.
+/// Compares a scan with the first one. Returns a finding if the patients differ or, if one of the two is a
+/// label map, their study or frame of reference. Other scans of a patient may belong to several studies.
 std::optional<voxel::Finding> doubt_of(const ScanRecord& scan, const std::vector<ScanRecord>& earlier) {
   if (earlier.empty()) return std::nullopt;
   const ScanRecord& first = earlier.front();
@@ -115,7 +116,7 @@ void Program::note_tissues(const std::vector<std::string>& words) const {
 }
 
 void Program::say(const Json& answer, const std::string& text) const {
-  std::set<std::string> said;  // a scan that a step made keeps the findings of the one that it was made of
+  std::set<std::string> said;  // findings already printed, because a made scan repeats those of its source
   for (const ScanRecord& scan : *scans_)
     for (const voxel::Finding& finding : scan.audit) {
       const std::string line =
@@ -203,14 +204,14 @@ FindingsOfRun::~FindingsOfRun() {
 }
 
 std::string line_of(const std::string& text) {
-  constexpr std::size_t most = 1000;  // bytes; at most a page, never a whole file
+  constexpr std::size_t most = 1000;  // in bytes, so that a message never prints a whole file
   constexpr const char* cut = " ... ";
   std::string line = text;
   while (!line.empty() && (line.back() == ' ' || line.back() == '\n')) line.pop_back();
   for (char& symbol : line)
     if (is_control(symbol)) symbol = symbol == '\n' || symbol == '\t' ? ' ' : '?';
   if (line.size() <= most) return line;
-  // Keeps the beginning, which names the place, and the end, which states a remedy. Does not split a
+  // Keeps the beginning, which names the place, and the end, which states a remedy. Does not cut a UTF-8
   // character.
   std::size_t first = most / 2, last = line.size() - most / 2 + 5;
   while (first > 0 && (static_cast<unsigned char>(line[first]) & 0xc0) == 0x80) --first;

@@ -18,13 +18,13 @@ namespace CLI {
 class App;
 }  // namespace CLI
 
-// Common parts of the verbs of the command line.
+// Common parts of all verbs of the command line.
 namespace octotomy::planner::cli {
 
 /// Exit statuses. The last is EX_SOFTWARE of sysexits.h: a mistake in the program.
 enum Status { done = 0, disagreement = 1, bad_input = 2, out_of_resources = 3, internal_error = 70 };
 
-/// The program's interface for verbs.
+/// The program as verbs use it: the common options, and functions that print.
 struct Program {
   /// `words`: the command line after the program's name.
   Program(CLI::App& top, std::vector<std::string> words) : app(top), words_(std::move(words)) {}
@@ -35,28 +35,31 @@ struct Program {
   std::optional<double> time_limit_s;
   std::optional<double> memory_gb;
   std::stop_source stop;
-  std::function<int()> chosen;  ///< runs the verb on the command line; returns the exit status
+  std::function<int()> chosen;  ///< runs the verb that the command line names; returns the exit status
 
-  /// Adds a verb and, if it is requested, the options common to all verbs. `example` ends its --help.
+  /// Adds a verb. If the command line requests it, also adds the options that all verbs have. `example` is
+  /// the end of its --help.
   CLI::App& verb(const std::string& name, const std::string& does, const std::string& example,
                  std::function<int()> action);
-  /// Whether the command line may request this verb, which then needs its options: adding those of all verbs
-  /// takes longer than most verbs' work. True for all verbs if an option comes first, such as --manual.
+  /// Whether the command line may request this verb. Only then are its options added, because adding those of
+  /// all verbs takes longer than the work of most verbs. True for all verbs if an option such as --manual
+  /// comes first.
   bool is_asked(const std::string& name) const;
-  /// Stores the audit of a scan that the verb has read, for say().
+  /// Stores the audit of a scan that the verb has read. say() prints it.
   void note_scan(const std::filesystem::path& path, const voxel::Scene& scene) const;
   void note_scan(const ScanRecord& scan) const;
-  /// Stores the tissues among the words of the command line, also of NAME=TISSUE, for say().
+  /// Stores the tissues that words of the command line name, also in the form NAME=TISSUE. say() prints their
+  /// bounds.
   void note_tissues(const std::vector<std::string>& words) const;
-  /// Prints the answer to standard output: the JSON object, or the text. Prints warnings and failures of the
-  /// noted scans' audits to standard error, one line each, and adds the audits to the JSON as "scans" if the
-  /// answer contains no audit. Treats the noted tissues' bounds in the same way, as "tissues".
+  /// Prints the answer to standard output, as JSON or as text. Prints each WARN and FAIL of the stored audits
+  /// to standard error, on one line each, and adds the audits to the JSON as "scans" if the answer contains
+  /// none. Prints the bounds of the stored tissues and adds them as "tissues" in the same way.
   void say(const Json& answer, const std::string& text) const;
   /// Whether progress is shown, that is, standard error is a terminal.
   bool shows_progress() const;
-  /// A progress line on standard error if shows_progress(), else none.
+  /// A function that shows a progress line on standard error if shows_progress(); none otherwise.
   std::function<void(const std::string&, double)> progress() const;
-  /// Reports the progress of a single task, which the line calls `doing`.
+  /// The same for a verb with a single task, whose name is `doing`.
   std::function<void(double)> progress(const std::string& doing) const;
 
  private:
@@ -65,19 +68,19 @@ struct Program {
   std::shared_ptr<std::vector<ScanRecord>> scans_ = std::make_shared<std::vector<ScanRecord>>();
 };
 
-/// The message that no verb has the name `word`, with the nearest verb's name and the command that lists the
+/// The message for a word that is no verb. It proposes the most similar verb and the command that lists the
 /// verbs.
 std::string unknown_verb(const CLI::App& app, const std::string& word);
 
 /// Prints one line, formatted by line_of(), to standard error.
 void warn(const std::string& line);
 
-/// Warns of one finding of many: only the first ones of a run are printed, so that important ones are not
-/// lost among thousands.
+/// Prints a finding that may be one of thousands. Only the first ones of a run are printed, so that a
+/// terminal still shows other messages.
 void warn_finding(const std::string& finding);
 
-/// A run of the program. Its destructor prints the number of findings that warn_finding() has suppressed, and
-/// resets the options for reading meshes and the list of meshes read.
+/// One run of the program. The destructor prints how many findings warn_finding() has not printed, and resets
+/// the options for reading meshes and the list of meshes.
 struct FindingsOfRun {
   FindingsOfRun() = default;
   FindingsOfRun(const FindingsOfRun&) = delete;
@@ -85,18 +88,18 @@ struct FindingsOfRun {
   ~FindingsOfRun();
 };
 
-/// A text as one line for a terminal: without control characters, at most 1000 bytes.
+/// A text as one line of at most 1000 bytes without control characters.
 std::string line_of(const std::string& text);
 
-/// Only one of verb and watch prints how the program ends. True for the first caller, and for the same one
-/// again.
+/// Decides whether verb or watch prints how the process ends. Returns true to the first one that calls, and
+/// for all its later calls.
 enum class Speaker { None, Verb, Watch };
 bool has_last_word(Speaker speaker);
 
-/// Numbers of samples as text: 512 x 512 x 300.
+/// Three numbers of samples as text, such as "512 x 512 x 300".
 std::string dims_text(const glm::ivec3& dims);
 
-/// A table of two columns as text.
+/// A table of two aligned columns, one line for each row.
 std::string lines(const std::vector<std::pair<std::string, std::string>>& rows);
 
 }  // namespace octotomy::planner::cli

@@ -18,7 +18,7 @@ using Places = LandmarkPlaces;
 
 constexpr glm::vec3 as_is{0.55f, 0.85f, 0.95f}, as_planned{1.0f, 0.62f, 0.20f}, dark{0.05f, 0.06f, 0.08f};
 constexpr double margin_mm = 25.0;
-/// A landmark that moves by less is drawn once.
+/// A landmark whose planned position is nearer than this to the scanned one is drawn only once.
 constexpr double seen_mm = 0.05;
 
 Places places_of(const Cephalometry& definitions, const std::vector<MovedLandmark>& landmarks, bool planned) {
@@ -33,7 +33,7 @@ Places places_of(const Cephalometry& definitions, const std::vector<MovedLandmar
   return with_means(definitions, std::move(places));
 }
 
-/// The lines of all lateral measures, without duplicates.
+/// The lines between landmarks that the lateral measures use, each once.
 std::set<std::pair<std::string, std::string>> lines_of(const Cephalometry& definitions) {
   std::set<std::pair<std::string, std::string>> lines;
   const auto add = [&](const std::string& a, const std::string& b) { lines.insert(std::minmax(a, b)); };
@@ -62,7 +62,7 @@ std::set<std::pair<std::string, std::string>> lines_of(const Cephalometry& defin
   return lines;
 }
 
-/// Grey tones from zero to the attenuation that only one ray in 200 exceeds.
+/// Converts attenuations to grey tones from zero to the value that only one ray in 200 exceeds.
 std::vector<std::uint8_t> toned(const voxel::RayImage& image) {
   std::vector<float> sorted = image.values;
   const auto at = static_cast<std::ptrdiff_t>(sorted.size() - sorted.size() / 200 - 1);
@@ -71,7 +71,7 @@ std::vector<std::uint8_t> toned(const voxel::RayImage& image) {
                            std::max(static_cast<double>(sorted[static_cast<std::size_t>(at)]), 1e-6));
 }
 
-/// The image enlarged to `size_px` pixels a side by linear interpolation.
+/// Enlarges an image to `size_px` pixels along each side, by linear interpolation.
 voxel::RayImage enlarged(const voxel::RayImage& image, int size_px) {
   voxel::RayImage made{glm::ivec2(size_px), {}};
   made.values.reserve(static_cast<std::size_t>(size_px) * static_cast<std::size_t>(size_px));
@@ -127,7 +127,8 @@ class Tracing {
     const glm::dvec2 off = (plane_.view.project(p_mm) - plane_.centre_mm) / plane_.pixel_mm;
     return 0.5 * glm::dvec2(canvas_.size_px) + glm::dvec2(off.x, -off.y);
   }
-  /// Names are written for placed landmarks; for landmarks of both sides once, at their mean.
+  /// Whether the name of a landmark is written: only for placed landmarks, and for a pair of left and right
+  /// only at their mean.
   static bool is_written(const Cephalometry& definitions, const std::string& name) {
     bool is_placed = true;
     for (const CephalometricLandmark& landmark : definitions.landmarks) {
@@ -165,7 +166,7 @@ Cephalogram draw_cephalogram(const voxel::GreyOctree& grey, const Cephalometry& 
   const voxel::Frame frame{0.5 * (low + high), std::max(extent.x, extent.y)};
   const glm::dvec3 voxel_mm = grey.universe().lattice().spacing_mm();
   const double ray_mm = 0.5 * std::min({voxel_mm.x, voxel_mm.y, voxel_mm.z});
-  // Rays closer than half a voxel add no detail.
+  // Rays nearer than half a voxel to each other show no more detail.
   const int rays = std::clamp(static_cast<int>(frame.width_mm / ray_mm), std::min(64, size_px), size_px);
   made.rgb = toned(enlarged(
       voxel::radiograph(grey, voxel::image_plane(grey.universe(), view, glm::ivec2(rays), frame), progress),

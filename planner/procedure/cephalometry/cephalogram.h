@@ -17,10 +17,11 @@ struct Cephalogram {
   double pixel_mm = 0.0;
 };
 
-/// The patient's radiograph from the right, face to the right, in true scale and in the head's orientation,
-/// with the landmarks and the lines of the lateral measures: pale blue as scanned, orange as planned where
-/// they differ. The picture is a square around the landmarks with a margin of 25 mm. Throws Stopped. Cost: at
-/// most one ray per pixel; rays lie at least half a voxel apart, except that each side has 64 or more.
+/// Draws the patient's radiograph as seen from the right, so that the face is at the right, in true scale and
+/// in the head's orientation. Adds the landmarks and lines of the lateral measures: pale blue as scanned and,
+/// if different, orange as planned. The picture is a square around the landmarks with a margin of 25 mm,
+/// `size_px` pixels along each side. Throws Stopped. Cost: at most one ray per pixel. Rays are at least half
+/// a voxel apart, but at least 64 along each side if `size_px` allows it.
 Cephalogram draw_cephalogram(const voxel::GreyOctree& grey, const Cephalometry& definitions,
                              const std::vector<MovedLandmark>& landmarks, const glm::dmat3& lps_from_head,
                              int size_px, const voxel::Progress& progress = {});

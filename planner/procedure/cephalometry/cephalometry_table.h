@@ -4,7 +4,7 @@
 #include "planner/operation/table/record.h"
 #include "planner/procedure/cephalometry/measured.h"
 
-// Cephalometric measures as in a result's `cephalometry`.
+// Cephalometric measures in the form of a result's `cephalometry`.
 namespace octotomy::planner {
 
 constexpr auto members_of(const CephalometricValue&) {
@@ -27,10 +27,10 @@ constexpr auto members_of(const CephalometryRow&) {
                     member("source", &R::source), member_if_any("norm_of", &R::norm_of));
 }
 
-/// A measure that cannot be computed, before or after the operation.
+/// A measure without a value, before or after the operation.
 struct LackingMeasure {
   std::string name;
-  std::vector<std::string> landmarks;  ///< those that are missing, or that nothing moves
+  std::vector<std::string> landmarks;  ///< those that are not placed, or whose motion is not known
 };
 constexpr auto members_of(const LackingMeasure&) {
   return std::tuple(member("name", &LackingMeasure::name), member("landmarks", &LackingMeasure::landmarks));

@@ -12,7 +12,8 @@
 
 namespace octotomy::planner {
 
-/// Names and texts of the definitions in this folder; generated when the program is configured.
+/// Names and texts of the definition files in this folder. The list is generated when the build is
+/// configured.
 const std::vector<std::pair<std::string, std::string>>& cephalometry_files();
 
 namespace {

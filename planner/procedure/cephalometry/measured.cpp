@@ -30,10 +30,10 @@ double degrees(double radians) {
   return radians * 180.0 / std::numbers::pi;
 }
 
-/// Evaluates one measure in the head's frame: x to the left, y back, z up.
+/// Computes one measure from points in the head's frame: x to the left, y to the back, z up.
 class Ruler {
  public:
-  /// `of` contains the index in `points` of each of the measure's points.
+  /// `of` has, for each point of the measure, its index in `points`.
   Ruler(const CephalometricMeasure& measure, const Points& points, const std::vector<std::size_t>& of)
       : measure_(measure) {
     assert(of.size() <= points_.size());
@@ -79,8 +79,9 @@ class Ruler {
   static double angle(const glm::dvec3& a, const glm::dvec3& b) {
     return degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));
   }
-  /// The component of `b` perpendicular to a direction. Upward is positive if the direction points forward
-  /// (in the frontal plane: to the left); forward (to the left) is positive if it points down.
+  /// The component of `b` perpendicular to `direction`, in the measure's plane. If the direction points
+  /// forward (in the frontal plane: to the left), upward is positive. If it points down, forward (to the
+  /// left) is positive.
   double across(const glm::dvec3& direction, const glm::dvec3& b) const {
     const double turn = measure_.plane == Plane::Lateral ? glm::cross(direction, b).x * -1.0
                                                          : glm::cross(direction, b).y * -1.0;
@@ -91,17 +92,16 @@ class Ruler {
   std::array<glm::dvec3, 4> points_{};
 };
 
-/// Values of a chart's measures, in their order.
+/// The values of a chart's measures, in the chart's order.
 using Values = std::vector<double>;
 
-/// A measure whose landmarks are all known, with the chart's indices of these landmarks and of the measures
-/// from which it is computed.
+/// A measure that can be computed, with the indices of its landmarks and of the measures that it uses.
 struct ChartedMeasure {
   const CephalometricMeasure* definition = nullptr;
   std::vector<std::size_t> points, of;
 };
 
-/// Definitions bound to landmarks, so that names are looked up only once and not in each trial.
+/// Measures bound to landmarks: names are looked up only once instead of in each trial.
 class Chart {
  public:
   Chart(const Cephalometry& definitions, const std::vector<MovedLandmark>& landmarks) {
@@ -118,8 +118,8 @@ class Chart {
 
   const std::vector<ChartedMeasure>& measures() const { return measures_; }
   const auto& lacking() const { return lacking_; }
-  /// Precondition: `landmarks_mm` has the order of the constructor's landmarks. Those that no measure uses
-  /// are not read.
+  /// The values of the measures. `landmarks_mm` must have the order of the constructor's landmarks; those
+  /// that no measure uses are not read.
   Values values(const Points& landmarks_mm) const {
     Points points(places_.size());
     for (const std::size_t place : used_)
@@ -129,7 +129,7 @@ class Chart {
     for (const ChartedMeasure& measure : measures_) values.push_back(value(measure, points, values));
     return values;
   }
-  /// Indices of the landmarks that the measures use.
+  /// Indices of those landmarks that a measure uses.
   std::vector<std::size_t> used_landmarks() const {
     std::vector<std::size_t> numbers;
     for (const std::size_t place : used_)
@@ -138,7 +138,7 @@ class Chart {
   }
 
  private:
-  /// A placed landmark, or the mean of earlier places.
+  /// A placed landmark, or the mean of earlier places in the list.
   struct PlacedPoint {
     std::optional<std::size_t> landmark;
     std::vector<std::size_t> mean_of;
@@ -155,7 +155,7 @@ class Chart {
     places_.push_back(std::move(mean));
   }
 
-  /// A measure is defined after the measures of its `of`, so their missing landmarks are already known.
+  /// The measures of `of` were added before, so the landmarks that they lack are known.
   void add(const CephalometricMeasure& measure) {
     std::set<std::string> missing;
     for (const std::string& name : measure.points)
@@ -210,7 +210,8 @@ class Trials {
     found_.resize(values.size());
     for (std::size_t i = 0; i < values.size(); ++i) found_[i].push_back(values[i]);
   }
-  /// The half-width of the shortest interval around the value that contains the claimed share of trials.
+  /// The half-width of the shortest interval around `value` that contains the claimed share of the trials of
+  /// a measure.
   double half_width(std::size_t measure, double value) {
     std::vector<double>& found = found_[measure];
     for (double& each : found) each = std::abs(each - value);
@@ -226,7 +227,7 @@ class Trials {
   std::vector<std::vector<double>> found_;
 };
 
-/// Coordinates of the landmarks along the head's directions, before and after the plan's motions.
+/// Positions of the landmarks along the head's directions, before and after the plan's motions, in one trial.
 class Placing {
  public:
   Placing(const std::vector<MovedLandmark>& landmarks, const glm::dmat3& lps_from_head,
@@ -237,8 +238,8 @@ class Placing {
         before_mm_(landmarks.size()),
         after_mm_(landmarks.size()) {}
 
-  /// Sets the positions of the landmarks that are used.
-  /// `shares` are the errors of the motions, in their deviations.
+  /// Computes the positions of the used landmarks. `errors_mm` are the errors of their placement; `shares`
+  /// are the errors of the motions, as multiples of their standard deviations.
   void place(const Points& errors_mm, const std::vector<double>& shares) {
     for (const std::size_t i : used_) {
       const glm::dvec3 p_mm = landmarks_[i].landmark.p_mm + errors_mm[i];
@@ -263,7 +264,7 @@ std::optional<std::string> norm_of(const Cephalometry& definitions, const Cephal
   return {};
 }
 
-/// A measure's landmarks on the skin whose motion nothing predicts.
+/// The names of a measure's landmarks that lie on the skin and whose motion nothing predicts.
 std::vector<std::string> unpredicted(const CephalometricMeasure& measure, const Cephalometry& definitions,
                                      const std::vector<MovedLandmark>& landmarks) {
   std::vector<std::string> names;

@@ -20,37 +20,38 @@ struct CephalometricValue {
 struct CephalometricResult {
   CephalometricMeasure measure;
   std::optional<std::string>
-      norm_of;  ///< the people whom the norm describes; none if its source is not described
+      norm_of;  ///< the people whom the norm describes; none if the definitions do not describe its source
   CephalometricValue before;
-  /// None if nothing moved, and of measures of the skin that nothing predicts. A landmark's error is the same before and after, so a change is more accurate
-  /// than either value.
+  /// None if nothing moves, or if the measure has a landmark on the skin whose motion nothing predicts. A
+  /// change is more accurate than either value, because a landmark has the same error before and after.
   std::optional<CephalometricValue> after, change;
 };
 struct CephalometricResults {
-  std::vector<CephalometricResult> measured;  ///< in the order of their definitions
-  /// Measures of the skin that have no value after the operation, because nothing predicts the motion of these
-  /// landmarks of theirs.
+  std::vector<CephalometricResult> measured;  ///< in the order in which they are defined
+  /// Measures without a value after the operation, each with its landmarks on the skin whose motion nothing
+  /// predicts.
   std::vector<std::pair<std::string, std::vector<std::string>>> unpredicted;
-  /// Measures that cannot be computed, each with its missing landmarks.
+  /// Measures that cannot be computed, each with the landmarks that are not placed.
   std::vector<std::pair<std::string, std::vector<std::string>>> lacking;
 };
 
 struct LandmarkDoubt {
-  double deviation_mm = 1.0;  ///< standard deviation of a landmark's placement, along each axis
+  double deviation_mm = 1.0;  ///< standard deviation of a landmark's position along each axis
   int trials = 10000;
   std::uint64_t seed = 1;
 };
 
-/// Computes the measures whose landmarks are known, from the placed landmarks. Intervals come from
-/// `trials` trials in which each placed landmark has a random, independent, normally distributed error., and each motion
-/// by a ratio another one of its own.
-/// Throws std::invalid_argument, which names the measure, if a line's two points coincide. The same seed
-/// produces the same bits. Cost: less than a microsecond per trial and measure or landmark.
+/// Computes all measures whose landmarks are placed. The intervals come from `trials` random trials. In a
+/// trial each landmark has an independent, normally distributed error of its placement, and each motion by a
+/// ratio an error of the ratio. Throws std::invalid_argument, which names the measure, if both points of a
+/// line coincide. The same seed gives the same bits. Cost: less than a microsecond for each trial and measure
+/// or landmark.
 CephalometricResults measured(const Cephalometry& definitions, const std::vector<MovedLandmark>& landmarks,
                               const glm::dmat3& lps_from_head, const LandmarkDoubt& doubt = {});
 
 /// {"measures": [{"name", "says", "unit", "before": {"value", "half_width"}, "after", "change", "norm",
-/// "deviation", "source", "norm_of"}], "lacking": [{"name", "landmarks"}], "landmark_deviation_mm", "coverage"}.
+/// "deviation", "source", "norm_of"}], "lacking": [{"name", "landmarks"}], "landmark_deviation_mm",
+/// "coverage"}
 nlohmann::ordered_json to_json(const CephalometricResults& results, const LandmarkDoubt& doubt);
 
 }  // namespace octotomy::planner

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double near_mm = 8.0;
 
-/// The program's procedures, which do not change while it runs.
+/// The procedures of the program, which are read once.
 const std::vector<Procedure>& known_procedures() {
   static const std::vector<Procedure> known = [] {
     std::vector<Procedure> read;
@@ -33,7 +33,7 @@ bool has_all_steps(const Plan& plan, const Procedure& procedure) {
   });
 }
 
-/// Whether a step is a result: by its name, or because a procedure's file states it.
+/// Whether a step is the result of a procedure: by its name, or because the procedure's file names it.
 bool is_outcome(const Plan& plan, const std::string& id) {
   if (id == "planned" || id == "rebuilt" || id.ends_with("_planned") || id.ends_with("_rebuilt")) return true;
   return std::any_of(known_procedures().begin(), known_procedures().end(), [&](const Procedure& procedure) {
@@ -48,8 +48,8 @@ const Step& step_of(const Plan& plan, const std::string& id) {
   return *std::find_if(plan.steps.begin(), plan.steps.end(), [&](const Step& step) { return step.id == id; });
 }
 
-/// Squared distances in mm² from a point to the nearest voxel of a piece, and to the nearest other voxel of
-/// the objects from which the piece was cut.
+/// Squared distances in mm² from a point to the nearest voxel of a piece (`piece`), and to the nearest other
+/// voxel of the objects from which the piece was cut (`other`).
 struct Nearest {
   double piece = std::numeric_limits<double>::infinity();
   double other = std::numeric_limits<double>::infinity();
@@ -78,9 +78,8 @@ Nearest nearest(const glm::dvec3& p_mm, const voxel::Octree& piece,
   return found;
 }
 
-/// The position of a point of the scan after the motions that the outcome contains. Once the point has
-/// moved with a piece, only pieces cut from that piece move it further. A mirror image does not move its
-/// original.
+/// The position of a scanned point after the motions that the outcome contains. If the point has moved with a
+/// piece, further motions apply only if they move that piece or a part of it. Mirror images move no point.
 glm::dvec3 carried_mm(glm::dvec3 p_mm, const Plan& plan, const Evaluation& evaluated,
                       const std::set<std::string>& in_outcome) {
   std::optional<std::string> owner;
@@ -112,7 +111,8 @@ std::vector<brep::Landmark> carried(const std::vector<NamedPoint>& landmarks, co
   return now;
 }
 
-/// Adds landmarks to the plan's first step `landmarks` with typed points, or adds such a step.
+/// Adds landmarks to the first step `landmarks` of the plan that states its points. Adds such a step if there
+/// is none.
 void add_landmarks(const std::vector<brep::Landmark>& landmarks, const Plan& plan, Json& whole) {
   Json added = Json::array();
   for (const brep::Landmark& landmark : landmarks) {
@@ -140,8 +140,7 @@ void add_landmarks(const std::vector<brep::Landmark>& landmarks, const Plan& pla
   whole["steps"].insert(whole["steps"].begin(), Json{{"id", id}, {"do", "landmarks"}, {"points", added}});
 }
 
-/// Adds the scans that the procedure uses in addition to the patient's. Refuses names that the plan already
-/// uses.
+/// Adds the scans that the procedure needs besides the patient's. Refuses a name that the plan already uses.
 void add_scans(const Procedure& procedure, const ProcedureInput& input, Json& whole) {
   need_scans(procedure, input.further_scans, whole["scans"]);
   for (const auto& [name, entry] : input.further_scans) {
@@ -155,10 +154,11 @@ bool is_letter(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
-/// Replaces the names in a procedure's steps by unique ones.
+/// Renames the steps of a procedure, so that their names are unique in a plan.
 class Renaming {
  public:
-  /// `scan`: the plan's name of the patient's scan, which procedures call "ct".
+  /// `names` has the new name of each step, `places` the position of each landmark, and `scan` is the plan's
+  /// name of the patient's scan, which procedures call "ct".
   Renaming(std::map<std::string, std::string> names, std::map<std::string, glm::dvec3> places,
            std::string scan)
       : names_(std::move(names)), places_(std::move(places)), scan_(std::move(scan)) {}
@@ -169,7 +169,7 @@ class Renaming {
     const Json& fields = fields_of(step.at("do"));
     for (const auto& [key, value] : step.items()) {
       if (key == "id" || key == "do") continue;
-      // The schema states what kind of name a field may hold.
+      // The field's schema shows whether its words name objects or points.
       const std::string schema = fields.value(key, Json::object()).dump();
       const bool names_objects = schema.find("x-names") != std::string::npos;
       const bool names_points = schema.find("oneOf") != std::string::npos;
@@ -192,7 +192,8 @@ class Renaming {
     return none;
   }
 
-  /// Replaces names of steps by their new names, and landmarks by positions, because these may have moved.
+  /// Replaces the names of steps by their new names, and the names of landmarks by positions, because a
+  /// landmark may have moved.
   Json renamed(const Json& value, bool names_objects, bool names_points) const {
     if (value.is_string()) {
       const auto& text = value.get_ref<const std::string&>();
@@ -229,7 +230,7 @@ class Renaming {
   std::string scan_;
 };
 
-/// Whether a formula of a step uses a value.
+/// Whether a formula in a step uses a value.
 bool uses_value(const Json& value, const std::string& name) {
   if (value.is_string()) {
     const auto& text = value.get_ref<const std::string&>();
@@ -243,8 +244,8 @@ bool uses_value(const Json& value, const std::string& name) {
          std::any_of(value.begin(), value.end(), [&](const Json& part) { return uses_value(part, name); });
 }
 
-/// Whether a step is the procedure's bone: as its file states; without a statement, every window of the
-/// patient's scan.
+/// Whether a step is the procedure's bone: the step that the procedure's file names or, if it names none, any
+/// window of the patient's scan.
 bool is_bone(const Procedure& procedure, const Json& step) {
   if (!procedure.acts_on.empty()) return step.value("id", "") == procedure.acts_on;
   return step.value("do", "") == "window" && step.value("scan", "") == "ct";
@@ -318,8 +319,7 @@ Chained chained(const Plan& plan, const Evaluation& evaluated, const Procedure& 
 
   std::set<std::string> taken;
   for (const Step& step : placed.steps) taken.insert(step.id);
-  // Whole names are compared, because the prefix "le_fort_i_" alone also fits the steps of
-  // le_fort_i_two_piece.
+  // Whole names are compared, because steps of le_fort_i_two_piece also begin with "le_fort_i_".
   const auto is_free = [&](const std::string& prefix) {
     return std::none_of(procedure.steps.begin(), procedure.steps.end(), [&](const Json& step) {
       return taken.contains(prefix + step.at("id").get<std::string>());

@@ -10,41 +10,41 @@
 #include "planner/plan/plan.h"
 #include "planner/procedure/template/procedure.h"
 
-// Procedures in succession: each acts on the planned outcome of the one before.
+// Several procedures in one plan: each acts on the planned result of the procedure before it.
 namespace octotomy::planner {
 
-/// The result of the plan's last procedure: the last step that is called "planned" or "rebuilt", alone or
-/// after a name and "_", or that is the outcome of one of the program's procedures whose steps the plan has.
-/// None if there is no such step.
+/// The step with the result of the plan's last procedure. It is the last step whose name is or ends in "_"
+/// and "planned" or "rebuilt", or that the file of one of the program's procedures names as its outcome, if
+/// the plan has all of that procedure's steps. None if there is no such step.
 std::optional<std::string> outcome_of(const Plan& plan);
 
-/// The name that a step has in the procedure's file, options included, if chained() made its name `id`. None:
-/// chained() makes no such name for this procedure.
+/// The name of a step in the procedure's file or its options, for a step that chained() has renamed to `id`.
+/// None if chained() gives no step of this procedure that name.
 std::optional<std::string> name_before_chaining(const Procedure& procedure, const std::string& id);
-/// Whether chained() makes this name for a step of the procedure or of its options.
+/// Whether chained() can have given this name to a step of the procedure or of its options.
 bool is_chained_step_of(const Procedure& procedure, const std::string& id);
 
-/// A plan's landmarks after the motions that its outcome contains, as chained() places them.
+/// The plan's landmarks after the motions that its outcome contains, as chained() places them. In LPS.
 std::vector<brep::Landmark> carried_landmarks(const Plan& plan, const Evaluation& evaluated);
 
 struct Chained {
-  nlohmann::ordered_json plan;       ///< JSON, to be parsed in the input plan's folder
+  nlohmann::ordered_json plan;       ///< JSON; relative paths are relative to the input plan's folder
   std::vector<std::string> made;     ///< ids of the added steps
-  std::vector<std::string> carried;  ///< landmarks of the procedure that lie on a piece that has moved
+  std::vector<std::string> carried;  ///< landmarks of the procedure that lie on a moved piece
 };
 
-/// A plan followed by a procedure that acts on its outcome. The names of added steps begin with the
-/// procedure's name, "genioplasty_chin", so that they stay unique; if the procedure is used a second time
-/// they begin with "genioplasty_2". The plan's outcome takes the place of the procedure's bone, its window of
-/// the scan.
+/// A plan followed by a procedure that acts on its outcome. The outcome takes the place of the procedure's
+/// bone, which is a window of the scan. The names of added steps begin with the procedure's name, as in
+/// "genioplasty_chin", so that they are unique. If the plan already has such names, they begin with
+/// "genioplasty_2".
 ///
-/// The input's landmarks lie where the scan shows them, in LPS; those that the plan has may be left out. A
-/// landmark moves with a piece if the nearest voxel of the object from which the piece was cut belongs to the
-/// piece and lies within 8 mm. `evaluated` is the plan's evaluation, with the objects that move. The input's
-/// scan, voxel size and folder are not read: the plan's are used.
+/// The landmarks of the input are in LPS, where the scan shows them. Landmarks that the plan has may be left
+/// out. A landmark moves with a piece if, within 8 mm, the nearest voxel of the object from which the piece
+/// was cut belongs to the piece. `evaluated` is an evaluation of the plan that contains the moved objects.
+/// The input's scan, voxel size and folder are not used; the plan's are.
 ///
-/// Throws std::runtime_error as plan_of(), and if the plan has no outcome, if a landmark of the input differs
-/// from the plan's, or if the input has a value that only the window uses.
+/// Throws std::runtime_error as plan_of() does, and if the plan has no outcome, if a landmark of the input
+/// differs from the plan's, or if the input has a value that only the window uses.
 Chained chained(const Plan& plan, const Evaluation& evaluated, const Procedure& procedure,
                 const ProcedureInput& input);
 

@@ -17,11 +17,11 @@
 namespace octotomy::planner {
 namespace {
 
-/// Largest depth of nested parentheses; formulas are single lines written by people.
+/// Largest depth of nested parentheses in a formula, which a person writes on one line.
 constexpr int deepest = 64;
 
 using Function = double (*)(const std::vector<double>& of);
-/// None if there is no such function.
+/// The function with this name for this number of arguments; none if there is no such function.
 Function function_of(const std::string& name, std::size_t argument_count) {
   using Of = const std::vector<double>&;
   if (argument_count > 1 && name == "min")
@@ -66,7 +66,8 @@ Sum multiplied(const Sum& a, const Sum& b) {
     if (factor * by != 0.0) made.terms[name] = factor * by;
   return made;
 }
-/// Precondition: `by` is not zero.
+/// The quotient of two sums. If `by` has terms, the quotient is a single term; otherwise each term is
+/// divided. `by` must not be zero.
 Sum divided(const Sum& a, const Sum& by) {
   if (!by.terms.empty()) return term("(" + text_of(a) + ") / (" + text_of(by) + ")");
   Sum made{{}, a.constant / by.constant};
@@ -76,7 +77,7 @@ Sum divided(const Sum& a, const Sum& by) {
 
 class Parser {
  public:
-  /// If `names` is null, every name becomes a term.
+  /// `names` are the values of names. If it is null, each name becomes a term of the sum.
   Parser(std::string_view text, const std::map<std::string, double>* names) : text_(text), names_(names) {}
 
   Sum whole() {

@@ -7,18 +7,19 @@
 
 namespace octotomy::planner {
 
-/// The value of a formula: numbers, names, + - * / and parentheses, min(a, b, ...), max(a, b, ...), hypot(a,
-/// b), abs(a), asin_deg(a). Throws std::runtime_error with the formula, the position and the text expected
-/// there; for an unknown name with the nearest one; for a division by zero.
+/// Evaluates a formula of numbers, names, + - * /, parentheses, min(a, b, ...), max(a, b, ...), hypot(a, b),
+/// abs(a) and asin_deg(a). Throws std::runtime_error with the formula and the position for a division by
+/// zero, for an unknown name, with the most similar one, and for an invalid text, with what was expected.
 double value_of(std::string_view formula, const std::map<std::string, double>& names);
 
-/// A formula as a sum: the factor of each term, and a constant. A term is a name, or a product, quotient or
-/// call that contains names; the key of such a term is its text, which is the same for the same formula.
+/// A formula as a sum of terms with factors, and a constant. A term is a name, or a product, quotient or call
+/// that contains names. Such a term has its text as key, so that equal texts are one term.
 struct Sum {
   std::map<std::string, double> terms;
   double constant = 0.0;
 };
-/// Needs no values for the names. Throws std::runtime_error as value_of(), except for unknown names.
+/// The sum of a formula, without values for its names. Throws std::runtime_error as value_of() does, except
+/// for unknown names.
 Sum sum_of(std::string_view formula);
 
 }  // namespace octotomy::planner

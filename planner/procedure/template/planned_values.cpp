@@ -21,18 +21,18 @@
 namespace octotomy::planner {
 namespace {
 
-/// The largest difference between a formula's value and its number in the plan, plus a millionth of it for
-/// rounding errors.
+/// How far rounding may move a number of the plan from its formula's value, enlarged by a millionth for
+/// rounding errors of the computation.
 constexpr double rounding = 0.5 / roundings_per_unit * (1.0 + 1e-6);
 
 struct Equation {
   std::string formula;
-  Sum sum;  ///< of the formula; its constant includes the values read so far
+  Sum sum;  ///< of the formula; values that are known already are added to its constant
   double number = 0.0;
 };
 
-/// Adds the equations of a step of the file and the same step of the plan. Lists that differ in length were
-/// edited and are left out.
+/// Adds an equation for each formula in a step of the file and the number in the same place of the plan's
+/// step. Lists of different length are left out, because somebody has edited them.
 void add_equations(const Json& own, const Json& planned, std::vector<Equation>& equations) {
   if (own.is_string() && own.get_ref<const std::string&>().starts_with('=')) {
     const std::string formula = own.get<std::string>().substr(1);
@@ -49,7 +49,7 @@ void add_equations(const Json& own, const Json& planned, std::vector<Equation>& 
   }
 }
 
-/// A number that an equation states, and how far rounding may have moved it.
+/// A value that an equation yields, and how far rounding may have moved it.
 struct Vote {
   double number = 0.0;
   double half_width = 0.0;
@@ -80,8 +80,8 @@ std::optional<PlannedValue> elected(const std::vector<Vote>& votes) {
   return PlannedValue{with_fewest_decimals(*most), most_followers == std::ssize(votes)};
 }
 
-/// Votes of equations whose only term is the value; if there are none, of pairs of equations that differ in
-/// nothing else.
+/// The values that equations yield without landmarks: those of equations whose only term is the value. If
+/// there are none, those of pairs of equations that differ only in the value's factor.
 std::vector<Vote> votes_without_landmarks(const std::vector<Equation>& equations, const std::string& name) {
   struct Side {
     double factor = 0.0, number = 0.0;
@@ -104,7 +104,7 @@ std::vector<Vote> votes_without_landmarks(const std::vector<Equation>& equations
   return alone.empty() ? paired : alone;
 }
 
-/// The value of a formula; none if it cannot be evaluated, for example because a name is unknown.
+/// The value of a formula. None if it cannot be evaluated, for example because it uses an unknown name.
 std::optional<double> value_if_any(const std::string& formula, const std::map<std::string, double>& names) {
   try {
     return value_of(formula, names);
@@ -113,8 +113,8 @@ std::optional<double> value_if_any(const std::string& formula, const std::map<st
   }
 }
 
-/// The value for which a formula yields the plan's number. Searched in the value's range and, on both sides,
-/// one more width of that range.
+/// The value with which a formula yields the number in the plan. Searches the value's range and, on each side
+/// of it, as far again. None if there is no such value.
 std::optional<Vote> vote_by_bisection(const Equation& equation, const ProcedureValue& value,
                                       std::map<std::string, double> names) {
   const auto residual = [&](double at) {
@@ -141,7 +141,8 @@ std::optional<Vote> vote_by_bisection(const Equation& equation, const ProcedureV
   return std::nullopt;
 }
 
-/// Whether a formula may use a name. In the terms for products and calls, the text of the term is searched.
+/// Whether a sum's formula may use a name. In terms that are products or calls, the name is searched in their
+/// text.
 bool may_use(const Sum& sum, const std::string& name) {
   return std::any_of(sum.terms.begin(), sum.terms.end(),
                      [&](const auto& term) { return term.first.find(name) != std::string::npos; });

@@ -17,7 +17,7 @@
 
 namespace octotomy::planner {
 
-/// Names and texts of the procedures in this folder; generated when the program is configured.
+/// Names and texts of the procedure files in this folder. The list is generated when the build is configured.
 const std::vector<std::pair<std::string, std::string>>& procedure_files();
 
 namespace {
@@ -28,8 +28,9 @@ double rounded(double value) {
   return std::round(value * roundings_per_unit) / roundings_per_unit + 0.0;
 }
 
-/// The value with all formulas evaluated: "=" yields a number, "=?" true if it is not 0, {"head_mm": [x, y,
-/// z]} the place with these coordinates along the head's directions, in LPS.
+/// A JSON value in which formulas are replaced by their values: "=..." by a number, "=?..." by whether the
+/// number differs from 0. {"head_mm": [x, y, z]} becomes the point in LPS with these coordinates along the
+/// head's directions.
 Json answered(const Json& value, const Values& names, const glm::dmat3& lps_from_head) {
   if (value.is_string() && value.get_ref<const std::string&>().starts_with('=')) {
     const std::string_view formula = std::string_view(value.get_ref<const std::string&>()).substr(1);
@@ -85,7 +86,7 @@ Values values_of(const Procedure& procedure, const std::map<std::string, double>
   return values;
 }
 
-/// The steps that name the landmarks and set the head's orientation.
+/// The first steps of a plan: its landmarks, and the head's orientation.
 Json first_steps(const std::vector<brep::Landmark>& landmarks) {
   Json points = Json::array();
   for (const brep::Landmark& landmark : landmarks)
@@ -106,7 +107,7 @@ Json first_steps(const std::vector<brep::Landmark>& landmarks) {
   return steps;
 }
 
-/// Another procedure of the program, whose landmarks or steps `borrower` uses.
+/// Another procedure of the program, of which `borrower` uses landmarks or steps.
 Procedure borrowed(const std::string& name, const Procedure& borrower) {
   if (name == borrower.name || name.ends_with(".json"))
     throw std::runtime_error("'of' must name another procedure of the program, not '" + name + "'");
@@ -120,8 +121,7 @@ void add_landmarks_of(const std::string& name, Procedure& procedure) {
       procedure.landmarks.push_back(landmark);
 }
 
-/// {"of": another procedure, "steps": [ids]}: the steps with these ids of that procedure, with its
-/// formulas.
+/// Adds steps of another procedure, with their formulas. `entry` is {"of": that procedure, "steps": [ids]}.
 void add_steps_of(const Json& entry, const std::string& where, Procedure& procedure) {
   const SortedJson plain = entry;
   check_keys(plain, where, {"of", "steps"});
@@ -160,7 +160,7 @@ void need_steps(const Json& owner, const std::string& where) {
     throw std::runtime_error(where + ": must be a list of at least one step");
 }
 
-/// Reads the options. Refuses values and steps whose names are used already.
+/// Reads the options of a procedure. Refuses names of values and steps that are already used.
 void add_options(const Json& list, Procedure& procedure) {
   for (const Json& entry : list) {
     const std::string where = "options[" + std::to_string(procedure.options.size()) + "]";
@@ -327,7 +327,7 @@ Json plan_of(const Procedure& procedure, const ProcedureInput& input) {
             {"scans", scans},
             {"universe", {{"voxel_mm", input.voxel_mm}}},
             {"steps", first_steps(input.landmarks)}};
-  // Parses the plan so far for the head's directions, and to refuse invalid landmarks.
+  // Parsing the first steps refuses invalid landmarks and computes the head's directions.
   const Plan placed = parse_plan(plan.dump(), input.folder);
   std::vector<brep::Landmark> landmarks;
   for (const NamedPoint& landmark : placed.landmarks) landmarks.push_back({landmark.name, landmark.p_mm});

@@ -11,7 +11,7 @@
 
 namespace octotomy::planner {
 
-/// A number that the user enters for a procedure.
+/// A number that a user can enter for a procedure.
 struct ProcedureValue {
   std::string name;  ///< ends in its unit: "forward_mm"
   std::string says;
@@ -21,15 +21,15 @@ struct ProcedureValue {
 struct ProcedureLandmark {
   std::string name;
   std::string says;  ///< its definition
-  std::string scan;  ///< the additional scan on which it is placed; empty: the patient's scan
+  std::string scan;  ///< the further scan on which it is placed; empty: the patient's scan
 };
-/// A scan in addition to the patient's, such as that of a donor bone.
+/// A scan that a procedure needs besides the patient's, such as that of a donor bone.
 struct ProcedureScan {
   std::string name;
   std::string says;
 };
 
-/// Further values and steps of a procedure, which the user may choose, such as guides for its cuts.
+/// Optional values and steps of a procedure, such as guides for its cuts.
 struct ProcedureOption {
   std::string name;
   std::string says;
@@ -37,7 +37,7 @@ struct ProcedureOption {
   nlohmann::ordered_json steps = nlohmann::ordered_json::array();
 };
 
-/// An operation defined by landmarks and entered values; its steps contain formulas.
+/// An operation that landmarks and entered values define. Its steps contain formulas.
 struct Procedure {
   std::string name;
   std::string says;
@@ -45,36 +45,38 @@ struct Procedure {
   std::vector<ProcedureScan> scans;  ///< in addition to the patient's, which is "ct"
   std::vector<ProcedureValue> values;
   nlohmann::ordered_json steps = nlohmann::ordered_json::array();
-  /// The step that is the patient's bone. In a plan with an earlier procedure, its outcome takes this place.
+  /// Id of the step that is the patient's bone. After an earlier procedure, that procedure's outcome takes
+  /// its place.
   std::string acts_on = {};
-  /// The step with the result, on which a further procedure acts.
+  /// Id of the step with the result, on which a further procedure acts.
   std::string outcome = {};
   std::vector<ProcedureOption> options = {};
 };
 
-/// The largest number of values of a procedure, and of each of its options.
+/// Largest number of values of a procedure, and of each of its options.
 inline constexpr std::size_t most_values = 12;
 
-/// Results of formulas are rounded to 1 / roundings_per_unit, a tenth of a micrometre for lengths, so that a
-/// plan is easy to read.
+/// Values of formulas are rounded to 1 / roundings_per_unit, which for lengths is a tenth of a micrometre, so
+/// that plans are easy to read.
 inline constexpr double roundings_per_unit = 1e4;
 
-/// Reads a procedure's JSON. Throws std::runtime_error with the position in it.
+/// Parses a procedure's JSON. Throws std::runtime_error with the place in the text.
 Procedure parse_procedure(const std::string& json);
-/// A procedure of the program by its name, or one in a file that ends in .json. Throws std::runtime_error,
-/// with the nearest name, if there is none.
+/// Reads a procedure: that of the program with this name, or that of a file that ends in .json. Throws
+/// std::runtime_error, with the most similar name, if there is none.
 Procedure read_procedure(const std::string& name_or_path);
 /// Names of the program's procedures.
 std::vector<std::string> procedures();
 
-/// The procedure with the values and steps of some of its options, in the order of its file. Throws
-/// std::runtime_error, with the nearest name, for an option that it does not have.
+/// The procedure with the values and steps of these options, in the order of its file. Throws
+/// std::runtime_error, with the most similar name, for an unknown option.
 Procedure with_options(const Procedure& procedure, const std::vector<std::string>& names);
-/// The procedure with all its options.
+/// The procedure with the values and steps of all its options.
 Procedure with_all_options(const Procedure& procedure);
 
-/// Checks the scans given in addition to the patient's: the procedure must use each of them, and each scan
-/// that it uses must be given or in `known`. Throws std::runtime_error, with the scan's definition.
+/// Compares the scans that are given besides the patient's with those that the procedure uses. Throws
+/// std::runtime_error if a given scan is not used, or if a used scan is neither given nor in `known`, with
+/// the scan's definition.
 void need_scans(const Procedure& procedure, const std::map<std::string, nlohmann::ordered_json>& given,
                 const nlohmann::ordered_json& known);
 
@@ -87,20 +89,21 @@ struct ProcedureInput {
   std::filesystem::path folder;  ///< folder of the plan
 };
 
-/// The plan of a procedure on one head, as self-contained JSON. If the landmarks include both porions and an
-/// orbitale, the Frankfort plane is horizontal; nasion and basion, if present, define the mid-plane. Throws
-/// std::runtime_error if a landmark or scan is missing (with its definition), a value is unknown or out of
-/// its range, or a formula or the resulting plan is refused, for example because left and right landmarks are
-/// exchanged.
+/// A plan of the procedure for one head, as JSON. If the landmarks include both porions and an orbitale, they
+/// define the head's orientation: the Frankfort plane is horizontal, and nasion and basion, if present, lie
+/// in the mid-plane. Throws std::runtime_error if a landmark or scan is missing, with its definition, if a
+/// value is unknown or out of range, or if a formula or the plan is refused, for example because left and
+/// right landmarks are exchanged.
 nlohmann::ordered_json plan_of(const Procedure& procedure, const ProcedureInput& input);
 
-/// The names by which formulas read landmarks, "ans.x", with coordinates along the head's directions.
+/// The coordinates of landmarks as formulas name them, such as "ans.x", along the head's directions.
 /// `landmarks` are in LPS.
 std::map<std::string, double> coordinates_of(const std::vector<brep::Landmark>& landmarks,
                                              const glm::dmat3& lps_from_head);
 
-/// The procedure's own steps with evaluated formulas. `landmarks` are in LPS; `lps_from_head` is the head's
-/// orientation. Throws as plan_of() for landmarks, values and formulas.
+/// The steps of the procedure with formulas evaluated, without landmarks and orientation. `landmarks` are in
+/// LPS, `lps_from_head` is the head's orientation. Throws as plan_of() does for landmarks, values and
+/// formulas.
 nlohmann::ordered_json steps_of(const Procedure& procedure, const std::vector<brep::Landmark>& landmarks,
                                 const std::map<std::string, double>& values, const glm::dmat3& lps_from_head);
 

@@ -29,18 +29,20 @@
 namespace octotomy::planner {
 namespace {
 
-constexpr double deviations = 2.5758;  ///< half-width of 99 of 100 normal cases
+constexpr double deviations = 2.5758;  ///< of a normal distribution: half-width that contains 99 %
 constexpr double lattice_share = 0.03;
 constexpr std::size_t samples = 5000;
 
-/// An object that moves, in its last position.
+/// An object that the plan moves: its last position, its position before the first rigid motion, and the
+/// motion between both.
 struct MovedObject {
   const Object* moved;
   const Object* still;
   glm::dmat4 motion;
 };
 
-/// A scaled or sheared object is fitted in its new shape, so that its later motions are rigid.
+/// Whether an object was made by a rigid motion. An object that was scaled or sheared counts as new, so that
+/// its later motions are rigid.
 bool moves_rigidly(const Object& object) {
   return object.moved && is_rigid(object.moved->motion);
 }
@@ -61,7 +63,7 @@ std::vector<MovedObject> pieces_of(const Objects& objects) {
       *same = piece;
   }
   if (pieces.empty())
-    throw std::runtime_error("the plan moves nothing rigidly, so that there is no outcome to judge");
+    throw std::runtime_error("the plan moves no object rigidly, so that there is no outcome to compare");
   return pieces;
 }
 
@@ -71,7 +73,8 @@ bool shares_bone(const Object& object, const Object& piece) {
               .is_empty();
 }
 
-/// The largest object from the scan that is not part of a moved one; if there is none, the largest of all.
+/// The largest object from a scan that shares no bone with a moved piece. If there is none, the largest
+/// object from a scan.
 const Object& unmoved_of(const Objects& objects, const std::vector<MovedObject>& pieces,
                          const std::string& asked) {
   if (!asked.empty()) return objects.at(asked);
@@ -96,7 +99,7 @@ const brep::Solid& solid_of(const Object& object) {
   return *object.mesh.whole;
 }
 
-/// A fit and the standard deviation of a sample's distance.
+/// A fit of two surfaces, with the standard deviation of one sample's distance.
 struct Laid {
   brep::SurfaceFit fit;
   double deviation_mm = 0.0;
@@ -168,7 +171,8 @@ Json told(const Told& value) {
   return json;
 }
 
-/// A whole number as the bound of integer samples would put the surface through the centres of samples.
+/// A warning if the lower bound of labels is a whole number. The surface then passes through the centres of
+/// samples. None for other bounds and samples.
 std::optional<std::string> bound_finding(const voxel::Scene& after, double low) {
   const voxel::Range range = voxel::range(after);
   const bool are_labels = after.meaning == voxel::Meaning::Label || (range.low == 0.0 && range.high == 1.0);
@@ -218,7 +222,8 @@ Outcome outcome_of(const Plan& plan, const Evaluation& evaluation, const voxel::
     made.findings = part.fit.findings;
     if (const std::optional<glm::dvec3>& centre = piece.still->voxel.measures.centroid_mm)
       made.points.push_back(point_outcome(made.object, *centre, made, head, whole, part));
-    // Landmarks move with the piece since the scan, also by a step that scaled it.
+    // A landmark moves with a piece if it has the same motion since the scan, which includes steps that
+    // scaled the piece.
     const glm::dmat4 still_from_scan = moved_since_made(objects, piece.still->id);
     const glm::dmat4 since_scan = moved_since_made(objects, piece.moved->id);
     for (const MovedLandmark& landmark : landmarks)

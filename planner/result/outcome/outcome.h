@@ -12,28 +12,28 @@
 
 namespace octotomy::planner {
 
-/// A point of a piece: the plan's displacement and the achieved one, and the interval that contains the
-/// achieved one in 99 of 100 cases, along the head's directions.
+/// A point of a piece, with its planned and its achieved displacement along the head's directions. The
+/// achieved one ± half_width contains the true one in 99 of 100 cases.
 struct PointOutcome {
-  std::string name;  ///< name of a landmark, or of the piece for its centroid
+  std::string name;  ///< a landmark, or the piece for its centroid
   Displacement planned, achieved;
   Displacement half_width;
-  double off_mm = 0.0;  ///< distance between planned and achieved position
+  double off_mm = 0.0;  ///< distance between the planned and the achieved position
 };
 
 struct PieceOutcome {
-  std::string object;                      ///< the moved object at the end of the plan
-  std::string still;                       ///< the object in its position in the scan
-  glm::dmat4 planned{1.0}, achieved{1.0};  ///< LPS to LPS of the plan's scan
+  std::string object;                      ///< id of the object after its last motion
+  std::string still;                       ///< id of the object where the scan shows it
+  glm::dmat4 planned{1.0}, achieved{1.0};  ///< from LPS to LPS of the plan's scan
   Turns planned_turns, achieved_turns;
   Turns turn_half_width;
-  std::vector<PointOutcome> points;       ///< the centroid, then the landmarks that move with the piece
+  std::vector<PointOutcome> points;       ///< the centroid, then landmarks that move with the piece
   double rms_mm = 0.0, kept_share = 0.0;  ///< of the fit
   std::vector<std::string> findings;
 };
 
 struct Outcome {
-  std::string unmoved;  ///< the object by which the two scans are aligned
+  std::string unmoved;  ///< id of the object by which the later scan is aligned with the plan's
   glm::dmat4 after_from_before{1.0};
   double rms_mm = 0.0, kept_share = 0.0;
   std::vector<std::string> findings;
@@ -41,15 +41,16 @@ struct Outcome {
 };
 
 struct OutcomeOptions {
-  std::string unmoved = {};        ///< default: the largest object that shares no bone with a moved piece
-  std::optional<double> low = {};  ///< the lower bound of bone in the later scan; default: that of the plan
+  std::string unmoved = {};        ///< id; default: the largest object that shares no bone with a moved piece
+  std::optional<double> low = {};  ///< lower bound of bone in the later scan; default: that of the plan
   voxel::Progress progress = {};
 };
 
-/// Fits the plan's pieces to a scan after the operation. The evaluation needs meshes. Intervals cover noise
-/// and sampling for bone that has kept its shape: swelling, bent or resorbed bone shows only in the fits'
-/// rms. Throws std::runtime_error if nothing moves, an object has no mesh or the later scan has no bone;
-/// Stopped. Cost: an isosurface, and a registration per piece; some seconds for a head.
+/// Compares a plan with a scan after the operation, by fitting the plan's pieces to it. The evaluation must
+/// contain meshes. The intervals cover noise and sampling, if the bone has kept its shape; swelling, bent or
+/// resorbed bone shows only in the rms of the fits. Throws std::runtime_error if the plan moves nothing, if
+/// an object has no mesh, or if the later scan has no bone; Stopped. Cost: an isosurface and a registration
+/// for each piece, some seconds for a head.
 Outcome outcome_of(const Plan& plan, const Evaluation& evaluation, const voxel::Scene& after,
                    const OutcomeOptions& options = {});
 

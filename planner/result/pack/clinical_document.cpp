@@ -22,7 +22,7 @@ std::string in_base64(std::string_view bytes) {
   return base64({bytes.begin(), bytes.end()});
 }
 
-/// The bytes that a hexadecimal text represents.
+/// Decodes a text of hexadecimal digits.
 std::string bytes_of_hex(const std::string& hex) {
   std::string bytes;
   for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
@@ -30,7 +30,8 @@ std::string bytes_of_hex(const std::string& hex) {
   return bytes;
 }
 
-/// An attribute of the source as XML text in UTF-8; empty if it is absent or its character set is unknown.
+/// An attribute of the source, escaped as XML text in UTF-8. Empty if it is absent or has an unknown
+/// character set.
 std::string text_of(const voxel::DicomSource& source, voxel::DicomTag tag) {
   const auto found = source.attributes.find(tag);
   if (found == source.attributes.end()) return "";
@@ -43,7 +44,7 @@ std::string text_of(const voxel::DicomSource& source, voxel::DicomTag tag) {
   return escaped(text);
 }
 
-/// The elements <family> and <given> for the alphabetic group of a name.
+/// The XML elements <family> and <given> of a DICOM name's alphabetic group.
 std::string names_in_cda(const std::string& name) {
   const std::string group = name.substr(0, name.find('='));
   const std::size_t caret = group.find('^');
@@ -116,8 +117,8 @@ std::string plan_in_document(std::string_view document) {
     throw std::runtime_error("its body is damaged: export the document again");
   const std::string_view body = rest.substr(sum_end + body_middle.size(), end - sum_end - body_middle.size());
   std::string plan = brep::from_base64(body, body.size());
-  // from_base64() stops at the first symbol that is not base64, so the decoded plan must encode to the whole
-  // body.
+  // from_base64() ignores everything after the first symbol that is not base64. So the decoded plan is
+  // encoded again and compared with the whole body.
   if (in_base64(plan) != body || rest.substr(0, sum_end) != in_base64(bytes_of_hex(sha256_of(plan))))
     throw std::runtime_error(
         "its plan differs from the SHA-256 that the document states: it was damaged or changed");

@@ -31,8 +31,8 @@ std::string dotted(int major, int minor, int patch) {
   return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
 }
 
-/// The text that `ask` gets from a function of a shared library; empty if the library is not loaded. `file`
-/// is the library's file name with the version of its interface.
+/// The version text of a shared library, which `ask` obtains from one of the library's functions. Empty if
+/// the library is not loaded. `file` is its file name, including the version of its interface.
 template <typename Version, typename Ask>
 std::string loaded_version(const char* file, const char* function, const Ask& ask) {
   void* const library = dlopen(file, RTLD_LAZY | RTLD_NOLOAD);
@@ -43,9 +43,9 @@ std::string loaded_version(const char* file, const char* function, const Ask& as
   return answer;
 }
 
-/// Adds the libraries with which OpenImageIO reads TIFF and PNG, if they are loaded with these interfaces.
+/// Adds libtiff and libpng, which OpenImageIO uses, if they are loaded with these interfaces.
 void add_picture_libraries(nlohmann::ordered_json& versions) {
-  // "LIBTIFF, Version 4.5.0" and lines of copyright
+  // the text begins with "LIBTIFF, Version 4.5.0"
   const std::string tiff = loaded_version<const char*()>("libtiff.so.6", "TIFFGetVersion",
                                                          [](auto* ask) { return std::string(ask()); });
   const std::size_t digits = tiff.find_first_of("0123456789");
@@ -56,8 +56,9 @@ void add_picture_libraries(nlohmann::ordered_json& versions) {
   if (!png.empty()) versions["libpng"] = png;
 }
 
-/// Adds the libraries of the decoder, which is a separate process, and of the picture reader, which is loaded
-/// when needed. If one of them is missing, its libraries are left out; `verify --self` reports it.
+/// Adds the libraries of the process that decodes DICOM, and those of the picture reader, which is loaded
+/// only when needed. Leaves them out if this part of the installation is missing; `verify --self` reports
+/// that.
 void add_parts(nlohmann::ordered_json& versions) {
   try {
     for (const auto& [name, version] : voxel::codec_facts().libraries) versions[name] = version;

@@ -5,8 +5,8 @@
 
 namespace octotomy::planner {
 
-/// The versions of the libraries that the program uses, by their names. For shared libraries, the version
-/// that is loaded; for others, that of the build.
+/// The versions of the libraries that the program uses, by name: for a shared library that of the loaded
+/// file, for others that at build time.
 nlohmann::ordered_json library_versions();
 
 }  // namespace octotomy::planner

@@ -9,7 +9,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-/// The header is padded, so that the values begin at a multiple of this number of bytes.
+/// The header is padded so that the values begin at a multiple of this number of bytes.
 constexpr std::size_t alignment = 64;
 
 template <typename Value>

@@ -41,7 +41,7 @@ void leave_out_times(Json& json) {
     for (Json& member : json) leave_out_times(member);
 }
 
-/// Rewrites the files that state times, without the times.
+/// Writes report, result.json and tables again without times, which differ from run to run.
 void write_without_times(Result& result, Json json, const fs::path& folder) {
   result.evaluation.timings.clear();
   for (std::size_t i = 0; i < result.evaluation.objects.size(); ++i)
@@ -52,7 +52,7 @@ void write_without_times(Result& result, Json json, const fs::path& folder) {
   for (const auto& [name, text] : result_tables(json)) voxel::write_file(folder / name, text);
 }
 
-/// Adds entries to an archive and lists them.
+/// Adds entries to an archive and lists them in the manifest.
 class Listed {
  public:
   explicit Listed(const fs::path& path) : zip_(path) {}
@@ -80,7 +80,7 @@ void add_folder(Listed& archive, const fs::path& folder, const std::string& pref
     archive.add(prefix + path.lexically_relative(folder).generic_string(), voxel::file_bytes(path));
 }
 
-/// The scan of which an object is a window; nullptr for other objects.
+/// The scan of an object that is a window on a scan; null for other objects.
 const voxel::Scene* scan_of_window(const Result& result, const Object& object) {
   if (object.kind != "window") return nullptr;
   const auto step = std::ranges::find(result.plan.steps, object.id, &Step::id);
@@ -89,7 +89,7 @@ const voxel::Scene* scan_of_window(const Result& result, const Object& object) {
   return scans.empty() ? nullptr : &result.evaluation.loaded.at(scans.front())->scene();
 }
 
-/// Adds each object's arrays; returns the list of the objects with the names of their entries.
+/// Adds the arrays of each object. Returns a list of the objects with the names of their entries.
 Json add_witnesses(Listed& archive, const Result& result, const ExportOptions& options) {
   const Evaluation& evaluation = result.evaluation;
   Json objects = Json::array();

@@ -33,7 +33,7 @@ Json parsed(const std::filesystem::path& path, const std::string& name, const st
   return json;
 }
 
-/// The SHA-256 of each entry. Throws Json::exception if the manifest lacks them.
+/// The SHA-256 of each entry, from the manifest. Throws Json::exception if the manifest does not state them.
 std::map<std::string, std::string> sums_of(const Json& manifest) {
   std::map<std::string, std::string> sums;
   for (const Json& file : manifest.at("files"))
@@ -65,7 +65,7 @@ PackContents read_entries(const std::filesystem::path& path, const brep::ZipArch
   return pack;
 }
 
-/// A list element's label in `where`: the first of these keys that it has, else its position.
+/// The name of a list's element in `where`: the first of these keys that is a text, or else its position.
 std::string name_of(const Json& element, std::size_t position) {
   for (const char* key : {"id", "object", "name", "operation"})
     if (element.is_object() && element.contains(key) && element[key].is_string())
@@ -73,7 +73,7 @@ std::string name_of(const Json& element, std::size_t position) {
   return std::to_string(position);
 }
 
-/// Collects all values, keyed by their path in the JSON.
+/// Adds all numbers, texts, truth values and nulls of a JSON value to `values`, under their path.
 void flatten(const Json& json, const std::string& where, std::map<std::string, std::string>& values) {
   const auto below = [&where](const std::string& name) {
     return where.empty() ? name : where + " / " + name;
@@ -92,7 +92,7 @@ void flatten(const Json& json, const std::string& where, std::map<std::string, s
   }
 }
 
-/// The result without values that may differ in a replay: the paths of the scans, and the program's version.
+/// A result without values that may differ in a replay: paths of scans, and the version of the program.
 Json comparable(Json result) {
   result.erase("octotomy");
   if (result.contains("scans"))

@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_label_letters = 64;
 
-/// Adds all keys and texts of a JSON value, in lower case and one a line.
+/// Adds all keys and texts of a JSON value to `words`, in lower case, each on its own line.
 void add_words(const Json& value, std::string& words) {
   const auto add = [&](const std::string& text) {
     for (const char c : text) words += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -42,7 +42,7 @@ void add_words(const Json& value, std::string& words) {
     for (const Json& inside : value) add_words(inside, words);
 }
 
-/// Writes the objects of a result, and describes them.
+/// Writes the DICOM objects of a result and collects their description.
 class ObjectsWriter {
  public:
   ObjectsWriter(const Result& result, fs::path folder, const ExportOptions& options)

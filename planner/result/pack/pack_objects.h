@@ -11,25 +11,25 @@
 
 namespace octotomy::planner {
 
-/// The series to which a result's DICOM objects refer.
+/// The DICOM series to which a result's DICOM objects refer.
 struct SeriesOfPlan {
-  std::string scan;  ///< its name in the plan
+  std::string scan;  ///< name of the scan in the plan
   voxel::DicomSource series;
 };
 
-/// The DICOM series of the plan's first scan that was read from one and holds no labels; none if there is no
-/// such scan. Call it before leave_out_names(), which removes the paths. Throws as voxel::dicom_source()
-/// does.
+/// The DICOM series of the first scan of the plan that was read from DICOM and has no labels. None if there
+/// is no such scan. Must be called before leave_out_names(), which removes the paths. Throws as
+/// voxel::dicom_source() does.
 std::optional<SeriesOfPlan> series_of(const Result& result);
 
-/// Refuses a plan with a text, such as a step's name, that contains a word of the source's patient or study,
-/// because writing a result cannot change a step. `where` is the plan's path. Throws std::runtime_error with
-/// the word.
+/// Refuses a plan in which a text, such as a step's name, contains a word of the source's patient or study.
+/// Such a text cannot be removed when the result is written. `where` is the plan's path. Throws
+/// std::runtime_error with the word.
 void need_unnamed(const nlohmann::ordered_json& plan, const voxel::DicomSource& source,
                   const std::string& where);
 
 /// Writes a result as DICOM objects into `folder`:
-/// - segmentation.dcm: each object that is no tool and not empty, as a segment with the universe's voxels;
+/// - segmentation.dcm: a segment with the voxels of each object that is no tool and not empty;
 /// - structures.dcm: the same objects as contours on the series' images;
 /// - model_NNN.dcm: the surface of each object that the plan exports, as an encapsulated STL;
 /// - plan.dcm and picture_NNN.dcm: the plan's text, and the views/*.png of `results`.

@@ -16,7 +16,8 @@ namespace {
 
 using Rows = std::vector<std::int32_t>;
 
-/// For each run of voxels a row: z, y and x of its first voxel, and x of the voxel after its last.
+/// A row of four numbers for each run of an object's voxels along x: z, y and x of its first voxel, and x
+/// after its last one.
 Rows runs_of(const voxel::Octree& octree) {
   Rows runs;
   voxel::SliceBits slice;
@@ -42,20 +43,20 @@ Rows runs_of(const voxel::Octree& octree) {
   return runs;
 }
 
-/// The scan's cell around a voxel's centre, with its eight samples.
+/// The cell of a scan that contains a voxel's centre, and the samples at its eight corners.
 struct CellSamples {
   glm::ivec3 cell{0};
   std::array<double, 8> samples{};
 };
 
-/// None if the cell is not completely within the scan, or has a sample that was not measured: no kernel
-/// interpolates there.
+/// The cell around a point. None if the point is outside of the samples' centres or if a corner has no
+/// measured sample, because no kernel interpolates there.
 std::optional<CellSamples> cell_at(const voxel::Scene& scene, const glm::dvec3& centre_mm) {
   const glm::dvec3 at = scene.lattice.voxel(centre_mm);
   const glm::ivec3 dims = scene.lattice.dims;
   CellSamples found;
   for (int axis = 0; axis < 3; ++axis) {
-    // A position on the last sample is assigned to the last cell.
+    // A point on the last sample belongs to the last cell.
     if (!(at[axis] >= 0.0 && at[axis] <= dims[axis] - 1.0) || dims[axis] < 2) return std::nullopt;
     found.cell[axis] = std::min(static_cast<int>(at[axis]), dims[axis] - 2);
   }
@@ -73,8 +74,8 @@ std::optional<CellSamples> cell_at(const voxel::Scene& scene, const glm::dvec3& 
   return found;
 }
 
-/// Chooses `most_samples` voxels: at most half of them are the first voxels of runs and the voxels before
-/// these, the others lie anywhere in the universe.
+/// Chooses `most_samples` voxels. At most half of them are at the beginning of runs: first voxels, and the
+/// voxels before them. The others are random.
 std::vector<glm::ivec3> chosen_voxels(const Rows& runs, int side) {
   std::vector<glm::ivec3> voxels;
   const std::size_t count = runs.size() / 4, quarter = most_samples / 4;
@@ -84,7 +85,7 @@ std::vector<glm::ivec3> chosen_voxels(const Rows& runs, int side) {
     voxels.push_back(first);
     if (first.x > 0) voxels.push_back(first - glm::ivec3(1, 0, 0));
   }
-  // A linear congruential generator (Knuth, MMIX) with a fixed seed, so that equal plans make equal packs.
+  // A linear congruential generator (Knuth's MMIX) with a fixed seed, so that equal plans make equal packs.
   std::uint64_t state = 1;
   const auto next = [&state, side] {
     state = state * 6364136223846793005U + 1442695040888963407U;
@@ -116,7 +117,7 @@ std::map<std::string, std::string> witness_arrays(const Object& object, const vo
   std::map<std::string, std::string> arrays;
   const Rows runs = runs_of(object.voxel.octree);
   arrays["runs"] = numpy_array(runs, 4);
-  // Tools have a surface too: the result states its volume and area.
+  // Tools have these arrays too, because the result states their volume and area.
   if (object.mesh.within) {
     const brep::Triangles& triangles = object.mesh.within->triangles();
     std::vector<double> points;

@@ -9,9 +9,8 @@
 
 namespace octotomy::planner {
 
-/// The data of an object in a pack, from which anybody can recompute its numbers. Names and contents of .npy
-/// files:
-/// - runs: for each run of voxels a row: z, y, x of its first voxel, and x of the voxel after its last;
+/// The arrays of an object from which others can recompute its numbers. Names and contents of .npy files:
+/// - runs: a row for each run of voxels along x: z, y, x of its first voxel, and x after its last one;
 ///   ascending;
 /// - points, LPS mm, and triangles, three indices of points each, of the surface within the universe, if the
 ///   object has one;

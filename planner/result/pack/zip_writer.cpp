@@ -11,11 +11,12 @@
 namespace octotomy::planner {
 namespace {
 
-/// The date 1980-01-01 as MS-DOS encodes it, the earliest that a zip archive can state.
+/// 1980-01-01 in the encoding of MS-DOS: the earliest date of an entry in a zip archive.
 constexpr unsigned long earliest_date = 0x00210000;
-/// Coordinates hardly compress: higher levels take three times as long and save 2 %.
+/// Compression level. Higher ones take three times as long and save only 2 %, because coordinates hardly
+/// compress.
 constexpr int level = 3;
-/// minizip accepts a length of at most 32 bits per call.
+/// minizip's functions take lengths of at most 32 bits.
 constexpr std::size_t most_at_once = std::size_t{1} << 30;
 
 }  // namespace

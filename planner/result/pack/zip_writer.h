@@ -7,19 +7,19 @@
 
 namespace octotomy::planner {
 
-/// Writes a zip archive whose bytes depend only on the names and contents of its entries and their order: every
-/// entry has the date 1980-01-01 and no attributes.
+/// Writes a zip archive. Its bytes depend only on the names, contents and order of the entries: each entry
+/// has the date 1980-01-01 and no attributes.
 class ZipWriter {
  public:
-  /// Creates the file. Throws voxel::Error (Resource), which names it, if it cannot be created.
+  /// Creates the file. Throws voxel::Error (Resource), which names the file, if it cannot be created.
   explicit ZipWriter(const std::filesystem::path& path);
   ~ZipWriter();
   ZipWriter(const ZipWriter&) = delete;
   ZipWriter& operator=(const ZipWriter&) = delete;
 
-  /// Adds an entry, deflated. Throws voxel::Error (Resource) if the disk is full.
+  /// Adds a compressed entry. Throws voxel::Error (Resource) if the disk is full.
   void add(const std::string& name, std::string_view bytes);
-  /// Completes the archive; to be called once, last. Throws as add().
+  /// Completes the archive. Must be called once, after the last entry. Throws as add() does.
   void close();
 
  private:

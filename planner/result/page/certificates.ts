@@ -5,11 +5,11 @@ import {grouped, three_figures} from "../../browser/page/base/numbers";
 import {facts, gauge, list, pill, Row, section, soft, table, wide_row} from "./elements";
 import {Certificate, Finding, Result} from "./result";
 
-/// What a certificate states in words: reasons, whether the object is resolved, findings of the object.
+/// Remarks on a certificate: its reasons, whether the object is resolved, and the findings on the object.
 export const notes_of = (of: Certificate): string[] => [
   ...of.reasons, ...(of.resolved ? [] : [`not resolved: ${of.not_resolved_because ?? ""}`]), ...(of.findings ?? [])
 ];
-/// A difference beside the allowed difference, as numbers and as a bar.
+/// A difference, the allowed difference, and a bar with the share of one in the other.
 export function difference_of({difference_mm3, tolerance_mm3, verdict}: Certificate): Child {
   if (difference_mm3 === null || tolerance_mm3 === null) return "–";
   return [`${grouped(difference_mm3, 1)} / ${grouped(tolerance_mm3, 1)}`, gauge(difference_mm3, tolerance_mm3, verdict)];
@@ -55,7 +55,7 @@ export function certificates({objects, certificates}: Result): Child {
          "computed beforehand."),
       table(["Object", "Verdict", "#voxel, mm³", "#mesh, mm³", "#difference / allowed, mm³",
              "#symmetric difference / allowed, mm³", "#centroids / allowed, mm", "#Hausdorff 95, mm"], rows),
-      soft("Symmetric difference: volume of the voxels that only one kernel holds. Hausdorff 95: the larger of the two " +
+      soft("Symmetric difference: volume of the voxels that only one kernel's answer contains. Hausdorff 95: the larger of the two " +
            "directed 95th percentiles of distance between voxel faces and triangles."));
 }
 

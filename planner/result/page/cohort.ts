@@ -8,9 +8,9 @@ import {list, section, table} from "./elements";
 interface Spread { mean: number; sd: number; least: number; median: number; greatest: number }
 interface Subject {
   label: string;
-  reason: string;  // why there is no answer; empty: there is one
+  reason: string;  // why there is no answer; empty if there is one
   has_picture: boolean; is_doubtful: boolean;
-  audit: string;  // of a doubtful subject: the findings of its scans' audits
+  audit: string;  // findings of a doubtful subject's audits
 }
 export interface Cohort {
   kind: "cohort"; subjects: Subject[]; findings: string[];
@@ -26,7 +26,7 @@ const link = (label: string): Child => el("a", {href: `#${label}`}, label);
 const picture = ({label, has_picture}: Subject): Child => has_picture ?
     el("img", {loading: "lazy", width: 160, height: 160, src: `../sub-${label}/picture.png`, alt: `Subject ${label}`}) :
     el("span", {class: "none"}, "no picture");
-/// A plot that the program wrote as SVG, as an element that takes the page's colours.
+/// A plot as an element. The program wrote its SVG, which takes the colours of the page.
 const plot = (text: string): Child =>
     el("div", {class: "plot"}, new DOMParser().parseFromString(text, "image/svg+xml").documentElement);
 const reasons = (subjects: Subject[], reason: (one: Subject) => string): Child =>

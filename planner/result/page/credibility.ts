@@ -19,7 +19,7 @@ export interface Credibility {
 }
 
 const spaced = (key: string): string => key.replace(/_/g, " ");
-/// A value of any type in a line: "volume mm3 4.00, shift mm 0.0625".
+/// A value of any type as text on one line, such as "volume mm3 4.00, shift mm 0.0625".
 function words(value: Json): string {
   if (typeof value === "number") return Number.isInteger(value) ? String(value) : three_figures(value);
   if (Array.isArray(value)) return value.map(words).join(", ");
@@ -29,7 +29,7 @@ function words(value: Json): string {
 }
 const is_empty = (value: Json): boolean =>
     value === null || (typeof value === "object" && !Object.keys(value).length);
-/// "certificate, object skull, verdict PASS".
+/// A line for each piece of evidence, such as "certificate, object skull, verdict PASS".
 const lines_of = (all: Evidence[]): string[] => all.map(
     (one) => Object.entries(one).filter(([key, value]) => key !== "factor" && !is_empty(value))
                  .map(([key, value]) => key === "check" ? words(value) : `${spaced(key)} ${words(value)}`).join(", "));

@@ -17,7 +17,7 @@ function drawn(page: Page): Child {
   }
 }
 
-// On screens, dark or light as the system prefers; light on paper.
+// The page is dark or light on a screen, as the system prefers, and light on paper.
 const dark = matchMedia("screen and (prefers-color-scheme: dark)");
 const follow_theme = (): void => {
   document.documentElement.dataset.theme = dark.matches ? "dark" : "light";
@@ -27,7 +27,7 @@ addEventListener("beforeprint", () => {
   document.documentElement.dataset.theme = "light";
 });
 addEventListener("afterprint", follow_theme);
-// Keys that are pressed in a report do not reach the planner's page around it.
+// The planner's page around a report does not receive keys pressed in the report, so Escape is passed on.
 addEventListener("keydown", (event) => {
   if (event.key === "Escape" && parent !== window) parent.postMessage("Escape", "*");
 });

@@ -99,7 +99,7 @@ function contacts(one: Measurement): Child {
   ];
 }
 
-/// The share of the surface at each distance, as bars over a line of millimetres.
+/// A plot of signed distances: for each interval of distances, a bar with the share of the surfaces.
 function distance_plot({low_mm, width_mm, shares}: NonNullable<Measurement["histogram"]>): SVGElement {
   const width = 640, height = 150, below = 34, above = 12;
   const most = Math.max(1e-9, ...shares), high_mm = low_mm + width_mm * shares.length;
@@ -128,7 +128,7 @@ function distance_plot({low_mm, width_mm, shares}: NonNullable<Measurement["hist
 
 const point = (p: Vec3, digits: number): string => p.map((part) => grouped(part, digits)).join(", ");
 
-/// Two predictions of the same skin at its landmarks and over the face.
+/// The comparison of two predictions of the same skin: at landmarks, and over the whole face.
 function faces(one: Measurement): Child {
   const face = one.face;
   if (!face) return null;
@@ -174,7 +174,7 @@ function differences(one: Measurement): Child {
   ];
 }
 
-/// A plot of the area along the line, with both kernels' answers and the narrowest section.
+/// A plot of an airway's area along its centre line, by both kernels, with the narrowest section.
 function airway_plot(of: Airway): SVGElement {
   const width = 640, height = 180, left = 52, below = 34, above = 12;
   const most = Math.max(1, ...of.sections.map((section) => section.area_mm2));
@@ -241,7 +241,7 @@ function trials(one: Measurement): Child {
   const errors = one.errors;
   const sources = ["landmarks", "kerf", "segmentation", "seating"];
   return [
-    el("h3", {}, `How wrong it can be: ${one.id}`),
+    el("h3", {}, `Values under random errors: ${one.id}`),
     table(
         ["Number", "of", "#planned", "#landmarks", "#saw", "#segmentation", "#seating"],
         one.doubts!.map((of) => [
@@ -259,7 +259,7 @@ function trials(one: Measurement): Child {
   ];
 }
 
-/// Measurements that have a verdict of their own, such as those of printed parts.
+/// A table of the measurements that have a verdict, such as those of printed parts; null if there are none.
 function verdicts(all: Measurement[]): Child {
   const rows = all.filter((one) => one.verdict !== undefined).map((one) => [
     one.id, one.object, one.verdict ? pill(one.verdict) : "not measured", list(one.findings)
@@ -267,7 +267,7 @@ function verdicts(all: Measurement[]): Child {
   return rows.length ? table(["Proof", "Object", "Verdict", "Findings"], rows) : null;
 }
 
-/// Volumes at a glance, at the top of the report.
+/// The volumes of all measured objects in large type, at the top of the report; null if there are none.
 export function tiles(all: Measurement[]): Child {
   const each = all.flatMap(({id, object, volume_mm3}) => volume_mm3 === undefined ? [] : [
     el("div", {}, el("b", {}, `${grouped(volume_mm3 / 1000, 2)} cm³`), el("span", {}, `${id} (${object})`))
@@ -275,7 +275,8 @@ export function tiles(all: Measurement[]): Child {
   return each.length ? el("div", {class: "tiles"}, each) : null;
 }
 
-/// The half-width of each number by source, as bars whose lengths are comparable within a unit.
+/// A plot of the half-widths of several numbers. Lengths of bars can be compared between numbers of the same
+/// unit.
 function doubt_plot(all: NonNullable<Measurement["doubts"]>): Child {
   const shown = all.filter((of) => of.half_width > 0);
   if (!shown.length) return null;
@@ -294,7 +295,7 @@ function doubt_plot(all: NonNullable<Measurement["doubts"]>): Child {
       ]));
 }
 
-/// The tables and plots of one measurement; null for a kind without them.
+/// The tables and plots of a measurement; null if its kind has none.
 export function measurement(one: Measurement): Child {
   if (one.contacts !== undefined) return contacts(one);
   if (one.airway !== undefined) return airway(one);

@@ -11,7 +11,7 @@ const signed = (mm: number): string =>
 const along = (by: Displacement|null): string[] =>
     by ? [signed(by.forward_mm), signed(by.up_mm), signed(by.left_mm)] : ["", "", ""];
 
-/// A row for each moved piece, for each landmark on it and for each point with a prescribed target.
+/// A table of motions: for each moved piece, each landmark on a piece, and each point with a target.
 export function movements({movements, movement_words}: Result): Child {
   const rows = movements.flatMap((moved): Row[] => [
     {lead: [el("b", {}, moved.object), ...along(moved.centroid), moved.words]},
@@ -28,7 +28,7 @@ export function movements({movements, movement_words}: Result): Child {
       soft(movement_words, " A piece's own row is its centroid; landmarks are those that its bone is nearest to."));
 }
 
-/// A row for each landmark of the skin that moves by a ratio of the bone's motion.
+/// A table of the landmarks of the skin, which move by a ratio of the bone's motion.
 export function ratios({objects}: Result): Child {
   const predictions = objects.filter((one) => one.kind === "landmark_ratios" && one.details?.landmarks);
   if (!predictions.length) return null;

@@ -11,7 +11,8 @@ const data_of = (png: string): string => `data:image/png;base64,${png}`;
 export const png_figure = (png: string, alt: string, caption: string): HTMLElement =>
     el("figure", {}, el("img", {alt, src: data_of(png)}), el("figcaption", {}, caption));
 
-/// "35° to the patient's left, 15° above" of "35,15"; a view's name is its title.
+/// The title of a view: its name, or its angles in words, such as "35° to the patient's left, 15° above" for
+/// "35,15".
 function view_title(view: string): string {
   const [azimuth, elevation] = view.split(",");
   if (!azimuth || !elevation) return view;
@@ -20,10 +21,10 @@ function view_title(view: string): string {
 }
 
 interface Shown {
-  before?: string;     // a word in bold before the view's title
-  says: string;  // text before the title for readers who cannot see the picture
-  outlined?: boolean;  // whether to draw the outlines of mask regions
-  letters?: number;    // height of letters in the picture's pixels
+  before?: string;     // a word in bold type in front of the title
+  says: string;  // text for readers who cannot see the picture
+  outlined?: boolean;  // draws the outlines of masks' regions
+  letters?: number;    // height of letters, in pixels of the picture
   marks_mm?: Vec3[];
 }
 function figure(picture: Picture, {before, says, outlined, letters = 13, marks_mm = []}: Shown): HTMLElement {
@@ -68,7 +69,7 @@ const names_of = (group: PictureGroup): string => group.objects.map((object) => 
 const legend = (group: PictureGroup): HTMLElement =>
     el("div", {class: "legend"},
        group.objects.map((object) => el("span", {}, el("i", {style: `background:${object.colour}`}), object.name)));
-/// The colour scale of signed distances, with labels at its ends.
+/// The scale of the colours of signed distances, with the distances at its ends.
 export const colour_scale = (most_mm: number, colours: string[]): HTMLElement => el(
     "div", {class: "legend"}, `${three_figures(-most_mm)} mm, inside`,
     el("span", {class: "scale", style: `background:linear-gradient(90deg,${colours.join()})`}),
@@ -77,14 +78,15 @@ export const colour_scale = (most_mm: number, colours: string[]): HTMLElement =>
 function group_section(group: PictureGroup): Child {
   const {most_mm} = group;
   const is_scale = most_mm !== null;
-  // A picture of a row of four is shown at half its size.
+  // A picture in a row of four appears at half its size, so its letters are larger.
   const shown = {says: names_of(group), letters: is_scale ? 13 : 24, marks_mm: group.marks_mm};
   return section(
       group.title, is_scale ? colour_scale(most_mm, group.colours) : legend(group),
       el("div", {class: `pictures ${is_scale ? "two" : "four"}`}, group.pictures.map((one) => figure(one, shown))));
 }
 
-/// Pictures of one view before and after are side by side; the others form a grid of views.
+/// Groups of pictures. If there is a group before the operation, its views stand beside those after the
+/// operation.
 export function pictures(groups: PictureGroup[]): Child {
   const before = groups.find((group) => group.name === "before");
   const after = groups.find((group) => group.name === "after");

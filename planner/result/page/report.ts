@@ -43,7 +43,7 @@ function exports_table({result, contents}: Report): Child {
   return rows.length ? section("Exports", table(["File", "Object", "Content", "#kB"], rows)) : null;
 }
 
-/// Shows the plan as JSON, which the program can replay.
+/// The plan as JSON, which the program can replay.
 function plan_section({result: {plan}, plan_text}: Report): Child {
   const count = Array.isArray(plan.steps) ? plan.steps.length : Number(plan.steps);
   return section(

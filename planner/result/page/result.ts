@@ -11,7 +11,7 @@ export interface Finding { check: string; verdict: Verdict; detail: string }
 export interface Interval { value: number; half_width: Maybe<number> }
 export interface Counts {
   PASS: number; WARN: number; FAIL: number; not_resolved: number; pass_not_resolved: number; without_certificate: number;
-  measured?: {PASS: number; WARN: number; FAIL: number};  // measurements by their own verdict; of a report alone
+  measured?: {PASS: number; WARN: number; FAIL: number};  // verdicts of measurements; only in reports
 }
 
 export interface Scan {
@@ -66,12 +66,12 @@ export interface Osteotomy {
   number: number; object: string; between: string[]; contact_voxels_mm2: number; contact_mesh_mm2: Maybe<number>;
   tolerance_mm2: Maybe<number>; verdict: Maybe<string>; finding?: string;
 }
-/// Two predictions of the same skin, point by point.
+/// The difference between two predictions of the same skin.
 export interface FaceDifference {
   skin: string; mean_mm: number; largest_mm: number; largest_at_mm: Vec3; area_mm2: number; definition: string;
   landmarks: {name: string; at_mm: Vec3; a_moved_mm: Vec3; b_moved_mm: Vec3; difference_mm: number}[];
 }
-/// The landmarks of a landmark_ratios step, among its object's details.
+/// A landmark of a landmark_ratios step, in the details of its object.
 export interface RatioLandmark extends Displacement {
   name: string; follows: string; at_mm: Vec3; ratio: Maybe<number>; ratio_up: Maybe<number>; source: string;
   half_width_mm: Maybe<number>;
@@ -79,12 +79,12 @@ export interface RatioLandmark extends Displacement {
 export interface DoubtfulNumber {
   what: string; of: string; value: number; unit: string; half_width: number; sources: {name: string; half_width: number}[];
 }
-/// The distances of one surface's points to another surface.
+/// Distances from the points of one surface to another surface.
 export interface OneWay {
   mean_mm: number; p95_mm: number; max_mm: number; signed_mean_mm: number;
   bands: {tolerance_mm: number; share_within: number}[];
 }
-/// A measurement has the members of its kind. The kind is identified by the first member listed here.
+/// A measurement. Its kind is that of the first optional member in this list that it has.
 export interface Measurement {
   id: string; object: string; to: string; finding?: string; findings?: string[];
   volume_mm3?: number; voxel: {area_mm2: Maybe<number>}; mesh: Maybe<{volume_mm3: number}>; area_mm2: Maybe<number>;
@@ -118,16 +118,16 @@ export interface Result {
 
 export interface Picture {
   view: string; right: Vec3; up: Vec3; centre_mm: Vec2; width_mm: number; size_px: number; png: string;
-  outlines_mm: Vec2[][];  // of the plan's regions that were drawn in this view
+  outlines_mm: Vec2[][];  // outlines of the plan's regions that belong to this view
 }
 export interface PictureGroup {
   name: string; title: string; objects: {name: string; colour: string}[]; pictures: Picture[]; marks_mm: Vec3[];
-  most_mm: number|null;  // at the ends of the colours of signed distances; null: colours identify the objects
-  colours: string[];  // of these distances, from inside to outside
+  most_mm: number|null;  // distance at the ends of the colour scale; null: colours identify objects
+  colours: string[];  // of the colour scale, from inside to outside
 }
 export interface Report {
   kind: "report"; result: Result; patients: string[]; counts: Counts; pictures: PictureGroup[];
-  cephalogram: string;  // PNG; empty where there is none
-  contents: string[];   // of the exported files, for people
-  plan_text: string;    // as its author wrote it
+  cephalogram: string;  // PNG in base64; empty if there is none
+  contents: string[];   // words on each exported file, for readers
+  plan_text: string;    // text of the plan as its author wrote it
 }

@@ -21,7 +21,7 @@ export interface Verification {
   }|null;
 }
 
-/// A difference as a share of its tolerance; infinite if there is a difference but the tolerance is zero.
+/// A difference as a share of its tolerance. Infinite if the tolerance is zero and the difference is not.
 interface Share { value: number; verdict: Verdict }
 const rank = {PASS: 0, WARN: 1, FAIL: 2};
 const share_text = (share: number|null): string =>
@@ -32,7 +32,7 @@ const shares_of_one = (of: Certificate): (Share&{quantity: string})[] =>
     }]);
 const worst_of = (of: Certificate): number => Math.max(0, ...shares_of_one(of).map((share) => share.value));
 
-/// Shares by quantity, over all certificates of objects that voxels resolve; the exact tier is a quantity of its own.
+/// The shares of all certificates of resolved objects, by quantity. The exact tier counts as one quantity.
 function shares_of(certificates: Certificate[]): [string, Share[]][] {
   const shares = new Map<string, Share[]>();
   const add = (quantity: string, share: Share): void => {
@@ -47,8 +47,8 @@ function shares_of(certificates: Certificate[]): [string, Share[]][] {
   return [...shares].sort(([a], [b]) => a < b ? -1 : 1);
 }
 
-/// A histogram of shares on a logarithmic scale from a thousandth to ten; smaller and larger ones are counted at the
-/// ends.
+/// A histogram of shares on a logarithmic scale from 0.001 to 10. Shares beyond an end are counted at that
+/// end.
 function histogram(shares: Share[]): SVGElement {
   const bins = 64, low = -3, high = 1, width = 640, height = 34;
   const counts: number[] = new Array(bins).fill(0);
@@ -80,7 +80,7 @@ function quantities(certificates: Certificate[]): Child {
   return rows.length ? section("Observed against allowed", table(
       ["Quantity", "difference / allowed, from 0.001 to 10; green: all that is allowed, red: a failure", "#compared",
        "#median", "#99 %", "#largest", ""], rows),
-      soft("Bars are as tall as the root of their number. Objects that voxels do not resolve are left out.")) : null;
+      soft("The height of a bar is the square root of its count. Objects that voxels do not resolve are left out.")) : null;
 }
 
 const worst_pictures = ({worst}: Verification): Child => worst && section(
@@ -90,7 +90,7 @@ const worst_pictures = ({worst}: Verification): Child => worst && section(
     list(worst.reasons), colour_scale(worst.most_mm, worst.colours),
     el("div", {class: "pictures four"}, worst.pictures.map((one) => png_figure(one.png, one.view, one.view))));
 
-/// All certificates if there are few, else those with the largest shares of their tolerances.
+/// Certificates as tables: all if they are few, otherwise those with the largest shares of a tolerance.
 function certificates(all: Certificate[]): Child {
   const most_shown = 30;
   const is_few = all.length <= most_shown;
@@ -112,7 +112,7 @@ function value_text(value: Json): string {
   if (typeof value === "number") return Number.isInteger(value) ? grouped(value) : three_figures(value);
   return typeof value === "object" ? Object.values(value).map(value_text).join(", ") : value;
 }
-/// A suite's table: its entries have the same keys, and are a row each.
+/// A table of a suite, with a row for each entry. The entries must all have the same keys.
 function suite_table(answer: Verification["answer"], key: string, title: string): Child {
   const entries = answer[key] as {[column: string]: Json}[]|undefined;
   if (!Array.isArray(entries) || !entries[0] || typeof entries[0] !== "object") return null;
@@ -127,7 +127,7 @@ const suites = {
 };
 
 function not_covered({counts, answer, not_covered: lines}: Verification): Child {
-  // The code that made both answers and their shared inputs, from the certificates.
+  // Inputs and code that both answers of a certificate share, with the number of such certificates.
   const shared = new Map<string, number>();
   for (const entry of (answer.certificates ?? []).flatMap((of) => [...of.shared_makers, ...of.shared_values]))
     shared.set(entry, (shared.get(entry) ?? 0) + 1);
@@ -138,7 +138,7 @@ function not_covered({counts, answer, not_covered: lines}: Verification): Child 
     ...(answer.not_recomputed ?? []).map((gap) => `${gap.where}: ${gap.why}`),
     ...[...shared].sort(([a], [b]) => a < b ? -1 : 1).map(
         ([entry, count]) => `both answers of ${plural(count, "certificate")} share ${entry}`),
-    "parts that every certificate takes from one place: how scans are read, which whole samples a window holds, plans' names " +
+    "parts that all certificates share and so cannot check: reading scans, choosing a window's whole samples, plans' names " +
         "and motions' matrices, convert::voxelise, which decides which points lie inside a mesh, and whether a window is the " +
         "tissue that it is meant for"
   ]));

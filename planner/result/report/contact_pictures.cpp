@@ -11,10 +11,10 @@ namespace octotomy::planner {
 namespace {
 
 constexpr int contact_picture_px = 480;
-/// The width of bone shown around the contacts, and the height to which it may rise above them.
+/// Bone within `about_mm` of the contacts is drawn, up to `above_mm` above the highest one.
 constexpr double about_mm = 20.0, above_mm = 3.0;
 
-/// The axis-aligned view whose direction is most opposite to `normal`.
+/// The axis-aligned view that looks most directly against `normal`.
 std::string view_onto(const glm::dvec3& normal, const glm::dmat3& lps_from_head) {
   std::string best;
   double least = std::numeric_limits<double>::infinity();
@@ -24,7 +24,7 @@ std::string view_onto(const glm::dvec3& normal, const glm::dmat3& lps_from_head)
   return best;
 }
 
-/// The part of the object around the contacts, without parts that would hide them.
+/// The part of an object near its contacts, without bone above them that would hide them.
 voxel::Octree part_about(const voxel::Octree& octree, const std::vector<glm::dvec3>& places_mm,
                          const glm::dvec3& towards_reader) {
   voxel::Box box{places_mm.front(), places_mm.front()};

@@ -3,11 +3,12 @@
 
 #include "planner/result/report/report.h"
 
-// Pictures of contacts between objects.
+// Pictures of the contacts between two objects.
 namespace octotomy::planner {
 
-/// Adds a group of pictures for each contact map of `result.measurements` that has none yet: the surface
-/// coloured by its distance to the other one, seen towards the contacts, which are numbered.
+/// Adds a group of pictures for each contact map in `result.measurements` that has none yet. It shows the
+/// first object, seen towards its contacts, which are numbered. Colours are the distance to the second
+/// object.
 void add_contact_pictures(Result& result);
 
 }  // namespace octotomy::planner

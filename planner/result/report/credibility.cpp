@@ -19,8 +19,8 @@ constexpr const char* to_state = "to be stated by the user of the numbers: the r
 
 using CertificatesByObject = std::map<std::string, CertificateRecord>;
 
-/// A number of the result, with the run's evidence for it. Evidence is an object whose keys depend on its
-/// `check`.
+/// A number of the result, with the evidence that the run has for it. The keys of a piece of evidence depend
+/// on its `check`.
 struct SupportedNumber {
   std::string step, quantity;
   Json value;
@@ -44,7 +44,7 @@ struct SupportedNumber {
     if (!certificate.resolved)
       gap("'" + object + "' is not resolved by its voxels: its certificate proves little");
   }
-  /// Adds the interval, if the run reports one.
+  /// Adds the number's interval as evidence, or a gap if the run reports none.
   void by_half_width(const std::optional<double>& half_width,
                      const std::optional<std::vector<Doubt>>& sources = {},
                      const std::optional<double>& coverage = {}) {
@@ -58,7 +58,8 @@ struct SupportedNumber {
                {"sources", names},
                {"factor", "calculation verification: discretization error"}});
   }
-  /// Adds the other kernel's answer, which either agrees within the half-width or contradicts.
+  /// Adds the other kernel's answer. It supports the number if both differ by at most the half-width;
+  /// otherwise it contradicts it.
   void by_other_kernel(const std::optional<double>& answer, const std::optional<double>& half_width) {
     if (!answer || !half_width) return gap("one kernel alone answered");
     const double difference = std::abs(value.get<double>() - *answer);
@@ -67,7 +68,7 @@ struct SupportedNumber {
                                     {"difference", difference},
                                     {"factor", "calculation verification: discretization error"}});
   }
-  /// Adds the effect of the stated errors on the number, from trials.
+  /// Adds the half-width from trials with the stated errors.
   void by_trials(const MeasuredTrials& trials, const DoubtfulNumber& doubt) {
     std::vector<std::string> names;
     for (const TrialSource& source : doubt.sources) names.push_back(source.name);
@@ -166,7 +167,7 @@ constexpr auto members_of(const Credibility&) {
       member("numbers", &C::numbers), member("unsupported", &C::unsupported));
 }
 
-/// Collects the numbers of one result.
+/// Collects the numbers of a result, with their evidence.
 class Numbers {
  public:
   explicit Numbers(const ResultRecord& result) : result_(result) {
@@ -178,7 +179,7 @@ class Numbers {
   std::vector<SupportedNumber> numbers() && { return std::move(numbers_); }
 
  private:
-  /// A reference that is valid until the next number.
+  /// Adds a number. The reference is valid until the next number is added.
   SupportedNumber& number(const std::string& step, const std::string& quantity, Json value,
                           const std::string& unit) {
     SupportedNumber& made = numbers_.emplace_back();
@@ -238,7 +239,7 @@ class Numbers {
     }
   }
 
-  /// Both kernels compute the distance of a contact, only one the area.
+  /// Adds the numbers of a contact map. Both kernels compute distances; only the mesh kernel computes areas.
   void add(const std::string& id, const MeasuredContacts& map) {
     const std::string pair = map.object + " and " + map.against;
     const auto by_certificates = [&](SupportedNumber& made) {
@@ -250,8 +251,8 @@ class Numbers {
       SupportedNumber& made = number(id, "nearest at contact " + std::to_string(++place) + " of " + pair,
                                      contact.nearest_mm, "mm");
       made.by_half_width(contact.half_width_mm);
-      // Areas come from meshes only. Without a mesh the voxel kernel's distance is the number itself and no
-      // evidence for it.
+      // Without an area there is no mesh. The number is then the voxel kernel's distance, which is no
+      // evidence for itself.
       made.by_other_kernel(map.area_mm2 ? contact.voxel_nearest_mm : std::nullopt, contact.half_width_mm);
       by_certificates(made);
     }
@@ -279,7 +280,8 @@ class Numbers {
     volume.by_certificate(certificates_, one.object);
     SupportedNumber& narrowest = number(id, "narrowest section of " + one.object, least.area_mm2, "mm2");
     narrowest.by_half_width(least.half_width_mm2, least.half_width_terms);
-    // The reported area is that of the mesh if there is one; it must not count as evidence for itself.
+    // If there is an area by the mesh, it is the number itself, so the other kernel's area is that of the
+    // voxels.
     narrowest.by_other_kernel(least.mesh_mm2 ? std::optional(least.voxel_mm2) : std::nullopt,
                               least.half_width_mm2);
     narrowest.by_certificate(certificates_, one.object);
@@ -297,7 +299,8 @@ class Numbers {
     }
   }
 
-  /// Movements are the plan's own motions, which both kernels applied in the pieces' certificates.
+  /// Adds the movements of pieces. They are motions of the plan, which both kernels applied in the
+  /// certificates.
   void add_movements() {
     for (const ObjectMovement& moved : result_.movements) {
       const auto add = [&](const char* what, double value, const char* unit) {
@@ -316,7 +319,7 @@ class Numbers {
     }
   }
 
-  /// The only evidence for values computed from landmarks is the placement of the landmarks.
+  /// Adds cephalometric values. Their only evidence is how accurately landmarks are placed.
   void add(const CephalometryTable& table) {
     for (const CephalometryRow& row : table.measures)
       for (const auto& [when, value] : {std::pair("before", &row.before), std::pair("after", &row.after)}) {
@@ -351,7 +354,7 @@ std::vector<Json> certificate_evidence(const ResultRecord& result) {
   return evidence;
 }
 
-/// The audit of the scans, and the errors of other inputs as stated for trials.
+/// Evidence for the inputs: the audits of the scans, and the errors of other inputs that trials state.
 std::vector<Json> input_evidence(const ResultRecord& result) {
   std::vector<Json> evidence;
   for (const ScanOfResult& scan : result.scans)

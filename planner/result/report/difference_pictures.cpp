@@ -13,7 +13,7 @@ namespace {
 
 constexpr int difference_picture_px = 420;
 
-/// Distances to the solid at all voxels between which shading at the boundary may interpolate; 0 elsewhere.
+/// The signed distance to a solid at all voxels that shading at the boundary may use; 0 elsewhere.
 voxel::SurfaceScalar distances_to(const brep::Solid& solid, const voxel::Octree& octree) {
   voxel::SurfaceScalar scalar{octree.universe(), voxel::grown(voxel::range_of(octree), 2), {}, 1.0};
   const glm::ivec3 dims = scalar.range.dims();

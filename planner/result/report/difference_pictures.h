@@ -6,16 +6,16 @@
 
 namespace octotomy::planner {
 
-/// The voxel kernel's surface coloured by its distance outside (orange) or inside (blue) the mesh kernel's
-/// surface, from four sides, with the distance at the ends of the colours.
+/// Pictures of the voxel kernel's surface from four sides. Colours show its distance to the mesh kernel's
+/// surface: orange outside, blue inside. `most_mm` is the distance at the ends of the colours.
 struct DifferencePictures {
   PictureGroup group;
   double most_mm = 1.0;
 };
 
-/// Preconditions: neither answer is empty. The colours end at the largest distance of a voxel at the
-/// boundary, at least half a voxel's diagonal. Cost: a search in the mesh for every voxel at the boundary; a
-/// float for each voxel of the object's extents.
+/// Draws the difference of both answers, neither of which may be empty. The ends of the colours are the
+/// largest distance of a voxel at the boundary, but at least half a voxel's diagonal. Cost: a search in the
+/// mesh for each voxel at the boundary. Memory: a float for each voxel of the object's box.
 DifferencePictures difference_pictures(const verify::Contested& contested);
 
 }  // namespace octotomy::planner

@@ -9,8 +9,7 @@
 namespace octotomy::planner {
 
 std::string drawn_page(const std::string& title, const Json& data, const std::string& where_else) {
-  // Within a script's element only "<" could end it. In JSON it stands in strings alone, where it may be
-  // escaped.
+  // Only "<" could end the script's element. In JSON it occurs only in strings, where it can be escaped.
   std::string text;
   for (const char symbol : json_text(data))
     if (symbol == '<')

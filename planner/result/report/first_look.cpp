@@ -17,7 +17,7 @@ namespace {
 
 constexpr int look_picture_px = 400;
 
-/// The entry of a scan in a plan.
+/// A scan as a plan lists it, with the options for reading it.
 Json scan_entry(const std::filesystem::path& scan, const voxel::ReadOptions& read) {
   Json entry{{"path", voxel::absolute_of(scan).string()}};
   if (!read.series.empty()) entry["series"] = read.series;
@@ -35,13 +35,13 @@ Json scan_entry(const std::filesystem::path& scan, const voxel::ReadOptions& rea
 }
 
 using Tell = std::function<void(const std::string&, double)>;
-/// Maps progress of a part to the range `from` to `to` of the whole.
+/// A function that reports the progress of a part as progress of the whole, from `from` to `to`.
 Tell part_of(const Tell& tell, double from, double to) {
   if (!tell) return tell;
   return [=](const std::string& doing, double fraction) { tell(doing, from + (to - from) * fraction); };
 }
 
-/// Draws the parts of the bone, and both objects in all views.
+/// Draws the bone and the skin in all views, and lists the parts of the bone.
 void draw_all(Result& result) {
   {
     const Stopwatch watch(result.evaluation.timings, "components");
@@ -106,7 +106,7 @@ Result first_look(const std::filesystem::path& scan, const LookOptions& options)
               {{"id", "bone_size"}, {"do", "measure"}, {"object", "bone"}},
               {{"id", "skin_size"}, {"do", "measure"}, {"object", "skin"}}}}};
   result.plan = parse_plan(json_text(plan, 2), std::filesystem::current_path());
-  // Sets the path directly, because a file name need not be UTF-8, which JSON requires.
+  // Set directly, not as JSON, because a file's name need not be UTF-8.
   result.plan.scans.at("scan").path = scan;
 
   constexpr double share_of_voxels = 0.15;

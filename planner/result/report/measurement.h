@@ -8,7 +8,7 @@
 
 namespace octotomy::planner {
 
-/// One of a plan's measurements; it has the parts that its step measured.
+/// A measurement of a plan. Only the members that its step computes have values.
 struct Measurement {
   std::string id;  ///< of the step
   std::optional<MeasuredSize> size;
@@ -24,7 +24,7 @@ struct Measurement {
 
 void read_value(const Json& json, Measurement& measurement);
 
-/// Reads measurements_json(), or the `measurements` of a result.
+/// Reads the JSON of measurements_json(), or the `measurements` of a result.
 std::vector<Measurement> measurements_of(const Json& measurements);
 
 }  // namespace octotomy::planner

@@ -26,8 +26,8 @@ std::vector<std::string> parts_of_text(const std::string& text, char separator) 
   return parts;
 }
 
-/// A DICOM name in readable form: family name, given name and middle name (PS3.5, 6.2.1) of the first of its
-/// alphabetic, ideographic and phonetic groups that is not empty.
+/// A DICOM name in readable form. Uses the first of its alphabetic, ideographic and phonetic groups (PS3.5,
+/// 6.2.1) that is not empty: family name, given name and middle name.
 std::string readable_name(const std::string& name) {
   for (const std::string& group : parts_of_text(name, '=')) {
     std::vector<std::string> components = parts_of_text(group, '^');
@@ -41,7 +41,7 @@ std::string readable_name(const std::string& name) {
   return "";
 }
 
-/// "1970-01-31" of "19700131"; empty for any other text.
+/// A DICOM date in readable form, "1970-01-31" for "19700131"; empty if the text is no date.
 std::string readable_date(const std::string& date) {
   const bool is_date = date.size() == 8 && std::all_of(date.begin(), date.end(), [](char symbol) {
                          return symbol >= '0' && symbol <= '9';
@@ -53,7 +53,7 @@ std::string readable_sex(const std::string& sex) {
   return sex == "F" ? "female" : sex == "M" ? "male" : sex == "O" ? "other sex" : "";
 }
 
-/// Replaces a patient's quoted values in a text.
+/// Replaces values of a patient that a text quotes.
 void hide_quoted(const std::vector<std::string>& values, std::string& text) {
   for (const std::string& value : values) {
     const std::string quoted = "'" + value + "'", hidden = "(left out)";
@@ -92,7 +92,7 @@ std::string patient_text(const voxel::Identity& identity) {
 }
 
 std::vector<std::string> patient_lines(const Evaluation& evaluation) {
-  std::vector<std::pair<std::string, std::string>> found;  // the patient, and the scans' names
+  std::vector<std::pair<std::string, std::string>> found;  // patients and names of their scans
   for (const ScanRecord& scan : evaluation.scans) {
     if (!scan.made_by.empty()) continue;
     std::string patient = patient_text(scan.identity);
@@ -112,8 +112,8 @@ std::vector<std::string> patient_lines(const Evaluation& evaluation) {
 }
 
 void leave_out_patients(Result& result) {
-  // Findings that compare identities quote files that the result does not store, so their whole text is
-  // replaced.
+  // Takes the place of the detail of a finding that compares identities. The detail quotes files whose
+  // identities the result does not store.
   constexpr const char* left_out = "the files' statements differ; left out as requested";
   std::vector<std::string> values;
   for (ScanRecord& scan : result.evaluation.scans) {

@@ -37,7 +37,8 @@ std::optional<fs::path> on_path(const std::string& name) {
 
 using Words = std::vector<std::string>;
 
-/// The command line for printing; empty if no printer is installed. `profile`: a folder for Chromium's files.
+/// The command to print a page as PDF. Empty if no suitable program is installed. `profile` is a folder for
+/// Chromium's own files.
 Words printing(const fs::path& page, const fs::path& pdf, const fs::path& profile) {
   for (const char* name : {"chromium", "chromium-browser", "google-chrome"})
     if (const auto chromium = on_path(name)) {
@@ -47,7 +48,7 @@ Words printing(const fs::path& page, const fs::path& pdf, const fs::path& profil
                   "--no-pdf-header-footer",
                   "--user-data-dir=" + profile.string(),
                   "--print-to-pdf=" + pdf.string()};
-      // Chromium's own sandbox does not work for the super-user.
+      // Chromium's sandbox does not work if the user is root.
       if (::geteuid() == 0) words.emplace_back("--no-sandbox");
       words.push_back("file://" + page.string());
       return words;
@@ -55,7 +56,7 @@ Words printing(const fs::path& page, const fs::path& pdf, const fs::path& profil
   return {};
 }
 
-/// Runs the program and returns its exit status; -1 where it cannot be started or crashes.
+/// Runs a program and returns its exit status; -1 if it cannot be started or crashes.
 int run(const Words& words, const std::stop_token& stop) {
   pid_t child = -1;
   try {

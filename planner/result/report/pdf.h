@@ -7,15 +7,15 @@
 
 namespace octotomy::planner {
 
-/// The line after the end of a PDF whose pages were made without names (leave_out_names()).
+/// A line that is appended to a PDF whose pages name nobody (leave_out_names()).
 inline constexpr std::string_view anonymous_pdf_mark = "%octotomy: names nobody\n";
 
-/// Throws std::runtime_error, naming the program to install, if no Chromium is on the PATH.
+/// Throws std::runtime_error, which names the program to install, if there is no Chromium on the PATH.
 void need_pdf_printer();
 
-/// Prints a page of this program, which needs no network, as an A4 PDF with Chromium, in a process of its own that a
-/// stop ends. Chromium runs the script that draws the page. Throws as need_pdf_printer() does; voxel::Error
-/// (Resource) if the program fails; Stopped. Cost: seconds.
+/// Prints a page of this program as an A4 PDF. Chromium does this in another process, which a stop ends; it
+/// runs the script that draws the page, and needs no network. Throws as need_pdf_printer() does; voxel::Error
+/// (Resource) if Chromium fails; Stopped. Cost: some seconds.
 void print_pdf(const std::filesystem::path& page, const std::filesystem::path& pdf,
                const std::stop_token& stop = {});
 

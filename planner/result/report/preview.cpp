@@ -18,7 +18,7 @@ namespace {
 
 constexpr glm::vec3 accent{0.20f, 0.56f, 0.72f};
 constexpr glm::vec3 mark{0.87f, 0.30f, 0.20f};
-constexpr double ball_mm = 2.0;  ///< radius of a landmark's ball
+constexpr double ball_mm = 2.0;  ///< radius of the ball that shows a landmark
 
 const Step& step_of(const Plan& plan, const std::string& id) {
   std::vector<std::string> known;
@@ -33,7 +33,7 @@ bool is_piece(const Step& step) {
   return step.action.operation().makes == Makes::Object && !step.action.operation().is_tool;
 }
 
-/// The first piece on which a step depends; empty if there is none.
+/// The id of the first piece from which a step's result is made; empty if there is none.
 std::string origin_of(const Plan& plan, const std::string& id) {
   const std::set<std::string> needed = needed_for(plan, {id});
   for (const Step& step : plan.steps)
@@ -41,7 +41,8 @@ std::string origin_of(const Plan& plan, const std::string& id) {
   return "";
 }
 
-/// The piece that a mask will cut: the first that is combined with it, or the last one before it.
+/// The id of the piece that a mask cuts: the first piece that a later step combines with it, or else the last
+/// piece before the mask.
 std::string cut_by(const Plan& plan, const std::string& mask) {
   std::string last;
   bool is_before = true;
@@ -56,7 +57,7 @@ std::string cut_by(const Plan& plan, const std::string& mask) {
   return last;
 }
 
-/// The visible objects: those in colour, and the context.
+/// The visible objects: those in colour, and the piece that is drawn pale around them.
 struct Seen {
   std::vector<std::string> objects;
   std::string context;
@@ -85,7 +86,8 @@ voxel::DrawnObject part(const Object& object, const voxel::Octree& octree, const
   return part;
 }
 
-/// The pieces in colour, and the context without these pieces and without their originals before a motion.
+/// The objects to draw: those in colour, and the context without them. The context also lacks them at their
+/// positions before a motion.
 std::vector<voxel::DrawnObject> scene_of(const Plan& plan, const Step& step, const Seen& seen,
                                          const Evaluation& evaluation) {
   std::vector<voxel::DrawnObject> scene;
@@ -120,7 +122,7 @@ std::vector<voxel::DrawnObject> scene_of(const Plan& plan, const Step& step, con
   return scene;
 }
 
-/// Slices of the scan before a step, with the samples that the step changed in red.
+/// A picture of the scan before a step, with the samples that the step changes in red.
 Preview changes(const Plan& plan, const Step& step, EvaluateOptions options) {
   options.wanted = {step.id};
   options.keep_scans = true;

@@ -34,7 +34,7 @@ using voxel::Octree;
 
 constexpr const char* scans_prefix = "octotomy-random-";
 
-/// The system's folder for temporary files, after removing leftovers of killed runs.
+/// The system's folder for temporary files. First removes leftovers of killed runs from it.
 std::filesystem::path cleared_temporary_folder() {
   std::filesystem::path folder = std::filesystem::temp_directory_path();
   voxel::remove_abandoned(folder, scans_prefix);
@@ -45,7 +45,7 @@ std::string letter(int leaf) {
   return std::string(1, static_cast<char>('a' + leaf));
 }
 
-/// A question about sets of voxels.
+/// A question of the exact tiers: sets of voxels, and an expression of them.
 struct ExactQuestion {
   RandomTier tier = RandomTier::Exact;
   verify::ExpressionTree tree;
@@ -58,23 +58,24 @@ struct ExactQuestion {
     names.object = [this](std::string_view name) { return Expression(set(name)); };
     return voxel::parse_expression(text(tree, letter), names);
   }
-  /// Whether the result is neither empty nor equal to one of its sets.
+  /// Whether the result is neither empty nor equal to one of the sets.
   bool has_substance() const {
     const Octree result = voxel::combine(sets.front().universe(), expression());
     return !result.is_empty() && std::find(sets.begin(), sets.end(), result) == sets.end();
   }
 };
 
-/// Sets of one size: their share of the questions, the universe's depth, their side, and the most leaves.
+/// Sets of one size: in how many per cent of the questions they occur, the universe's depth, the side of a
+/// set in voxels, and the largest number of sets in an expression.
 struct SetSize {
   int per_cent, depth, side, leaves;
 };
 using SetSizes = std::array<SetSize, 5>;
-// Large sets are rarer and have fewer leaves, because the number of triangles grows with the square of the
-// side.
+// Large sets are rarer and fewer in an expression, because the number of triangles grows with the square of
+// the side.
 constexpr SetSizes sizes_in_general{
     {{40, 3, 8, 7}, {25, 4, 14, 6}, {20, 5, 24, 4}, {10, 5, 32, 3}, {5, 6, 48, 3}}};
-// Eight voxels suffice for every way in which faces, edges and corners of two sets can meet.
+// In sets of two voxels along a side, faces, edges and corners can already meet in every way.
 constexpr SetSizes sizes_as_given{{{40, 2, 2, 4}, {30, 2, 2, 3}, {22, 2, 2, 2}, {6, 2, 3, 3}, {2, 2, 4, 2}}};
 
 ExactQuestion exact_question(std::uint64_t seed, RandomTier tier) {
@@ -100,7 +101,7 @@ ExactQuestion exact_question(std::uint64_t seed, RandomTier tier) {
   return question;
 }
 
-/// The certificate of a question. A kernel that refuses a question it must answer counts as a FAIL.
+/// The certificate of a question. It is a FAIL if a kernel refuses to answer although it must.
 Certificate answer_of(const ExactQuestion& question, const std::stop_token& stop) {
   Certificate certificate;
   try {
@@ -123,7 +124,8 @@ Certificate answer_of(const ExactQuestion& question, const std::stop_token& stop
   return certificate;
 }
 
-/// Half of a universe's voxels: axis, and whether the upper half is kept, cut at a voxel's lower face.
+/// Half of a universe, cut along `axis` at the lower face of voxel `cut`: the upper half if `upper`, else the
+/// lower one.
 Octree half_of(const voxel::Universe& universe, int axis, bool upper, int cut) {
   glm::dvec3 low(-1.0), high(universe.side());
   (upper ? low : high)[axis] = cut - 0.5;
@@ -131,8 +133,8 @@ Octree half_of(const voxel::Universe& universe, int axis, bool upper, int cut) {
       universe, Expression(voxel::Box{universe.lattice().lps_mm(low), universe.lattice().lps_mm(high)}));
 }
 
-/// The simplest question found that still fails: removes operators first, then halves, quarters, ... of the
-/// sets.
+/// Simplifies a question as long as the kernels still disagree: removes operators, then halves, quarters, ...
+/// of the sets. Returns the simplest question found.
 ExactQuestion simplified(ExactQuestion question, const std::stop_token& stop) {
   const auto fails = [&](const ExactQuestion& q) {
     return answer_of(q, stop).verdict == verify::Verdict::Fail;
@@ -162,7 +164,7 @@ ExactQuestion simplified(ExactQuestion question, const std::stop_token& stop) {
   return question;
 }
 
-/// Writes a question as a plan: its sets as label scans with windows on them, and the expression.
+/// Writes a question as a plan. Its sets become scans of labels, on which the plan has windows.
 void write_plan(const ExactQuestion& question, const std::filesystem::path& folder) {
   Json json{
       {"octotomy_plan", 1}, {"name", "disagreement"}, {"scans", Json::object()}, {"steps", Json::array()}};
@@ -178,7 +180,7 @@ void write_plan(const ExactQuestion& question, const std::filesystem::path& fold
   voxel::write_file(folder / "disagreement.plan.json", json_text(json, 2));
 }
 
-/// A random plan's evaluation, or the reason why there is none.
+/// The evaluation of a random plan, or the reason why there is none.
 struct PlanAnswer {
   std::optional<Evaluation> evaluation;
   std::string refusal;
@@ -204,7 +206,7 @@ PlanAnswer answer_of(const RandomPlan& plan, const std::stop_token& stop) {
   return answer;
 }
 
-/// The simplest plan found that still fails.
+/// The simplest plan that was found for which the kernels still disagree.
 RandomPlan simplified(RandomPlan plan, const std::string& failing, const std::stop_token& stop) {
   plan = up_to(plan, failing);
   bool simpler_found = true;
@@ -231,7 +233,8 @@ void write_plan(RandomPlan plan, const std::filesystem::path& folder) {
   voxel::write_file(folder / "disagreement.plan.json", text(plan));
 }
 
-/// The running suite. Results of a case are stored by its number, so that they are in the order of seeds.
+/// One run of the suite. Results are stored by the number of their question, so that their order does not
+/// depend on threads.
 class Asking {
  public:
   explicit Asking(const RandomSuiteOptions& options) : options_(options) {
@@ -290,8 +293,8 @@ class Asking {
                       static_cast<double>(done) / static_cast<double>(of));
   }
 
-  /// Stores only the worst objects found so far, because they are large; among equals those of the first
-  /// seed.
+  /// Stores an object if it is the worst one so far. Only one is stored, because objects are large; of equal
+  /// ones, that of the smallest seed.
   void contend(std::uint64_t seed, verify::Contested&& found) {
     const std::lock_guard lock(keeping_);
     if (worst_ && (verify::is_worse(worst_->certificate, found.certificate) ||

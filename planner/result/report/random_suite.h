@@ -15,7 +15,7 @@
 
 namespace octotomy::planner {
 
-/// The tiers of random questions.
+/// The kinds of random questions.
 enum class RandomTier {
   Exact,    ///< sets of voxels in general position, compared voxel by voxel
   AsGiven,  ///< small sets of voxels as given, so that faces coincide and edges touch, compared voxel by
@@ -30,31 +30,31 @@ struct RandomSuiteOptions {
   int count = 1000;  ///< number of questions in each tier
   std::vector<RandomTier> tiers{RandomTier::Exact, RandomTier::AsGiven, RandomTier::Bounded};
   std::uint64_t seed = 1;  ///< seed of the first question; question i has seed + i
-  /// The folder to which plans of disagreements are written, each in a folder of its own; created if there is
-  /// one.
+  /// Folder for the plans on which the kernels disagree, each in its own subfolder. It is created only if
+  /// there are any.
   std::filesystem::path failures = "disagreements";
   std::stop_token stop{};
   std::function<void(const std::string& doing, double share)> progress{};
 };
 
-/// A question on which the kernels disagree, simplified as far as they still disagree.
+/// A question on which the kernels disagree, simplified as long as they still do.
 struct Disagreement {
   std::uint64_t seed = 0;
   std::string tier;
-  std::string question;  ///< the simplified expression, or plan
+  std::string question;  ///< the simplified expression or plan, as text
   std::vector<std::string> reasons;
   std::filesystem::path plan;  ///< where it was written
 };
 
-/// The results of one tier's questions.
+/// The results of all questions of one tier.
 struct RandomAnswers {
-  VerdictCounts verdicts;  ///< for tiers of sets, one per question; for bounded, one per object of every plan
+  VerdictCounts verdicts;  ///< one per question on sets; in the bounded tier one per object
   int asked = 0;
-  int of_substance = 0;  ///< number of results that voxels resolve and that are neither empty nor an operand
-  int no_answer = 0;     ///< questions for which the mesh kernel reported that it has no answer
-  int refused = 0;       ///< masks or windows without a voxel, which are not questions
-  /// Certificates in the order of the questions: those of the first most_told questions, and all that do not
-  /// pass.
+  int of_substance = 0;  ///< results that are resolved and neither empty nor an operand
+  int no_answer = 0;     ///< questions for which the mesh kernel reports that it has no answer
+  int refused = 0;       ///< plans with a window or mask without a voxel, which count as no question
+  /// Certificates in the order of the questions: those of the first most_told questions, and of all later
+  /// ones that do not pass.
   std::vector<verify::Certificate> results;
   static constexpr std::size_t most_told = 1000;
 };
@@ -62,21 +62,21 @@ struct RandomAnswers {
 struct RandomSuite {
   RandomAnswers exact, as_given, bounded;
   std::vector<Disagreement> disagreements;
-  std::optional<verify::Contested> worst;  ///< the worst of the bounded tier's objects
+  std::optional<verify::Contested> worst;  ///< the object of the bounded tier with the worst certificate
 
-  /// The share of all questions whose results count in `of_substance`.
+  /// The share of all questions that count in `of_substance`.
   double substance() const;
 };
 
-/// With a lower share, the agreement would mostly be on trivial results.
+/// With a smaller share, agreement would be mostly on trivial results.
 inline constexpr double least_substance = 0.3;
 
-/// Asks both kernels random questions: expressions up to six operators deep, of sets of up to 48 voxels a
-/// side in general position and of up to four as given; and plans. Questions are asked in parallel; answers
-/// depend on the seed only. A disagreement is simplified (without some operators, motions or regions, by
-/// smaller sets) as long as the kernels still disagree, and written as a plan with its scans. Throws Stopped,
-/// and as voxel::write_file(). Cost in processor time: a question to the exact tier about 0.3 s, as given 3
-/// ms, to the bounded tier 1 s.
+/// Puts random questions to both kernels: expressions with up to six nested operators of sets of voxels (up
+/// to 48 along a side in general position, up to four as given), and plans on scans. Questions run in
+/// parallel; their answers depend only on the seed. If the kernels disagree, the question is simplified
+/// (fewer operators, motions or regions, smaller sets) as long as they still do, and written as a plan with
+/// its scans. Throws Stopped, and as voxel::write_file() does. Cost in processor time for each question: 0.3
+/// s in the exact tier, 3 ms as given, 1 s in the bounded tier.
 RandomSuite ask_random(const RandomSuiteOptions& options);
 
 }  // namespace octotomy::planner

@@ -157,7 +157,7 @@ MeasuredVerdicts measured_verdicts(const Json& measurements) {
     const auto findings = measurement.find("findings");
     std::string line = "'" + measurement.value("id", std::string()) + "'";
     if (findings != measurement.end() && !findings->empty()) {
-      // Findings may begin with a verdict; a WARN may stand before the FAIL.
+      // A finding may begin with a verdict. A WARN may stand before the FAIL, which is the one to quote.
       const auto worst = std::find_if(findings->begin(), findings->end(), [](const Json& finding) {
         return finding.get<std::string>().starts_with("FAIL");
       });

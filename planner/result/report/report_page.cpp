@@ -15,7 +15,8 @@ Json pair_json(const glm::dvec2& p) {
   return {p.x, p.y};
 }
 
-/// The outlines of the plan's mask regions that were drawn in this picture's view, in the head's orientation.
+/// The outlines of those mask regions of the plan that belong to the view of this picture. The picture is in
+/// the head's orientation.
 Json outlines(const Plan& plan, const ScenePicture& picture) {
   Json polygons = Json::array();
   for (const Step& step : plan.steps)

@@ -5,16 +5,16 @@
 
 namespace octotomy::planner {
 
-/// The data of the report page: result_json(), and patients and pictures, which only people see. Members:
-/// interface Report of planner/result/page/result.ts.
+/// The data of a report's page: result_json(), and data that only the page contains, such as patients and
+/// pictures. The members are those of the interface Report in planner/result/page/result.ts.
 nlohmann::ordered_json report_data(const Result& result);
 
-/// The result as one self-contained HTML page, for screens and for printing on A4.
+/// The report as one HTML page that needs no other file, for screens and for printing on A4.
 std::string report_html(const Result& result);
 
-/// The counts of to_json(), and how many of PASS are not resolved.
+/// The counts of to_json(), and in addition the number of PASS that are not resolved.
 nlohmann::ordered_json page_counts(const VerdictCounts& counts);
-/// The colours of signed distances, from the most negative to the largest, as #rrggbb.
+/// The colours of signed distances as #rrggbb, from the most negative distance to the largest.
 std::vector<std::string> distance_colours();
 
 }  // namespace octotomy::planner

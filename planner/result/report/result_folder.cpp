@@ -45,7 +45,8 @@ constexpr const char* list_name = ".octotomy-result";
   throw voxel::Error(ErrorCode::Input, message);
 }
 
-/// Refuses a name with control characters, which would control a terminal or break a list.
+/// The place of a folder. Refuses a name with control characters, which could control a terminal or spoil a
+/// list.
 fs::path plain_place_of(const fs::path& folder) {
   if (has_control(folder.native()))
     refuse(folder.string() + ": a folder's name has no control characters: choose another -o");
@@ -63,7 +64,7 @@ bool same_file(const fs::path& a, const fs::path& b) {
          of_a.st_ino == of_b.st_ino;
 }
 
-/// Renames without replacing anything; false if this fails.
+/// Renames a file if there is nothing at the new path. Returns whether it did.
 bool rename_to_new(const fs::path& from, const fs::path& to) {
   return ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0 ||
          (errno == EINVAL && !is_there(to) && ::rename(from.c_str(), to.c_str()) == 0);
@@ -83,7 +84,8 @@ void write_list(const fs::path& folder) {
     text += name;
     text += '\n';
   }
-  // Writes the list completely or not at all: with half a list, the files it lacks would count as the user's.
+  // The list is written to another name and renamed, because files that a partial list lacks would count as
+  // the user's.
   const fs::path part = folder / (std::string(list_name) + "-part");
   voxel::write_file(part, text);
   fs::rename(part, folder / list_name);
@@ -93,7 +95,7 @@ bool unchanged(const fs::path& path, const std::string& sum) {
   return fs::is_regular_file(fs::symlink_status(path)) && sha256_of_path(path) == sum;
 }
 
-/// Whether `inner` is `outer` or lies in it.
+/// Whether `inner` is `outer` or lies below it.
 bool lies_in(const fs::path& inner, const fs::path& outer) {
   return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
 }
@@ -107,8 +109,9 @@ void need_writable(const fs::path& folder, const fs::path& named) {
     refuse(named.string() + ": " + folder.string() + " cannot be written to: choose another -o");
 }
 
-/// Tries to write, because permissions alone do not guarantee success. Does not use a result's hidden name:
-/// such a folder may contain other files.
+/// Throws if the folder, or its nearest existing parent, cannot be written. Creates a folder as a test,
+/// because permissions alone do not show this. Its name must differ from a result's hidden folder, which may
+/// contain other files.
 void try_to_write(fs::path folder, const fs::path& named) {
   constexpr const char* prefix = ".octotomy-";
   while (!is_there(folder)) folder = folder.parent_path();
@@ -125,13 +128,13 @@ dev_t device_of(const fs::path& path) {
   return ::lstat(path.c_str(), &of_path) == 0 ? of_path.st_dev : 0;
 }
 
-/// The list of the earlier result in `folder`; empty for an empty folder. `named` is the folder as the user
-/// wrote it.
+/// The list of the earlier result in `folder`; empty if the folder is empty. Refuses a folder with other
+/// contents. `named` is the folder in error messages.
 ResultList need_earlier_result(const fs::path& folder, const fs::path& named) {
   if (fs::is_empty(folder)) return {};
   ResultList list = result_list(folder);
   if (list.empty())
-    refuse(named.string() + ": holds files but no list of an earlier result (" + list_name +
+    refuse(named.string() + ": contains files but no list of an earlier result (" + list_name +
            "), so they may be yours: choose another -o, or move them");
   for (const auto& [name, sum] : list)
     if (is_there(folder / name) && !unchanged(folder / name, sum))
@@ -144,7 +147,7 @@ ResultList need_earlier_result(const fs::path& folder, const fs::path& named) {
   return list;
 }
 
-/// Refuses if a file that is not in the list occupies `name` or a folder of it.
+/// Refuses if `name`, or a folder in its path, is occupied by a file that is not in the list.
 void need_free(const fs::path& folder, const ResultList& list, const fs::path& name, const fs::path& named) {
   fs::path part;
   for (const fs::path& step : name) {
@@ -157,13 +160,13 @@ void need_free(const fs::path& folder, const ResultList& list, const fs::path& n
   }
 }
 
-/// need_result_folder() for a path without links. Returns the list of the earlier result there.
+/// As need_result_folder(), for a path without links. Returns the list of the earlier result.
 ResultList need_place(const fs::path& place, const fs::path& named, const std::vector<fs::path>& names) {
   if (lies_in(fs::current_path(), fs::weakly_canonical(place)))
-    refuse(
-        named.string() +
-        ": is the working folder or holds it, and a result replaces its folder: choose a folder in it, as -o "
-        "report");
+    refuse(named.string() +
+           ": is the working folder or contains it, and a result replaces its folder: choose a folder in it, "
+           "as -o "
+           "report");
   constexpr std::size_t longest_beside = 20;  // "." before it, ".octotomy-" with six letters and "~" after
   if (place.filename().native().size() + longest_beside > NAME_MAX)
     refuse(named.string() + ": is too long a name: choose a shorter -o");
@@ -188,7 +191,7 @@ ResultList need_place(const fs::path& place, const fs::path& named, const std::v
   return list;
 }
 
-/// Excludes other runs while folders are renamed. On file systems without locks it has no effect.
+/// Keeps other runs from renaming folders at the same place. Has no effect on file systems without locks.
 class PlaceLock {
  public:
   explicit PlaceLock(const fs::path& parent) : file_(::open(parent.c_str(), O_RDONLY | O_CLOEXEC)) {
@@ -204,15 +207,15 @@ class PlaceLock {
   int file_;
 };
 
-/// Copies the permissions of the old file or folder to the new one.
+/// Gives a new file or folder the permissions of the old one, if both exist.
 void keep_mode(const fs::path& old, const fs::path& made) {
   struct stat of_old {};
   if (fs::exists(fs::symlink_status(made)) && ::lstat(old.c_str(), &of_old) == 0 && !S_ISLNK(of_old.st_mode))
     ::chmod(made.c_str(), of_old.st_mode & 07777);
 }
 
-/// Links into `made` the files of `old` that are not in its list, and copies permissions. Throws Error if a
-/// name is taken.
+/// Step 2: hard-links into `made` the files of `old` that are not in its list, and copies permissions. Throws
+/// Error if a name is taken.
 void take_over(const fs::path& old, const ResultList& list, const fs::path& made, const fs::path& named) {
   std::vector<fs::path> kept{""};
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(old)) {
@@ -220,7 +223,7 @@ void take_over(const fs::path& old, const ResultList& list, const fs::path& made
     kept.push_back(name);
     if (name == list_name || list.contains(name.generic_string())) continue;
     if (fs::is_directory(entry.symlink_status())) {
-      // A folder with listed files is not created for itself; its other files create it if needed.
+      // A folder that contains listed files is created only if it also contains other files.
       const std::string prefix = name.generic_string() + "/";
       const auto first = list.lower_bound(prefix);
       if (first != list.end() && first->first.starts_with(prefix)) continue;
@@ -229,17 +232,18 @@ void take_over(const fs::path& old, const ResultList& list, const fs::path& made
     } else {
       need_free(made, {}, name, named);
       voxel::create_folders_in(made, name.parent_path());
-      // If a file system has no links, or a file is another user's, step 4 moves it.
+      // Step 4 moves the file if it cannot be linked, because the file system has no links or the file
+      // belongs to another user.
       [[maybe_unused]] const int linked =
           ::linkat(AT_FDCWD, entry.path().c_str(), AT_FDCWD, (made / name).c_str(), 0);
     }
   }
-  // Inner folders first, because the new permissions of a folder may prevent access.
+  // Inner folders come first, because the new permissions of a folder may prevent access to it.
   for (auto name = kept.rbegin(); name != kept.rend(); ++name) keep_mode(old / *name, made / *name);
 }
 
-/// Removes the unchanged files of a list, the list itself, and folders that become empty; also `place`,
-/// unless it existed before (`was_there`).
+/// Removes those listed files that are unchanged, the list, and folders that are then empty. Also removes
+/// `place` if it is empty and did not exist before (`was_there`).
 void take_back(const fs::path& place, const ResultList& list, bool was_there) {
   std::set<fs::path> folders;
   for (const auto& [name, sum] : list) {
@@ -248,14 +252,13 @@ void take_back(const fs::path& place, const ResultList& list, bool was_there) {
     if (unchanged(place / name, sum)) fs::remove(place / name);
   }
   fs::remove(place / list_name);
-  // Inner folders first; a folder with a user's file stays.
+  // Inner folders come first. A folder in which a user's file remains is not removed.
   for (auto folder = folders.rbegin(); folder != folders.rend(); ++folder) ::rmdir((place / *folder).c_str());
   if (!was_there) ::rmdir(place.c_str());
 }
 
-/// Step 4: empties a hidden folder and removes it. Moves to `place` each file that is not listed, or has
-/// changed since it was listed, and that `place` does not have already. `sure`: the listed files are known to
-/// be unchanged.
+/// Step 4: empties and removes a hidden folder. A file that is not in its list, or has been changed, is moved
+/// to `place`, unless `place` has it already. `sure`: the listed files need not be compared with the list.
 void discard(const fs::path& hidden, const fs::path& place, bool sure) {
   std::error_code ignored;
   if (!is_there(hidden / list_name)) {
@@ -287,8 +290,8 @@ void discard(const fs::path& hidden, const fs::path& place, bool sure) {
   if (empty) fs::remove_all(hidden, ignored);
 }
 
-/// For file systems that cannot exchange two folders at once: between the two renames the old result has another
-/// name beside its place.
+/// Exchanges two folders on file systems that cannot do so in one step. Between the renames, the old result
+/// has another name, beside its place.
 void exchange_in_steps(const fs::path& staged, const fs::path& place) {
   const fs::path old = staged.string() + steps_suffix;
   fs::rename(place, old);
@@ -301,8 +304,7 @@ void exchange_in_steps(const fs::path& staged, const fs::path& place) {
   fs::rename(old, staged);
 }
 
-/// Removes leftovers of killed runs beside the place. If an earlier result exists only there, it is moved
-/// back.
+/// Removes leftovers of killed runs beside the place. An earlier result that exists only there is moved back.
 void discard_leftovers(const fs::path& place) {
   const std::string prefix = hidden_prefix(place).string();
   std::vector<fs::path> found;
@@ -327,7 +329,7 @@ void discard_leftovers(const fs::path& place) {
         const_cast<fs::path*>(&place));
 }
 
-/// Sets the permissions that a newly created folder would have.
+/// Gives a folder the permissions of a newly created one.
 void take_usual_mode(const fs::path& folder) {
   const fs::path probe = folder / "probe";
   fs::create_directory(probe);
@@ -351,7 +353,7 @@ void need_result_folder(const fs::path& folder, const std::vector<fs::path>& nam
   const fs::path place = plain_place_of(folder);
   need_place(place, folder, names);
   try_to_write(place.parent_path(), folder);
-  // Size of a page without pictures, its tables and the list of files.
+  // Size in bytes of a page without pictures, its tables and the list.
   constexpr std::uint64_t least_bytes = 24000;
   voxel::need_disk(folder, least_bytes);
 }
@@ -432,10 +434,10 @@ void ResultFolder::put_in_place(const std::function<void()>& then) {
   fs::path old;
   {
     const voxel::NamesChange change;
-    // After the exchange, the hidden folder may contain the user's files, so ending the process must not
-    // remove it.
+    // From here on the process's end must not remove the hidden folder: after the exchange it may contain the
+    // user's files.
     old = staged_->keep();
-    // Replaces only an empty folder, never a file or a folder with contents.
+    // rename() replaces an empty folder, but no file and no folder with contents.
     const bool done = exchanges
                           ? ::renameat2(AT_FDCWD, old.c_str(), AT_FDCWD, final_.c_str(), RENAME_EXCHANGE) == 0
                           : ::rename(old.c_str(), final_.c_str()) == 0;
@@ -449,7 +451,7 @@ void ResultFolder::put_in_place(const std::function<void()>& then) {
   try {
     discard(old, final_, true);
   } catch (const std::exception&) {
-    // The result is published; the next run removes the rest.
+    // The new result is in place. The next run removes the rest of the old one.
   }
 }
 

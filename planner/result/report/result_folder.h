@@ -14,65 +14,66 @@ namespace octotomy::planner {
 
 /// Refuses an output folder before the work starts. Throws voxel::Error (Input), which names the file and a
 /// remedy, if `folder`
-/// - is a file, or has files in it but no list `.octotomy-result` of an earlier result;
-/// - contains a file of that list that was changed since;
-/// - contains a file that is not in that list under one of `names`, the paths that the result will write;
-/// - is or contains the working folder, or is a mount point: publishing replaces the folder itself;
-/// - cannot be made or written to; or (Resource) if the disk has no room for the smallest page. A symbolic
-///   link to a folder counts as that folder.
+/// - is a file, or contains files but no list `.octotomy-result` of an earlier result;
+/// - contains a listed file that was changed since;
+/// - contains a file that is not listed under one of `names`, the paths that the result will write;
+/// - is or contains the working folder, or is a mount point, because publishing replaces the folder itself;
+/// - cannot be created or written.
+/// Throws voxel::Error (Resource) if the disk has no room for the smallest page. A symbolic link to a folder
+/// counts as that folder.
 void need_result_folder(const std::filesystem::path& folder,
                         const std::vector<std::filesystem::path>& names = {});
 
-/// A quick check whether a result may be written there: the path does not exist, or is a folder that is empty
-/// or has the list `.octotomy-result`. Reads only the list; need_result_folder() checks completely.
+/// Whether a result may probably be written to a path: nothing is there, or a folder that is empty or has a
+/// list `.octotomy-result`. Reads only the list; need_result_folder() makes the complete check.
 bool may_hold_result(const std::filesystem::path& folder);
 
-/// Whether the list of a result in a parent folder contains this file.
+/// Whether a file is in the list of a result in one of its parent folders.
 bool is_of_result(const std::filesystem::path& file);
 
-/// SHA-256 by path within the folder.
+/// The SHA-256 of each file by its path within the folder.
 using ResultList = std::map<std::string, std::string>;
-/// The files in a folder's `.octotomy-result`; empty without that list.
+/// The list `.octotomy-result` in a folder; empty if there is none.
 ResultList result_list(const std::filesystem::path& folder);
 
-/// A folder of results that appears completely or not at all. Files are written into a hidden folder beside
-/// the place; publish() exchanges the two in one step. The file `.octotomy-result` lists the written files
-/// with their SHA-256 (readable by `sha256sum -c`). The next result replaces the listed files; all other
-/// files and permissions are preserved.
+/// A folder of results that appears only when it is complete. Its files are written into a hidden folder
+/// beside its place, and publish() exchanges the two folders in one step. The file `.octotomy-result` lists
+/// the written files with their SHA-256, in the form of `sha256sum -c`. A later result replaces the listed
+/// files. All other files in the folder stay, and so do permissions.
 class ResultFolder {
  public:
-  /// Makes the hidden folder and removes those of killed runs. Precondition: need_result_folder() accepted
-  /// the folder before the work. Does not check the folder again: publish() does, and preserves the result if
-  /// the check fails. Throws voxel::Error (Input, Resource) if the hidden folder cannot be made, and
-  /// std::filesystem::filesystem_error if the folder above cannot.
+  /// Creates the hidden folder, and removes those of killed runs. Precondition: need_result_folder() has
+  /// accepted the folder. publish() checks the folder again. Throws voxel::Error (Input, Resource) if the
+  /// hidden folder cannot be created, and std::filesystem::filesystem_error if the folder above it cannot.
   explicit ResultFolder(const std::filesystem::path& folder);
   ResultFolder(const ResultFolder&) = delete;
   ResultFolder& operator=(const ResultFolder&) = delete;
 
-  /// The folder to write into until publish(); exists.
+  /// The hidden folder, which exists. Files are written there until publish().
   const std::filesystem::path& path() const { return staged_->path(); }
-  /// Copies the files of the earlier result that were not written again, for a result that is rewritten with
-  /// additions. Cost: a copy of these files.
+  /// Copies files of the earlier result that this result has not written, for a result that is written again
+  /// with additions. Cost: a copy of these files.
   void copy_rest();
-  /// Publishes the result at its place. If the process is killed before or during this, the earlier result is
-  /// complete under its name; afterwards, the new one. Throws voxel::Error (Input) if a file of the place was
-  /// changed or added in the way during the work; the result is then complete beside it, under the name in
-  /// the message. Cost: one reading of all files, old and new.
+  /// Puts the result at its place. If the process is killed before or during this, the earlier result is
+  /// complete at the place; afterwards, the new one is. Throws voxel::Error (Input) if a file at the place
+  /// was changed during the work or is in the way of a new one. The result is then complete beside the place,
+  /// under the name in the message. Cost: reads all files, old and new.
   void publish();
-  /// Whether its place now contains anything but an empty folder.
+  /// Whether there is anything at the place but an empty folder.
   bool replaces() const;
-  /// Publishes a first part of the result, which lists the missing parts. Does nothing and returns null if
-  /// replaces(), because an earlier complete result is worth more. The returned object removes the files
-  /// again, unless a later result has replaced them.
+  /// Puts a first part of the result at its place; its page lists the missing parts. Does nothing and returns
+  /// null if replaces(), because an earlier complete result is worth more. The returned object removes these
+  /// files again, unless a later result has replaced them.
   std::unique_ptr<voxel::Undo> publish_early();
 
  private:
-  /// Publishes and calls `then` before the process can end in between.
+  /// Puts the result at its place and calls `then`. The process cannot end between the two.
   void put_in_place(const std::function<void()>& then);
-  /// `hidden` is the folder of the staged files after keep().
+  /// Throws, with the reason and the name of the complete result beside its place. `hidden` is the folder of
+  /// that result, if it has already left staged_.
   [[noreturn]] void keep_beside(const std::string& reason, const std::filesystem::path& hidden = {});
 
-  std::filesystem::path final_;                      ///< absolute, without links at its end
+  std::filesystem::path final_;                      ///< absolute; its last part is no link
   std::unique_ptr<voxel::UnfinishedFolder> staged_;  ///< beside it
 };
 

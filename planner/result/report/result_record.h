@@ -6,7 +6,7 @@
 #include "planner/procedure/cephalometry/cephalometry_table.h"
 #include "planner/result/report/measurement.h"
 
-// The parts of result.json that tables, the credibility page and cohorts read.
+// Those parts of result.json that tables, credibility and cohorts read.
 namespace octotomy::planner {
 
 /// A line of a scan's audit.

@@ -61,7 +61,7 @@ class Table {
   std::vector<Row> rows_;
 };
 
-/// A row for each piece's centroid and each landmark on it.
+/// Rows of the movement table: one for each piece's centroid and for each landmark on a piece.
 Json movement_rows(const std::vector<ObjectMovement>& movements) {
   Json rows = Json::array();
   for (const ObjectMovement& moved : movements) {

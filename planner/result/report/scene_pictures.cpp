@@ -14,7 +14,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// Distinguishable with any colour vision and in grey print (after Okabe and Ito 2008).
+/// Colours that people with any colour vision can distinguish, also in grey print (after Okabe and Ito 2008).
 constexpr std::array<glm::vec3, 5> accents{{{0.20f, 0.56f, 0.72f},
                                             {0.87f, 0.49f, 0.20f},
                                             {0.16f, 0.60f, 0.47f},
@@ -27,7 +27,7 @@ std::string without_blanks(std::string text) {
   return text;
 }
 
-/// The names of `a | b | c`; empty for any other expression.
+/// The names in a union such as `a | b | c`; empty for any other expression.
 std::vector<std::string> pieces_of_union(const std::string& expression) {
   const std::string text = without_blanks(expression);
   std::vector<std::string> pieces{""};
@@ -40,8 +40,7 @@ std::vector<std::string> pieces_of_union(const std::string& expression) {
       return {};
     }
   }
-  // Each piece is drawn separately, so each name counts once. More pieces than readers can distinguish are
-  // drawn as one object.
+  // Repeated names are dropped. More pieces than readers can distinguish are drawn as one object.
   constexpr std::size_t most_pieces = 64;
   std::set<std::string> seen;
   std::erase_if(pieces, [&](const std::string& piece) { return !seen.insert(piece).second; });
@@ -57,14 +56,14 @@ std::vector<std::string> final_pieces(const Plan& plan, const Evaluation& evalua
   return {};
 }
 
-/// The original object of a chain of moves.
+/// The id of the object from which a chain of motions starts.
 std::string still_of(const Evaluation& evaluation, std::string id) {
   while (const auto& moved = evaluation.object(id).moved) id = moved->object;
   return id;
 }
 
-/// The first piece from which an object is made, if something has moved on the way: the object before its own
-/// move would then not show the untouched patient. Null if nothing has moved.
+/// The first object from which a piece was made, if a motion was among the steps between: the piece's own
+/// position before its last motion would then not show the patient. Null if there was no motion.
 const Object* untouched(const Plan& plan, const Evaluation& evaluation, const std::string& id) {
   const std::set<std::string> needed = needed_for(plan, {id});
   const Object* first = nullptr;
@@ -77,7 +76,7 @@ const Object* untouched(const Plan& plan, const Evaluation& evaluation, const st
   return moved ? first : nullptr;
 }
 
-/// Whether a piece is bone that the patient does not have there: of a flap, or mirrored.
+/// Whether a piece is bone that the patient does not have: of a flap, or mirrored.
 bool is_added(const Plan& plan, const std::string& id) {
   const std::set<std::string> needed = needed_for(plan, {id});
   return std::any_of(plan.steps.begin(), plan.steps.end(), [&](const Step& step) {
@@ -86,7 +85,7 @@ bool is_added(const Plan& plan, const std::string& id) {
   });
 }
 
-/// The first object from which a piece was made, ignoring masks.
+/// The first object from which a piece was made, except masks.
 const Object& origin_of(const Plan& plan, const Evaluation& evaluation, const std::string& id) {
   const std::set<std::string> needed = needed_for(plan, {id});
   for (const Object& object : evaluation.objects)
@@ -99,7 +98,7 @@ struct Frame {
   double width_mm = 1.0;
 };
 
-/// The square around the boxes of all objects in a view.
+/// The smallest square in a view that contains the boxes of all objects.
 Frame loose_frame(const std::vector<voxel::DrawnObject>& objects, const voxel::View& view) {
   glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-low);
   for (const voxel::DrawnObject& object : objects) {
@@ -126,9 +125,9 @@ voxel::RenderOptions options_of(const voxel::View& view, const Frame& frame, int
   return options;
 }
 
-/// The square around the visible parts of the objects, a sixth wider for scales and letters. Seen from a
-/// corner, a box is much larger than its contents, so a small picture is drawn first; its pixel size is the
-/// frame's precision.
+/// A square around the visible parts of the objects, wider by a sixth for scales and letters. Seen from a
+/// corner, a box is much larger than its contents, so the objects are first drawn small. The frame is
+/// accurate to a pixel of that picture.
 Frame frame_of(const std::vector<voxel::DrawnObject>& objects, const voxel::View& view) {
   constexpr int probe_px = 96;
   constexpr double margin = 7.0 / 6.0;

@@ -11,7 +11,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// The worst certificate with pictures of both answers' difference; null where one of them is empty.
+/// The worst certificate, with pictures of the difference between both answers; null if one of them is empty.
 Json worst_json(const std::optional<verify::Contested>& worst) {
   if (!worst || worst->octree.is_empty() || !worst->solid || worst->solid->empty()) return nullptr;
   const DifferencePictures drawn = difference_pictures(*worst);
@@ -29,8 +29,8 @@ Json worst_json(const std::optional<verify::Contested>& worst) {
           {"pictures", pictures}};
 }
 
-/// The members of a certificate that the page draws. Suites have thousands of certificates, and result.json
-/// has them complete.
+/// Those members of a certificate that the page draws. The page does not contain whole certificates, because
+/// suites have thousands; result.json does.
 Json drawn_part(const Json& certificate) {
   const auto part_of = [](const Json& whole, const std::vector<const char*>& names) {
     Json part = Json::object();

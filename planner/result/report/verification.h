@@ -12,22 +12,22 @@
 
 namespace octotomy::planner {
 
-/// The subject and results of a verification.
+/// The subject and the results of a verification.
 struct Verification {
-  std::string subject;  ///< a plan, two files and their operation, or a suite
+  std::string subject;  ///< a plan, two files with an operation, or a suite
   VerdictCounts counts;
   Json answer;  ///< complete: "certificates", "counts", "timings_ms" and members that a suite adds
-  /// Requests without a certificate, one sentence each.
+  /// Why there is no certificate for a part of the request, one sentence for each part.
   std::vector<std::string> not_covered;
-  std::optional<verify::Contested> worst;  ///< the objects with the largest share of a tolerance
+  std::optional<verify::Contested> worst;  ///< the object with the largest share of a tolerance
 };
 
-/// One HTML page: verdicts, the differences as shares of the tolerance of each quantity, pictures of the
-/// worst, the suite's own tables, and requests that were not covered.
+/// One HTML page: verdicts, differences as shares of their tolerances, pictures of the worst object, the
+/// suite's own tables, and the requests without a certificate.
 std::string verification_html(const Verification& verification);
 
-/// Writes a folder with report.html and result.json, completely or not at all. Precondition and errors are
-/// those of ResultFolder.
+/// Writes a folder with report.html and result.json, which appears only when it is complete. Precondition and
+/// exceptions as for ResultFolder.
 void write_verification(const Verification& verification, const std::filesystem::path& folder);
 
 }  // namespace octotomy::planner

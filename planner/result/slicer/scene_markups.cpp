@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 using Points = std::vector<glm::dvec3>;
 
 Json numbers(const glm::dvec3& v) {
-  // Adding 0.0 turns negative zeros into zeros.
+  // Adding 0.0 makes a negative zero positive.
   return {v.x + 0.0, v.y + 0.0, v.z + 0.0};
 }
 
@@ -33,7 +33,7 @@ Json control_point(std::size_t number, const std::string& label, const glm::dvec
           {"positionStatus", "defined"}};
 }
 
-/// Creates a markup; `more` are the members that its type adds.
+/// Makes a markup. `more` are members that only its type has.
 SceneMarkup markup(const std::string& type, const std::string& name, Json points,
                    const Json& more = Json::object()) {
   Json list{{"type", type}, {"coordinateSystem", "LPS"}, {"coordinateUnits", "mm"}, {"labelFormat", "%N-%d"}};
@@ -55,8 +55,8 @@ SceneMarkup markup_of_points(const std::string& type, const std::string& name, c
   return markup(type, name, std::move(points));
 }
 
-/// Slicer reads the control point, the axes of baseToNode and the bounds. Centre, normal and orientation are
-/// written for other readers.
+/// A plane as a markup. Slicer reads the control point, the axes in baseToNode and the bounds; other readers
+/// may need centre, normal and orientation.
 SceneMarkup markup_of_plane(const std::string& name, const MarkupPlane& plane) {
   const glm::dvec3 &x = plane.right, &y = plane.up, &z = plane.normal, &o = plane.origin_mm;
   const glm::dvec2 low = *plane.low_mm, high = *plane.high_mm;
@@ -87,7 +87,7 @@ void add_saw(const std::string& id, const Saw& saw, std::vector<SceneMarkup>& ma
       return p_mm + (entry_mm - glm::dot(p_mm, along)) * along;
     };
     const glm::dvec3 from_mm = at_entry(saw.line_mm[i]), to_mm = at_entry(saw.line_mm[i + 1]);
-    // A piece of the line along the blade's direction cuts nothing by itself.
+    // A piece of the line that is parallel to the blade cuts nothing.
     if (!(glm::distance(from_mm, to_mm) > 0.0)) continue;
     MarkupPlane plane;
     plane.origin_mm = 0.5 * (from_mm + to_mm) + 0.5 * saw.depth_mm * along;
@@ -102,7 +102,7 @@ void add_saw(const std::string& id, const Saw& saw, std::vector<SceneMarkup>& ma
   if (pieces > 1) made.push_back(markup_of_points("Curve", id + " line", saw.line_mm));
 }
 
-/// Twice the area of a polygon, positive counter-clockwise.
+/// Twice the signed area of a polygon; positive if it is counter-clockwise.
 double signed_area(const std::vector<glm::dvec2>& polygon) {
   double sum = 0.0;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -123,7 +123,7 @@ void add_sides(const std::string& name, const std::vector<glm::dvec2>& polygon, 
     MarkupPlane plane;
     plane.origin_mm = 0.5 * (a + b);
     plane.right = glm::normalize(b - a);
-    // The cross product of the view's right and up points at the observer, against `look`.
+    // right x up of a view points to the observer, against `look`.
     plane.normal = turn * glm::cross(plane.right, look);
     plane.up = glm::cross(plane.normal, plane.right);
     plane.high_mm = glm::dvec2(0.5 * glm::distance(a, b), reach_mm);
@@ -155,7 +155,7 @@ void add_mask(const std::string& id, const Mask& mask, const Evaluation& evaluat
   }
 }
 
-/// Adds the axes of the screws, each at the position of its object.
+/// Adds a line for the axis of each screw, at the position of its object.
 void add_screws(const Plan& plan, const Evaluation& evaluation, std::vector<SceneMarkup>& made) {
   const auto maker_of = [&](const std::string& name) -> const Action* {
     for (const Step& step : plan.steps)
@@ -173,7 +173,7 @@ void add_screws(const Plan& plan, const Evaluation& evaluation, std::vector<Scen
   for (const Object& object : evaluation.objects) {
     const Action* maker = maker_of(still_of(evaluation.objects, object).id);
     if (maker == nullptr || maker->get_if<Screw>() == nullptr) continue;
-    // A scaled screw has no axis and no length of its own; its model shows it.
+    // A scaled screw no longer has its stated axis and length, so only its model is written.
     if (object.image && !keeps_lengths(object.image->image_from_object)) continue;
     const ScrewAxis axis = screw_axis(object.id, bench);
     made.push_back(markup_of_points("Line", object.id + " axis",

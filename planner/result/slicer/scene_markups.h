@@ -9,10 +9,10 @@
 
 namespace octotomy::planner {
 
-/// A markup of 3D Slicer: LPS, millimetres.
+/// A markup of 3D Slicer, in LPS and millimetres.
 struct SceneMarkup {
   std::string type;  ///< "Fiducial", "Plane", "ClosedCurve", "Curve" or "Line"
-  std::string name;  ///< of its node and file
+  std::string name;  ///< name of its node and its file
   nlohmann::ordered_json json;
 };
 
@@ -27,7 +27,7 @@ struct SceneMarkup {
 /// Precondition: the plan was evaluated. Throws as the readers of the plan's files do.
 std::vector<SceneMarkup> scene_markups(const Plan& plan, const Evaluation& evaluation);
 
-/// Polygons with more sides were drawn by hand: they get no planes, only a curve.
+/// Polygons with more sides were probably drawn by hand. They get only a curve, no planes.
 inline constexpr std::size_t most_sides = 8;
 
 }  // namespace octotomy::planner

@@ -32,7 +32,7 @@ std::string SceneNodes::stored(const std::string& storage, const std::string& fi
   add(storage + "Storage", of_file, file, {},
       attribute("fileName", "Data/" + file) + attribute("useCompression", "1"));
   const std::string shown = next(display);
-  // This is the only display node whose element's name differs from its class.
+  // VolumeDisplay is the only element whose name differs from the class of its display node.
   add(display == "ScalarVolumeDisplay" ? "VolumeDisplay" : display, shown, file, {},
       attribute("visibility", "true") + attributes);
   return "display:" + shown + ";storage:" + of_file + ";";

@@ -26,8 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Colours that people with any type of colour vision can distinguish (Okabe and Ito 2008); they repeat after
-/// the last.
+/// The colour of the object with this number. People with any colour vision can distinguish them (Okabe and
+/// Ito 2008); they repeat after the last.
 glm::vec3 colour_of(std::size_t index) {
   constexpr std::array<glm::vec3, 7> colours{{{0.90f, 0.87f, 0.79f},
                                               {0.90f, 0.62f, 0.00f},
@@ -39,8 +39,8 @@ glm::vec3 colour_of(std::size_t index) {
   return colours[index % colours.size()];
 }
 
-/// File names for objects and scans. Letters, digits, '_' and '-' stay; different names get different file
-/// names.
+/// Makes file names from the names of objects and scans. Letters, digits, '_' and '-' stay; different names
+/// become different file names.
 class FileNames {
  public:
   std::string of(const std::string& name, const std::string& extension) {
@@ -56,7 +56,7 @@ class FileNames {
   std::set<std::string> taken_;
 };
 
-/// Writes the files of a scene into a folder.
+/// Writes the files of a scene into a folder and collects its nodes.
 class SceneFolder {
  public:
   SceneFolder(const Plan& plan, const Evaluation& evaluation, fs::path folder, TransformFormat transforms,
@@ -154,7 +154,7 @@ class SceneFolder {
                 {"curves", Json::array()},     {"lines", Json::array()}};
 };
 
-/// Writes a folder as a zip archive. The entries lie in one folder that has the archive's name.
+/// Writes a folder as a zip archive, in which a folder with the archive's name contains all entries.
 void write_bundle(const fs::path& folder, const fs::path& path) {
   std::set<fs::path> files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))

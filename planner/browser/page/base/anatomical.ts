@@ -8,7 +8,7 @@ export const turns = ["pitch_deg", "yaw_deg", "roll_deg"] as const;
 export type Direction = typeof directions[number];
 export type Turn = typeof turns[number];
 
-/// LPS directions of the words, for a head in the scan's own orientation.
+/// Directions in LPS of the words forward, left and up, for a head that is not repositioned.
 export const lps: Record<Direction, Vec3> = {
   forward_mm: [0, -1, 0],
   left_mm: [1, 0, 0],
@@ -25,7 +25,8 @@ const words: Record<Direction|Turn, [string, string]> = {
 };
 export const word_of = (field: Direction|Turn, value: number): string => words[field][value < 0 ? 1 : 0];
 
-/// "6.0 mm forward, 2.0 mm up; 3.0° front up"
+/// A motion in anatomical words, such as "6.0 mm forward, 2.0 mm up; 3.0° front up". Values below 0.05 are
+/// left out.
 export function motion_words(move: Motion): string {
   if (move.points) return `by ${move.points.length === 1 ? "one mark" : `${move.points.length} marks`}`;
   const said =

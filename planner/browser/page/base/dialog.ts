@@ -8,7 +8,7 @@ export interface Dialog {
   close(): void;
 }
 
-/// Opens a dialog; Escape, the cross and close() end it.
+/// Opens a modal dialog. Escape, its cross, a press beside it and close() end it; `closed` is called then.
 export function open_dialog(title: string, name: string, closed: () => void = () => undefined): Dialog {
   const body = el("div", {class: "dialog-body"});
   const box = el("dialog", {class: `dialog ${name}`, "aria-label": title});
@@ -29,7 +29,8 @@ export function open_dialog(title: string, name: string, closed: () => void = ()
   return {refill: (...children) => fill(body, ...children), close};
 }
 
-/// Shows a field for one line of text. Returns null if the person closes the dialog.
+/// Opens a dialog with a field for one line of text, which contains `usual` at first. Resolves with the text,
+/// or with null if the person closes the dialog.
 export function ask_text(title: string, label: string, usual: string): Promise<string|null> {
   return new Promise((resolve) => {
     let answer: string|null = null;

@@ -8,8 +8,8 @@ export interface Attributes {
   [name: string]: Attribute;
 }
 
-/// Creates an element. Keys that begin with "on" take functions; others, such as `class` and `style`, become
-/// attributes. False and null are left out.
+/// Creates an element. Attributes whose value is a function become event listeners ("onclick" listens to
+/// "click"). Attributes that are false, null or undefined are left out.
 export function el<Tag extends keyof HTMLElementTagNameMap>(
     tag: Tag, attributes: Attributes = {}, ...children: Child[]): HTMLElementTagNameMap[Tag] {
   const element = document.createElement(tag);
@@ -18,7 +18,7 @@ export function el<Tag extends keyof HTMLElementTagNameMap>(
     if (typeof value === "function")
       element.addEventListener(name.slice(2), value as EventListener);
     else if (name === "style")
-      element.style.cssText = String(value);  // because the page's content policy forbids the attribute
+      element.style.cssText = String(value);  // the page's content security policy forbids style attributes
     else if (name === "value" && "value" in element)
       (element as HTMLInputElement).value = String(value);
     else
@@ -28,7 +28,7 @@ export function el<Tag extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/// Appends children, texts and lists of them; leaves out null and false.
+/// Appends elements and texts, also from nested lists. Leaves out null, undefined and false.
 export function put(element: Element, children: Child[]): void {
   for (const child of children) {
     if (child === null || child === undefined || child === false) continue;
@@ -39,8 +39,9 @@ export function put(element: Element, children: Child[]): void {
   }
 }
 
-// The control that is being pressed. Its host is not refilled until it is released; otherwise the click would
-// be lost and a dragged slider would stop.
+// The element under a pressed pointer; null if no pointer is pressed. fill() does not replace the children of
+// a host that contains it before the release. Otherwise the click would be lost and a dragged slider would
+// stop.
 let pressed: Node|null = null;
 const put_off = new Map<Element, Child[]>();
 function release(): void {
@@ -52,19 +53,20 @@ function release(): void {
 addEventListener("pointerdown", (event) => {
   pressed = event.target as Node;
 }, true);
-// A click event directly follows its pointerup. An open drop-down list sends only a change event when it
-// closes.
+// The release waits for a timer, because the click event follows directly after pointerup. An open drop-down
+// list sends only a change event when it closes.
 for (const end of ["pointerup", "pointercancel", "change"])
   addEventListener(end, () => window.setTimeout(release), true);
 
-// Identifies a control after its host was refilled: its `data-key`, else its words.
+// A text that identifies a control after its host was refilled: its `data-key`, else its words, label and
+// tip.
 const mark_of = (control: HTMLElement): string => control.dataset.key ??
     [control.textContent, control.ariaLabel, control.dataset.tip].join(" ").trim();
 const alike = (host: Element, {tagName, mark}: {tagName: string; mark: string}): HTMLElement[] =>
     [...host.querySelectorAll<HTMLElement>(tagName)].filter((control) => mark_of(control) === mark);
 
-// Describes the control in a host that has the focus, to find it again after a refill. Null if there is none,
-// or if it has neither a `data-key` nor words and a visible focus.
+// Data to find the focused control of a host after a refill. Null if no control of the host has the focus, or
+// if the control has no `data-key` and either no words or no visible focus.
 function focused_in(host: Element):
     {tagName: string; mark: string; place: number; typed: string|null}|null {
   const active = document.activeElement;
@@ -77,9 +79,9 @@ function focused_in(host: Element):
   return {...known, place: alike(host, known).indexOf(active), typed: is_typed ? active.value : null};
 }
 
-/// Replaces a host's children. If something in the host is pressed, waits until it is released. A control
-/// that visibly has the focus keeps it if a new one has the same `data-key`, or else the same words; a text
-/// field also keeps its text.
+/// Replaces a host's children. If a pointer is pressed on the host, the replacement waits for the release.
+/// The focus moves to the new control with the same `data-key` or, if the focus is visible, with the same
+/// words. A text field with a `data-key` also keeps its text.
 export function fill(host: Element, ...children: Child[]): void {
   if (pressed && host.contains(pressed)) {
     put_off.set(host, children);
@@ -97,7 +99,8 @@ export function fill(host: Element, ...children: Child[]): void {
   again.focus({preventScroll: true});
 }
 
-/// A row of tabs, of which one is chosen.
+/// Fills a host with a row of tabs: the name, label and tip of each. The tab named `chosen` is marked; a
+/// click on a tab calls `choose`.
 export function fill_tabs<Name extends string>(
     host: Element, chosen: Name, tabs: readonly(readonly[Name, string, string])[],
     choose: (name: Name) => void): void {
@@ -109,8 +112,8 @@ export function fill_tabs<Name extends string>(
               {role: "tab", "aria-selected": String(name === chosen), class: name === chosen ? "on" : ""})));
 }
 
-/// A button with words or an icon, and a tip. If it has only an icon, the tip's first sentence is its name
-/// for screen readers.
+/// A button with words or an icon, and a tip. For a button with only an icon, the tip's first sentence is its
+/// label for screen readers.
 export function button(
     label: Child,
     tip: string,
@@ -121,8 +124,8 @@ export function button(
   return el("button", {type: "button", "data-tip": tip, ...name, onclick, ...more}, label);
 }
 
-/// A slider and a number field of one value. `shared` are attributes of both, `of_slider` of the slider only.
-/// `take` receives a number while the slider moves, and from the field when it was typed.
+/// A slider and a number field for one value. `shared` are attributes of both, `of_slider` of the slider
+/// only. `take` receives every value of the moving slider, and a typed value after the field has changed.
 export function slider(
     label: string, key: string, shared: Attributes, of_slider: Attributes, take: (value: number) => void): Child {
   const number = (event: Event): number => Number((event.target as HTMLInputElement).value);

@@ -16,13 +16,15 @@ export const ink = {
   faint: "rgba(255,255,255,.55)",
 };
 
-// Boxes of the labels drawn in the pane so far. Later labels avoid them.
+// Boxes, in canvas pixels, around the labels and lines in the pane so far. label() places new labels beside
+// them.
 let labelled: {low: Vec2; high: Vec2}[] = [];
 
-// Views have a white background on a light page. Words are then dark with a light outline.
+// Whether the pane's background is white, as in views on a light page. Words are then dark with a light
+// outline.
 let is_on_white = false;
 
-/// Begins a pane's overlay, which has no labels yet.
+/// Prepares for drawing a pane's overlay and forgets the labels of the previous one.
 export function begin_ink(on_white: boolean): void {
   is_on_white = on_white;
   labelled = [];
@@ -47,8 +49,8 @@ const dark_of: {[colour: string]: string} = {
 const font_of = (look: TextLook, ratio: number): string =>
     `500 ${(look.px ?? 12) * ratio}px system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif`;
 
-/// Words with an outline, so that they are legible on bone and on the background; they stay within the
-/// picture.
+/// Draws words in one line, with an outline so that they are legible on bone and on the background. Centred
+/// words are moved sideways to stay within the picture.
 export function text(
     context: CanvasRenderingContext2D, words: string, at: Vec2, ratio: number, look: TextLook = {}): void {
   context.font = font_of(look, ratio);
@@ -66,7 +68,7 @@ export function text(
   context.fillText(words, x, at[1]);
 }
 
-/// Makes later labels avoid a line.
+/// Makes label() avoid a line. `points` are in canvas pixels.
 export function keep_words_off(points: Vec2[], ratio: number): void {
   const half = 2 * ratio;
   points.slice(1).forEach((to, i) => {
@@ -79,7 +81,7 @@ export function keep_words_off(points: Vec2[], ratio: number): void {
   });
 }
 
-/// A sentence in the picture's middle, on as many lines as the picture's width requires.
+/// Draws a sentence in the middle of the picture, broken into lines that fit its width.
 export function sentence(
     context: CanvasRenderingContext2D, words: string, ratio: number, look: TextLook = {}): void {
   const {width, height} = context.canvas;
@@ -99,7 +101,7 @@ export function sentence(
           {...look, align: "center"}));
 }
 
-/// Words beside a point: at its right, at its left, or moved up or down to where there is room.
+/// Draws words to the right or left of a point, moved up or down if labels are in the way.
 export function label(
     context: CanvasRenderingContext2D, words: string, at: Vec2, ratio: number, look: TextLook): void {
   const px = (look.px ?? 12) * ratio;

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Numbers as people read them, as `planner/operation/table/number_format.h` writes them in messages.
 
-/// Rounds as C++ prints: of two equally near decimals, the even one. Sixty decimals represent any such double
-/// exactly.
+/// Rounds as C++ prints: a value half way between two decimals goes to the even one. Only a value with few
+/// binary digits can lie half way, and sixty decimals represent such a value exactly.
 function fixed(value: number, digits: number): string {
   const text = value.toFixed(digits);
   const is_tie = /^50*$/.test(value.toFixed(60).split(".")[1]?.slice(digits) ?? "");
   return is_tie && /[13579]$/.test(text) ? (value - 0.5 * 10 ** -digits).toFixed(digits) : text;
 }
 
-/// The number as "−12 345.6", or a dash if there is none. From five digits on they are in groups of three.
+/// A number such as "−12 345.6", or a dash if it is null, undefined or not finite. Five digits and more are
+/// in groups of three.
 export function grouped(value: number|null|undefined, digits = 0): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   const [whole = "", part] = fixed(Math.abs(value), digits).split(".");
@@ -18,7 +19,7 @@ export function grouped(value: number|null|undefined, digits = 0): string {
   return value < 0 && /[1-9]/.test(text) ? `−${text}` : text;
 }
 
-/// A number of three significant figures, with at most six decimals.
+/// A number with three significant digits, but at most six decimals.
 export function three_figures(value: number|null|undefined): string {
   if (!value || !Number.isFinite(value)) return grouped(value);
   return grouped(value, Math.max(0, Math.min(6, 2 - Math.floor(Math.log10(Math.abs(value))))));

@@ -5,7 +5,7 @@ import {set, state, watch} from "../state";
 export const is_dark = (): boolean => state.theme === "dark" ||
     (state.theme === "system" && matchMedia("(prefers-color-scheme: dark)").matches);
 
-/// Background of views on a dark page. On a light page it is white, as in `octotomy render`.
+/// Background of views on a dark page. On a light page their background is white, as in `octotomy render`.
 export const dark_ground = "#0b0f14";
 
 export function change_theme(): void {

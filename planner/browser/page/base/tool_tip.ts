@@ -14,14 +14,14 @@ export function attach_tips(): void {
     const words = target.dataset.tip;
     if (!words || !target.isConnected) return;
     tip.textContent = words;
-    // A dialog is above everything else, so its tips are added inside it.
+    // An open dialog covers everything outside of it, so the tips of its controls are added to the dialog.
     (target.closest("dialog") ?? document.body).append(tip);
     tip.hidden = false;
     const box = target.getBoundingClientRect();
     const own = tip.getBoundingClientRect();
     const within = (at: number, size: number, all: number): number =>
         Math.max(8, Math.min(all - size - 8, at - size / 2));
-    // A tip of the tool rail stands beside it: below, it would hide the next tools.
+    // A tip of the tool rail stands beside its tool, because below it would hide the next tools.
     const is_beside = target.closest(".rail") !== null;
     const below = box.bottom + 8 + own.height < innerHeight;
     const left = is_beside ? box.right + 8 : within(box.left + box.width / 2, own.width, innerWidth);
@@ -31,7 +31,8 @@ export function attach_tips(): void {
     tip.style.left = `${left}px`;
     tip.style.top = `${top}px`;
   };
-  // A press often replaces the control under a pointer that does not move. That must not show a tip.
+  // Where the pointer was pressed last. A press often puts another control under the pointer. The tip of that
+  // control is not shown before the pointer moves.
   let pressed = "";
   const place = (event: Event): string =>
       event instanceof PointerEvent ? `${event.clientX},${event.clientY}` : "focus";

@@ -16,18 +16,18 @@ export const cross = (a: Vec3, b: Vec3): Vec3 =>
 ];
 export const length = (a: Vec3): number => Math.hypot(a[0], a[1], a[2]);
 export const normalised = (a: Vec3): Vec3 => scaled(a, 1 / (length(a) || 1));
-/// A vector turned about a unit axis, right-handed.
+/// Rotates a vector about a unit axis, counter-clockwise if the axis points to the viewer.
 export const turned_about = (v: Vec3, axis: Vec3, rad: number): Vec3 =>
     add(add(scaled(v, Math.cos(rad)), scaled(cross(axis, v), Math.sin(rad))),
         scaled(axis, dot(axis, v) * (1 - Math.cos(rad))));
 export const distance = (a: Vec3, b: Vec3): number => length(sub(a, b));
 
-/// The angle at `corner` between two points, in degrees.
+/// The angle in degrees between the lines from `corner` to the points `a` and `b`.
 export function angle_deg(a: Vec3, corner: Vec3, b: Vec3): number {
   const cosine = dot(normalised(sub(a, corner)), normalised(sub(b, corner)));
   return (Math.acos(Math.max(-1, Math.min(1, cosine))) * 180) / Math.PI;
 }
 
-/// Rounds to a hundredth, so that plans contain intended numbers, not the position of a pixel.
+/// Rounds to a hundredth, so that plans contain short numbers, not all digits of a pixel's position.
 export const hundredth = (value: number): number => Math.round(value * 100) / 100;
 export const hundredths = (p: Vec3): Vec3 => [hundredth(p[0]), hundredth(p[1]), hundredth(p[2])];

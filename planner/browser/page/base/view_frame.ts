@@ -7,7 +7,7 @@ export interface ViewFrame {
   right: Vec3;
   up: Vec3;
   look: Vec3;
-  centre_mm: Vec3;  // a point that the picture's centre shows
+  centre_mm: Vec3;  // the point in the middle of the picture, at any depth
   pixel_mm: number;
 }
 
@@ -30,8 +30,8 @@ const directions: Record<ViewName, [Vec3, Vec3]> = {
 };
 export const view_names = Object.keys(directions) as ViewName[];
 
-/// The view along a slice plane's normal. A region drawn on the slice belongs to this view. For an oblique
-/// plane, the view is given by angles.
+/// The view along a slice plane's normal, to which a region drawn on the slice belongs. The view of an
+/// oblique plane is given by its angles.
 export const view_of_plane = (plane: PlaneName, tilt: Turned): View =>
     plane === "oblique" ? tilt : ({axial: "inferior", coronal: "anterior", sagittal: "left"} as const)[plane];
 
@@ -59,7 +59,7 @@ export function directions_of(view: View): {right: Vec3; up: Vec3; look: Vec3} {
   return {look, up, right: cross(look, up)};
 }
 
-/// The angles of the view that looks in a direction.
+/// Angles of the view that looks along a unit vector in LPS.
 export function turned_towards(look: Vec3): Turned {
   const tenth = (rad: number): number => Math.round((rad * 1800) / Math.PI) / 10;
   const elevation = tenth(Math.asin(Math.max(-1, Math.min(1, -look[2]))));
@@ -69,18 +69,19 @@ export function turned_towards(look: Vec3): Turned {
   };
 }
 
-/// A view as in a plan: its name, or AZ,EL.
+/// A view as plans write it: its name, or "AZ,EL" in degrees.
 export const view_text = (view: View): string =>
     typeof view === "string" ? view : `${view.azimuth},${view.elevation}`;
 
-/// The position of a point in a picture of this size, in pixels from the top left.
+/// The position in a picture at which a point appears, in pixels from the top left.
 export function pixel_of(frame: ViewFrame, size: Vec2, p_mm: Vec3): Vec2 {
   const x = dot(p_mm, frame.right) - dot(frame.centre_mm, frame.right);
   const y = dot(p_mm, frame.up) - dot(frame.centre_mm, frame.up);
   return [size[0] / 2 + x / frame.pixel_mm, size[1] / 2 - y / frame.pixel_mm];
 }
 
-/// The view's millimetres (u, v) = (p . right, p . up) of a pixel position.
+/// A pixel position in the view's own millimetres: u = p . right, v = p . up for every point p that appears
+/// there.
 export function uv_of(frame: ViewFrame, size: Vec2, at: Vec2): Vec2 {
   return [
     dot(frame.centre_mm, frame.right) + (at[0] - size[0] / 2) * frame.pixel_mm,
@@ -88,14 +89,14 @@ export function uv_of(frame: ViewFrame, size: Vec2, at: Vec2): Vec2 {
   ];
 }
 
-/// The point of a pixel position at a depth, p . look.
+/// The point that appears at a pixel position and lies at the depth p . look = `depth_mm`.
 export function point_of(frame: ViewFrame, size: Vec2, at: Vec2, depth_mm: number): Vec3 {
   const [u, v] = uv_of(frame, size, at);
   return add(add(scaled(frame.right, u), scaled(frame.up, v)), scaled(frame.look, depth_mm));
 }
 
-/// The letters at a picture's left, right, top and bottom edge: R, L, A, P, H or F; two letters if the edge's
-/// direction is oblique.
+/// The letters of the patient's directions at the left, right, top and bottom edge of a picture: R, L, A, P,
+/// H or F; two letters at an oblique edge.
 export function edge_letters(frame: ViewFrame): {left: string; right: string; top: string; bottom: string} {
   const name = (d: Vec3): string =>
       ([[d[0], "L", "R"], [d[1], "P", "A"], [d[2], "H", "F"]] as [number, string, string][])

@@ -12,11 +12,12 @@ interface Entry {
   size?: number;
 }
 
-/// Names of files that are no single images of a series: whole scans, objects and meshes.
+/// Names of files that are read alone: whole scans, objects and meshes. Any other file may be one image of a
+/// series.
 const whole_files = /\.(nii|nii\.gz|nrrd|nhdr|mha|mhd|raw|octree|stl|ply|obj|off|vtp|vtk|glb)$/i;
 
-/// The folder picker. The server lists only folders that were opened with it. The choice is opened, or passed
-/// to `take` if that is given.
+/// Opens the folder picker. The server lists only the folders that are open to the page. The chosen path goes
+/// to `take`, which opens it by default.
 export function open_picker(
     title = "Open a scan or plan", take: (path: string) => void = (path) => void open_found(path)): void {
   const dialog = open_dialog(title, "picker");
@@ -71,7 +72,7 @@ interface Series {
   study_date: string;
 }
 
-/// Opens a plan or a scan. If a folder has several DICOM series, the person picks one.
+/// Opens a plan or a scan. If the path is a folder with several DICOM series, the person picks one.
 async function open_found(path: string): Promise<void> {
   const key = busy("Looking for series");
   const answer = await try_to<{series: Series[]}>("series", {path});
@@ -98,7 +99,7 @@ async function open_found(path: string): Promise<void> {
                     el("span", {}, [one.name || `Series ${one.number}`, one.stack].filter(Boolean).join(", ")),
                     el("small", {}, series_words(one)))))));
 }
-/// "CT · 90 slices of 512 × 512 · 0.98 × 0.98 × 3.00 mm · 1998-01-31"
+/// One line about a series, such as "CT · 90 slices of 512 × 512 · 0.98 × 0.98 × 3.00 mm · 1998-01-31".
 function series_words({modality, slices, size, spacing_mm, study_date}: Series): string {
   const spacing = spacing_mm.filter((mm): mm is number => mm !== null).map((mm) => mm.toFixed(2)).join(" × ");
   const date = study_date.replace(/^(\d{4})(\d\d)(\d\d)$/, "$1-$2-$3");
@@ -126,15 +127,15 @@ const size_words = (bytes: number): string => bytes >= 2 ** 30 ?
     `${+(bytes / 2 ** 30).toFixed(1)} GB` :
     (bytes > 1e6 ? `${(bytes / 1e6).toFixed(1)} MB` : `${Math.ceil(bytes / 1e3)} KB`);
 
-/// A file that a person sends to the page, with its path below the dropped folder.
+/// A dropped or chosen file. The path begins with the dropped folder.
 interface Given {
   file: File;
   path: string;  // "series/IM0001"
 }
 
-/// Takes files and folders that are dropped anywhere on the page.
+/// Lets the person drop files and folders anywhere on the page, and sends them to the server.
 export function take_drops(): void {
-  // Rows of the page are dragged, too.
+  // Whether files are dragged: rows of the page's own lists can be dragged, too.
   const has_files = (event: DragEvent): boolean => event.dataTransfer?.types.includes("Files") === true;
   addEventListener("dragover", (event) => {
     if (!has_files(event)) return;
@@ -149,7 +150,7 @@ export function take_drops(): void {
     event.preventDefault();
     document.body.classList.remove("dropping");
     if (!may_edit()) return notify("This window only shows the plan.", "warning");
-    // Both lists are empty once the event has ended.
+    // Entries and files are read now, because the browser empties the list of items when the event ends.
     const items = [...event.dataTransfer?.items ?? []].filter((item) => item.kind === "file").map((item) => {
       return {entry: item.webkitGetAsEntry(), file: item.getAsFile()};
     });
@@ -170,7 +171,7 @@ async function given_below(entry: FileSystemEntry): Promise<Given[]> {
   }
   const reader = (entry as FileSystemDirectoryEntry).createReader();
   const found: Given[] = [];
-  // A reader returns its entries in parts; an empty part is the end.
+  // readEntries() returns the entries in parts; an empty part marks the end.
   for (;;) {
     const part = await new Promise<FileSystemEntry[]>((take, fail) => reader.readEntries(take, fail));
     if (!part.length) return found;
@@ -192,18 +193,18 @@ export function file_chooser(label: string, tip: string, is_folder: boolean): Ch
   return [button(label, tip, () => picker.click()), picker];
 }
 
-/// The largest size that a page may send, in words.
+/// The largest file that a page may send, in words.
 export const most_upload_words = (): string => size_words(most_upload_bytes());
 const most_upload_bytes = (): number => state.hello?.most_upload_bytes ?? 4 * 2 ** 30;
 const most_files = 20000;
 const sent_at_once = 4;
 
-/// Sends files to the server, which stores them in its folder "uploads". Then opens them: a single file as a
-/// plan or a scan, several files as the folder of a series.
+/// Sends files to the server, which stores them in its folder "uploads". Then opens a single file as a plan
+/// or a scan, or the folder of several files as a series.
 export async function send(given: Given[]): Promise<void> {
   const files = given.filter(({path}) => !/(^|\/)(\.|DICOMDIR$|Thumbs\.db$)/i.test(path));
   const bytes = files.reduce((sum, {file}) => sum + file.size, 0);
-  if (!files.length) return notify("The dropped data hold no file.", "warning");
+  if (!files.length) return notify("No file was dropped: drop files or a folder.", "warning");
   if (files.length > most_files)
     return notify(
         `These are ${files.length} files; at most ${
@@ -240,14 +241,16 @@ export async function send(given: Given[]): Promise<void> {
   }
 }
 
-/// The folder for files that are sent together. The time in its name makes it unique.
+/// Name of a folder for files that are sent together. It contains the date and the time to the second, so
+/// that a repetition is unlikely.
 function folder_name(files: Given[]): string {
   const top = files[0]!.path.includes("/") ? files[0]!.path.split("/")[0]! : "series";
   const time = new Date().toISOString().slice(0, 19).replace(/[-:]/g, "").replace("T", "-");
   return `${top.replace(/[^\w-]+/g, "_").slice(0, 60)}-${time}`;
 }
 
-/// Names in one folder: a file's own, with a number before it if two folders have files of the same name.
+/// Names for files of several folders in one folder: their own names, or all with their number in front if
+/// two are equal.
 function sent_names(files: Given[]): string[] {
   const own = files.map(({file}) => file.name);
   return new Set(own).size === own.length ?

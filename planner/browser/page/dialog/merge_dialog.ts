@@ -37,7 +37,7 @@ async function show_merge(path: string, base?: number, shown?: Dialog): Promise<
   };
   dialog.refill(
       el("p", {class: "path"}, path),
-      el("label", {class: "field", "data-tip": "The state of this plan that both plans go on from."},
+      el("label", {class: "field", "data-tip": "The state of this plan from which both plans continue."},
          el("span", {}, "Common original"),
          el("select", {
            name: "base",
@@ -69,7 +69,7 @@ const text_of = (value: unknown): string => value === null || value === undefine
 
 const conflicts = (list: Conflict[]): Child => [
   el("p", {class: "sentence fail"},
-     "Both plans changed the same values, so nothing is merged. Make one of them agree, and merge again."),
+     "Both plans changed the same values, so nothing is merged. Change one plan to the other's values, and merge again."),
   el("div", {class: "result-table", tabindex: 0, role: "group", "aria-label": "Conflicts"},
      el("table", {},
         el("thead", {}, el("tr", {}, ["Value", "Original", "This plan", "The other plan"].map((head) => el("th", {scope: "col"}, head)))),

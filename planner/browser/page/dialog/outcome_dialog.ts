@@ -81,7 +81,8 @@ function piece_table(piece: Outcome["pieces"][number]): Child {
 }
 
 type Word = Parameters<typeof word_of>[0];
-/// The row of one direction, amber if the interval does not contain the planned value.
+/// A row that compares planned and achieved motion in one direction. It is amber if the interval does not
+/// contain the planned value.
 function result_row(
     name: string, word: Word, unit: string, planned: number, achieved: number, half_width: number): Child {
   const is_met = Math.abs(planned - achieved) <= half_width;

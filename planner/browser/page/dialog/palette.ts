@@ -54,7 +54,7 @@ export function open_palette(): void {
         chosen = Math.max(0, chosen - 1);
       else if (event.key !== "Enter")
         return;
-      // Otherwise the key would press a button of the dialog that the command opens.
+      // Without this, Enter would also press a button of the dialog that the command opens.
       event.preventDefault();
       if (event.key === "Enter") return run(found[chosen]);
       again();
@@ -101,6 +101,6 @@ export function open_help(): void {
          el("p", {},
             "Two kernels compute every object: one counts voxels, one measures triangles. A green badge means that they agree within the resolution of the scan, amber that they agree with a warning, red that they disagree. Click a badge to see the place."),
          el("p", {}, "Not a medical device. Nothing leaves this machine."))));
-  // The help scrolls, so it must be able to have the focus.
+  // The help scrolls. With a tab index it can have the focus, so that keys scroll it.
   document.querySelector<HTMLElement>("dialog.help .dialog-body")!.tabIndex = 0;
 }

@@ -22,8 +22,8 @@ const kinds: [string, string, string][] = [
   ["nrrd", "Label map", "Voxels"],
 ];
 
-/// Export and print: chooses the object, the format, and whether to write a file once or to add a step that
-/// writes it in every run.
+/// Opens the dialog in which the person chooses an object, a format, and whether to write the file once or to
+/// add a step that writes it in every run.
 export function open_export(): void {
   const dialog = open_dialog("Export and print", "export");
   const objects = object_ids().filter((id) => makes_body(step_of(id)));
@@ -106,8 +106,8 @@ export async function write_report(): Promise<void> {
   if (!answer) return;
   if (answer.left_out.length)
     notify(`The report lacks the parts that failed: ${answer.left_out.join(", ")}. Its findings state the reasons.`, "warning");
-  void evaluate(true);  // the report has certified everything, so the badges are updated
-  // The report's script runs in an origin of its own and cannot access this page.
+  void evaluate(true);  // the report has certified every object, so the badges can be updated
+  // In the sandbox the report's script has another origin than this page, so that it cannot access the page.
   const frame = el("iframe", {src: file_url(answer.file), title: "Report", sandbox: "allow-scripts"});
   const follow = (event: MessageEvent): void => {
     if (event.source === frame.contentWindow && event.data === "Escape") dialog.close();
@@ -133,7 +133,7 @@ export function open_audit(): void {
       ]));
 }
 
-/// The link for a colleague, whose page follows the plan and cannot change it.
+/// Shows the link for a colleague. A page opened with it follows the plan and cannot change it.
 export function open_link(): void {
   const dialog = open_dialog("A link to look at this plan", "link-dialog");
   const given = state.hello?.view_token;
@@ -154,7 +154,7 @@ export function open_link(): void {
          }, {class: "primary"})));
 }
 
-/// The panes as they are shown, in one PNG.
+/// Downloads one PNG of all panes as they are shown.
 export function take_screenshot(): void {
   const shown = all_panes().filter((pane) => pane.canvas.clientWidth);
   const boxes = shown.map((pane) => pane.canvas.getBoundingClientRect());

@@ -12,21 +12,21 @@ import {PlanState, ProcedureSays, ProcedureValue} from "../protocol";
 import {on_leaving_plan, set, state} from "../state";
 import {Vec3} from "../base/vector";
 
-// Values and ticks that a person has changed in the forms since the procedure was planned, under names such
-// as "fibula_flap.start_mm". All others follow from the plan's steps.
+// Values and ticks that a person has changed in a form since its procedure was planned. Keys are such as
+// "fibula_flap.start_mm". All other values come from the plan's steps.
 const typed = new Map<string, number>();
 const ticks = new Map<string, boolean>();
-// The values and ticks that were planned last. The form shows them again if the planning was undone.
+// The changed values and ticks of the last planning. The form shows them again if the person undoes it.
 const planned = {typed: new Map<string, number>(), ticks: new Map<string, boolean>()};
 let pending_procedure: string|null = null;
 on_leaving_plan(() => {
   pending_procedure = null;
-  // Values such as a threshold or an advancement belong to one patient.
+  // Values such as a threshold or an advancement belong to one patient, so none is kept for the next plan.
   for (const kept of [typed, ticks, planned.typed, planned.ticks]) kept.clear();
 });
 
-/// What the plan states of a procedure: its options, its values, and the object of an earlier procedure on
-/// which it acts.
+/// How the plan already contains a procedure: the values and options of its steps, and the result of an
+/// earlier procedure from which it starts.
 interface Planned {
   outcome: string|null;
   is_planned: boolean;  // the plan has the procedure's steps
@@ -34,7 +34,7 @@ interface Planned {
   values: {[name: string]: {value: number; is_agreed: boolean}};
 }
 
-/// Moves a procedure's entries from one map to another.
+/// Moves the entries of one procedure to another map.
 function take_over<T>(from: Map<string, T>, to: Map<string, T>, procedure: string): void {
   for (const [name, chosen] of [...from]) {
     if (!name.startsWith(`${procedure}.`)) continue;
@@ -43,7 +43,7 @@ function take_over<T>(from: Map<string, T>, to: Map<string, T>, procedure: strin
   }
 }
 
-/// Shows a procedure's landmarks and values, and adds its steps to the plan.
+/// Opens the form of a procedure: its landmarks, its values, and a button that adds its steps to the plan.
 export function open_procedure(name?: string): void {
   const dialog = open_dialog("Procedure from landmarks", "procedure");
   const show = async(chosen: ProcedureSays|undefined): Promise<void> => {
@@ -126,7 +126,8 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays, said: Planned): C
     if (!made_plan) return;
     take_over(typed, planned.typed, chosen.name);
     take_over(ticks, planned.ticks, chosen.name);
-    // The new pieces replace the objects shown before, until the procedure is undone.
+    // The new pieces are shown in place of the objects shown before. These return when the procedure is
+    // undone.
     const made = made_plan.made ?? [];
     const behind = made[made.length - 1];
     const hidden = shown.filter((id) => behind && !made.includes(id)).map((id) => {
@@ -172,7 +173,8 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays, said: Planned): C
 }
 const scans = (): {[name: string]: {path: string}} => state.plan?.plan.scans ?? {};
 
-/// A scan that a procedure needs in addition to the patient's: its file, or a button to choose one.
+/// A row for a scan that a procedure needs besides the patient's, such as a donor's: its file, or a button to
+/// choose one.
 function scan_row(scan: {name: string; says: string}, procedure: string, dialog: Dialog): Child {
   const path = scans()[scan.name]?.path;
   const take = async(chosen: string): Promise<void> => {

@@ -39,7 +39,7 @@ export async function open_signatures(): Promise<void> {
         },
            el("h3", {}, "Sign the plan as it is now"), field("by", "Name"), field("as", "Role"), field("note", "Remark"),
            el("p", {class: "says"},
-              "A signature states checksums of the plan and its scans, so that a later change is seen. It does not prove who signed."),
+              "A signature states checksums of the plan and its scans, so that later changes are detected. It does not prove who signed."),
            el("div", {class: "row end"}, button("Sign", "Adds the signature to the plan", () => undefined, {class: "primary", type: "submit"}))));
   };
   const sign = async(): Promise<void> => {

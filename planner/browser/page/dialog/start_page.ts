@@ -24,7 +24,8 @@ export function make_start(host: HTMLElement): void {
   watch(["page", "hello", "plan", "jobs", "hides_patient"], again);
   let looked_at = "";
   watch(["page", "hello"], () => {
-    // Refilling the page to show the plans must not request them again.
+    // The list of plans is requested once for each visit and connection. Refilling the page with the answer
+    // must not request it again.
     const now = `${state.page} ${state.hello !== null}`;
     if (now !== looked_at) void look_for_recent();
     looked_at = now;
@@ -37,7 +38,7 @@ function start(): Child {
     return el(
         "main", {class: "start"},
         el("header", {}, el("h1", {}, el("span", {class: "logo"}), "Octotomy"),
-           el("p", {role: "status"}, "No plan is open. This page shows one as soon as it is opened.")));
+           el("p", {role: "status"}, "No plan is open. This page will show the next plan that is opened.")));
   const is_opening = state.jobs.some((job) => job.what === "Opening");
   return el(
       "main", {class: "start"},
@@ -78,7 +79,7 @@ interface RecentPlan {
 }
 let recent: RecentPlan[]|null = null;
 
-/// The most recently changed plans of the opened folders.
+/// Buttons for the most recently changed plans of the opened folders.
 function recent_plans(): Child {
   if (!recent?.length) return null;
   return el(
@@ -91,7 +92,7 @@ function recent_plans(): Child {
               el("small", {}, new Date(plan.changed_at_ms).toLocaleString()))));
 }
 
-/// Requests the plans of the opened folders, and refills the page if they have changed.
+/// Requests the list of plans in the opened folders. Refills the page if the list has changed.
 async function look_for_recent(): Promise<void> {
   if (state.page !== "start" || !state.hello || !may_edit()) return;
   const answer = await try_to<{plans: RecentPlan[]}>("recent");

@@ -15,7 +15,7 @@ interface Stop {
   says: string;
   is_done(): boolean;
   show?(): void;  // chooses the tool
-  do_it(): void;  // does the stop's work for the person
+  do_it(): void;  // performs the stop's action for the person
 }
 
 const has = (test: (step: Step) => boolean): boolean => steps().some(test);
@@ -70,7 +70,7 @@ const stops: Stop[] = [
   },
   {
     title: "Refine it from the left",
-    says: "Draw the same jaw in the left view: the mask holds the points inside both regions.",
+    says: "Draw the same jaw in the left view: the mask contains the points inside both regions.",
     is_done: () => views_of(mask()) >= 2,
     show: () => {
       set({selected: mask()?.id ?? null});
@@ -123,7 +123,7 @@ const stops: Stop[] = [
 ];
 let window_seen = false;
 
-/// Begins the tour on a new phantom.
+/// Opens a new phantom and begins the tour on it.
 export async function start_tour(): Promise<void> {
   audit_seen = window_seen = report_written = false;
   await open_plan({phantom: "head"});

@@ -15,8 +15,8 @@ export interface Plane {
 
 const is_point = (value: unknown): value is Vec3 => Array.isArray(value) && value.length === 3;
 
-/// The plane that the server fitted or computed from landmarks, else the step's own; null if the server has
-/// not evaluated it yet.
+/// The mirror plane of a step: the one that the server fitted or computed from landmarks, else the one that
+/// the step states. Null if the server has yet to compute it.
 export function plane_of(step: Step): Plane|null {
   const found = state.plan?.objects.find((one) => one.id === step.id)?.mirror;
   if (found) return found.plane;
@@ -27,20 +27,21 @@ export function plane_of(step: Step): Plane|null {
   };
 }
 
-/// A view shows the plane as a line if the cosine of the angle between its direction and the plane's normal
-/// is at most this.
+/// A view shows the plane only if it is seen nearly edge on: the cosine of the angle between the view
+/// direction and the plane's normal is at most this.
 const most_tilt = 0.2;
-/// The distance of the handles from the middle of the trace, as a share of the pane's shorter side.
+/// Distance between the middle of the plane's trace and a rotating handle, as a share of the pane's shorter
+/// side.
 const reach_share = 0.3;
 const near_px = 12;
 
-/// The plane during a drag, until the plan contains it.
+/// The plane while it is dragged, and after the drag until the plan contains it.
 let held: {id: string, plane: Plane}|null = null;
 
 const shown_plane = (step: Step): Plane|null => held?.id === step.id ? held.plane : plane_of(step);
 
 interface Trace {
-  middle: Vec3;  // the point of both planes, the mirror's and the picture's, nearest to the cross-hair
+  middle: Vec3;  // on the mirror plane and the picture's plane, nearest to the cross-hair
   along: Vec3;   // unit vector
 }
 
@@ -59,7 +60,8 @@ function trace_in(pane: Pane, plane: Plane): Trace|null {
   };
 }
 
-/// Positions of the handles: the first moves the plane along its normal, the other two rotate it.
+/// Positions of the handles in canvas pixels. The first moves the plane along its normal; the other two
+/// rotate it.
 function handles_of(pane: Pane, {middle, along}: Trace): [Vec2, Vec2, Vec2] {
   const reach = scaled(along, reach_share * Math.min(...pane.size) * pane.frame.pixel_mm);
   return [pane.pixel_at(middle), pane.pixel_at(add(middle, reach)), pane.pixel_at(sub(middle, reach))];
@@ -80,12 +82,13 @@ export function draw_mirror_plane(pane: Pane, context: CanvasRenderingContext2D,
 
 export interface MirrorDrag {
   to(at: Vec2): void;
-  /// Writes the plane into the step as a given one, no longer fitted or through landmarks.
+  /// Writes the dragged plane into the step. The step then states its plane and no longer fits it or puts it
+  /// through landmarks.
   done(): void;
   cancel(): void;
 }
 
-/// The drag that moves or rotates the selected mirror's plane, if a handle is under the pointer.
+/// Begins to move or rotate the plane of the selected mirror. Null if no handle is under the pointer.
 export function mirror_from(pane: Pane, at: Vec2): MirrorDrag|null {
   const step = step_of(state.selected);
   const plane = step?.do === "mirror" && !is_elsewhere() ? plane_of(step) : null;
@@ -97,7 +100,7 @@ export function mirror_from(pane: Pane, at: Vec2): MirrorDrag|null {
   const {look} = pane.frame;
   const {middle} = trace;
   const centre = pane.pixel_at(middle);
-  // Clockwise on the screen, which is a right-handed rotation about the view direction.
+  // The angle grows clockwise on the screen, which is a right-handed rotation about the view direction.
   const angle = (p: Vec2): number => Math.atan2(p[1] - centre[1], p[0] - centre[0]);
   const start = angle(at), from = pane.point_at(at);
   return {

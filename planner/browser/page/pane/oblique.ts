@@ -7,9 +7,9 @@ import {set, state} from "../state";
 import {cross, dot, length, turned_about, Vec2, Vec3} from "../base/vector";
 import {directions_of, turned_towards} from "../base/view_frame";
 
-const reach_share = 0.36;  // of the pane's shorter side, from the cross-hair to a handle
+const reach_share = 0.36;  // from the cross-hair to a handle, as a share of the pane's shorter side
 const near_px = 12;
-/// If the sine of the angle between plane and picture is below this, there is no trace to drag.
+/// No trace is drawn if the sine of the angle between the oblique plane and the picture is below this.
 const least_sine = 0.2;
 
 interface Trace {
@@ -19,7 +19,8 @@ interface Trace {
   ends: [Vec2, Vec2];
 }
 
-/// The trace, in this pane, of another pane's oblique slice.
+/// The line in which another pane's oblique slice cuts this pane's picture. Null if no pane shows an oblique
+/// slice or the two are nearly parallel.
 function trace_in(pane: Pane): Trace|null {
   if (pane.setting.mode === "panoramic") return null;
   const index = state.panes.findIndex(
@@ -37,14 +38,15 @@ function trace_in(pane: Pane): Trace|null {
   return {pane: index, normal, centre: [x, y], ends: [[x + by[0], y + by[1]], [x - by[0], y - by[1]]]};
 }
 
-/// A function that tilts the plane to a pointer position, if a handle is under the pointer.
+/// Begins to tilt the oblique plane. Returns a function that rotates it to a pointer position; null if no
+/// handle is under the pointer.
 export function tilt_from(pane: Pane, at: Vec2): ((to: Vec2) => void)|null {
   const trace = trace_in(pane);
   const is_near = (end: Vec2): boolean => Math.hypot(end[0] - at[0], end[1] - at[1]) < near_px * pane.ratio;
   if (!trace?.ends.some(is_near)) return null;
   const {look} = pane.frame;
   const {centre, normal} = trace;
-  // Clockwise on the screen, which is a right-handed rotation about the view direction.
+  // The angle grows clockwise on the screen, which is a right-handed rotation about the view direction.
   const angle = (p: Vec2): number => Math.atan2(p[1] - centre[1], p[0] - centre[0]);
   const start = angle(at);
   return (to) => {

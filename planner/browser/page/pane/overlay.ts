@@ -17,7 +17,7 @@ export function draw_overlay(pane: Pane, context: CanvasRenderingContext2D): voi
   begin_ink(pane.is_on_white);
   const ratio = pane.ratio;
   context.lineJoin = "round";
-  // On a curved slice a point has no single position.
+  // These overlays need one pixel position for each point, which a curved slice does not have.
   if (pane.setting.mode !== "panoramic") {
     draw_cross(pane, context);
     draw_trace(pane, context);
@@ -49,7 +49,8 @@ function draw_keyed(pane: Pane, context: CanvasRenderingContext2D, [x, y]: Vec2)
   line(context, [[x, y - reach], [x, y + reach]], ink.region, 2 * pane.ratio);
 }
 
-// Draws the traces of the other panes' planes. A gap in the middle leaves the point itself visible.
+// Draws lines where the planes of other panes cut this one. A gap in the middle leaves the cross-hair's point
+// visible.
 function draw_cross(pane: Pane, context: CanvasRenderingContext2D): void {
   const frame = pane.frame;
   const [x, y] = pane.pixel_at(state.cross_mm);
@@ -75,8 +76,8 @@ function draw_cross(pane: Pane, context: CanvasRenderingContext2D): void {
   stroke([x + gap, y], [width, y], horizontal);
 }
 
-/// The name of the view under which a region drawn in the pane is stored. For a slice, it is the view along
-/// its normal.
+/// The name of the view with which a mask stores a region drawn in this pane. For a slice it is the view
+/// along its normal.
 export const region_view = (pane: Pane): string => pane.is_slice ?
     view_text(view_of_plane(pane.setting.plane, pane.setting.tilt)) :
     view_text(pane.setting.view);
@@ -90,8 +91,8 @@ interface Region {
   view: string;
   polygons_mm: Vec2[][];
 }
-/// Whether a mask's regions are drawn and edited in the panes. They are not if they are in files, or if the
-/// head is repositioned and the mask belongs to the scan's own views.
+/// Whether the panes draw and edit a mask's regions. They do not if the regions are in files, or if the head
+/// is repositioned and the mask uses the views of the original scan.
 export const is_of_panes = (step: Step|undefined): boolean =>
     step?.do === "mask" && Array.isArray(step.regions) &&
     (step.regions as unknown as Region[]).every((region) => Array.isArray(region.polygons_mm)) &&
@@ -118,12 +119,12 @@ export function mark_mm(mark: Json|undefined): Vec3|null {
   return state.plan?.landmarks.find((one) => one.name === mark)?.point ?? null;
 }
 
-// A slice shows marks within this distance of it, in mm; a view shows all.
+// A slice shows only marks within this distance of it, in mm. A view shows all marks.
 const near_slice_mm = 6;
 const is_near = (pane: Pane, p_mm: Vec3): boolean => !pane.is_slice ||
     Math.abs(dot(p_mm, pane.frame.look) - dot(state.cross_mm, pane.frame.look)) <= near_slice_mm;
 
-// While a piece moves, its handles take the place of names and numbers.
+// The Move tool hides names and numbers, because it draws its handles.
 const is_handled = (): boolean => state.tool === "move";
 
 const measured_words = (found: Measurement): string =>
@@ -155,14 +156,14 @@ function draw_measures(pane: Pane, context: CanvasRenderingContext2D): void {
   }
 }
 
-/// The additional scan on which a procedure places a landmark; empty: the patient's scan.
+/// The name of the additional scan on which a procedure places a landmark; empty for the patient's scan.
 const scan_of_landmark = (name: string): string => (state.hello?.procedures ?? [])
                                                        .flatMap((one) => one.landmarks)
                                                        .find((mark) => mark.name === name)
                                                        ?.scan ??
     "";
 
-/// Whether a landmark is drawn in a pane: it belongs to the scan that is shown and, in a slice, lies near it.
+/// Whether a pane draws a landmark: it belongs to the shown scan and, in a slice, lies near the slice.
 export const is_drawn = (pane: Pane, mark: {name: string; point: Vec3}): boolean =>
     scan_of_landmark(mark.name) === (is_elsewhere() ? shown_scan() : "") && is_near(pane, mark.point);
 

@@ -16,7 +16,7 @@ import {attach_input} from "./view_input";
 const panes: Pane[] = [];
 export const all_panes = (): Pane[] => panes;
 
-/// Makes the panes within their host.
+/// Creates the four panes in their host. `acknowledge` receives each frame that a pane has shown.
 export function make_panes(host: HTMLElement, acknowledge: (pane: number, frame: number) => void): void {
   for (let index = 0; index < 4; ++index) {
     const pane = new Pane(index, acknowledge);
@@ -57,8 +57,8 @@ export function make_panes(host: HTMLElement, acknowledge: (pane: number, frame:
     legend.hidden = true;
   }
   watch(["plan", "compare", "theme"], () => want_all(false));
-  // While a slider moves, coarse pictures are requested; a picture at rest follows soon after the last of
-  // them.
+  // These values change while a slider moves, so coarse pictures are requested. A full picture follows soon
+  // after the last change.
   watch(["looks", "draft_window", "cut_plane"], () => want_all(true));
   watch(["preview"], follow_preview);
   watch(
@@ -69,8 +69,8 @@ export function make_panes(host: HTMLElement, acknowledge: (pane: number, frame:
   }));
 }
 
-// While a piece is dragged, its own pane requests every picture and the other panes one in this time, so that
-// the motion stays smooth.
+// While a piece is dragged, the active pane requests every picture and the other panes one in this many ms,
+// so that the motion stays smooth.
 const others_every_ms = 300;
 let others_at = 0;
 function follow_preview(): void {
@@ -107,12 +107,13 @@ export function fit_all(): void {
 
 const left_at = new Map<string, Pick<State, "panes"|"cross_mm"|"grey">>();
 on_leaving_plan(() => left_at.clear());
-/// Shows a scan of the plan in all panes, with its last settings; null: the patient's.
+/// Shows a scan of the plan in all panes, with the settings that it had last. Null means the patient's scan.
 export function show_scan(name: string|null): void {
   const before = shown_scan();
   const next = name ?? first_scan();
   if (next === before || !state.plan) return;
-  // A tool's draft belongs to the scan shown before. Landmarks of a procedure may lie on several scans.
+  // A tool's unfinished work belongs to the previous scan. Only the landmark tool stays, because a procedure
+  // may need landmarks on several scans.
   if (state.tool !== "landmark") take_tool("navigate");
   left_at.set(before, {panes: state.panes, cross_mm: state.cross_mm, grey: state.grey});
   const {panes: fits, ...looked} = left_at.get(next) ?? fitted(state.plan, next);
@@ -129,7 +130,7 @@ export function show_scan(name: string|null): void {
   }
 }
 
-/// Brings the cross-hair and every pane to a place, and marks it.
+/// Moves the cross-hair and the middle of every pane to a place, and marks it with words.
 export function show_place(at_mm: Vec3, says: string): void {
   set({
     cross_mm: at_mm,
@@ -206,7 +207,7 @@ function head_of(pane: Pane): Child {
   ];
 }
 
-/// Shows a view or slice by its name in a pane.
+/// Shows a view or a slice in a pane, by its name in the pane's menu.
 export function show_in(index: number, name: string): void {
   if (name === "panoramic")
     change_pane(index, {mode: "panoramic"});

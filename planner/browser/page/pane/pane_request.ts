@@ -10,7 +10,7 @@ import {directions_of} from "../base/view_frame";
 
 const sheet_height_mm = 70;
 const most_sample = 32767;
-/// Eyes 65 mm apart that look at a head 0.6 m away.
+/// Angle between two eyes 65 mm apart that look at a point 0.6 m away.
 const between_eyes_deg = 6;
 
 export function request_of(pane: Pane, dragging: boolean): PaneRequest {
@@ -32,12 +32,12 @@ export function request_of(pane: Pane, dragging: boolean): PaneRequest {
   else
     add_view(request, setting);
   if (state.preview && !is_elsewhere()) {
-    // While a slider is dragged, steps are tried in coarse voxels if the plan has many.
+    // Steps are tried in coarse voxels while a slider is dragged, if the plan has many voxels.
     request.preview = dragging && state.preview.steps ? {...state.preview, coarse: true} : state.preview;
     if (state.preview.move && !state.preview.difference) request.overlap = true;
     request.objects = shown.filter((object) => !object.id || !is_interference(object.id));
   }
-  // The tried object may lie inside the other objects.
+  // The tried object may lie inside the other objects, so these are drawn half transparent.
   if (!pane.is_slice && request.preview?.by && request.preview.by !== "step") request.objects = request.objects.map(seen_through);
   if (pane.is_slice) request.objects = request.objects.map(hatched_where_interfering);
   if (!pane.is_slice && !is_elsewhere() && !state.compare && has_interference(request))
@@ -45,8 +45,8 @@ export function request_of(pane: Pane, dragging: boolean): PaneRequest {
   return request;
 }
 
-/// Whether the drawn pieces interpenetrate. Interference lies inside bone, so opaque bone would hide it.
-/// While a piece is dragged, nothing is made translucent, because that would be too slow.
+/// Whether drawn pieces overlap. An overlap lies inside bone, so opaque bone would hide it. False while a
+/// piece is dragged, because drawing translucent surfaces is too slow then.
 function has_interference({preview, objects, dragging}: PaneRequest): boolean {
   if (preview?.move && preview.difference) return false;
   if (preview) return !dragging && (state.overlap_mm3 ?? 0) > 0;
@@ -54,7 +54,7 @@ function has_interference({preview, objects, dragging}: PaneRequest): boolean {
 }
 const volume_of = (id: string): number => state.plan?.objects.find((one) => one.id === id)?.volume?.value ?? 0;
 
-/// Opacity of objects through which interference is visible. Half opaque surfaces can still be picked.
+/// Opacity of objects that could hide an overlap. A click still picks surfaces of this opacity.
 const see_through = 0.5;
 const seen_through = (object: DrawnObject): DrawnObject => object.id !== undefined && is_interference(object.id) ?
     object :
@@ -93,20 +93,21 @@ function add_slice(request: PaneRequest, setting: PaneSetting): void {
     request.threshold = [state.draft_window.low, state.draft_window.high ?? most_sample];
 }
 
-/// Whether an object is the overlap of pieces. While a piece is dragged, the overlap that was evaluated
-/// before is out of date.
+/// Whether an object is an overlap of pieces. Previews leave it out, because it was computed for the pieces'
+/// earlier positions.
 function is_interference(id: string): boolean {
   const step = step_of(id);
   return step !== undefined && is_overlap(step, steps());
 }
 
-/// The steps that make shapes, as a text. Pictures depend on them in addition to their own request.
+/// A text that changes when the plan's objects may look different. A pane requests a new picture if this or
+/// its own settings have changed.
 export const shapes = (): string => JSON.stringify([
   state.plan?.path, state.evaluations,
   steps().filter((step) => makes_shape(step) || step.do === "head_position")
 ]);
 
-/// Whether an object to be drawn is still being evaluated. The earlier picture stays until then.
+/// Whether an object to be drawn is not evaluated yet. The pane shows its earlier picture in the meantime.
 export function is_pending(): boolean {
   const pending = new Set((state.plan?.objects ?? [])
                               .filter((object) => object.evaluated === false && !object.error)

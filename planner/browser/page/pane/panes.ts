@@ -18,20 +18,20 @@ const most_in_flight = 2;
 const rest_after_ms = 140;
 const slow_after_ms = 500;
 
-/// The newest request whose picture stated volumes of the dragged piece.
+/// Number of the newest request whose answer stated volumes of the dragged piece.
 let newest_volumes = 0;
 
 interface Picture {
   header: FrameHeader;
   bitmap: ImageBitmap;
-  planes: Planes|null;  // only at rest; they arrive after the picture
+  planes: Planes|null;  // only of a picture at rest; null before they have arrived
 }
 
 export class Pane {
   readonly canvas = el("canvas", {tabindex: 0, role: "img"});
   picture: Picture|null = null;
   problem = "";
-  keyed_at: Vec2|null = null;  // the position that arrow keys move, if the tool works on positions
+  keyed_at: Vec2|null = null;  // position that arrow keys move for a tool that works on positions
   private is_wanted = false;
   private in_flight = 0;
   private rest_timer = 0;
@@ -57,12 +57,12 @@ export class Pane {
   get size(): Vec2 {
     return [this.canvas.width, this.canvas.height];
   }
-  /// Whether a picture newer than the shown one is wanted or pending.
+  /// Whether the pane waits for a picture, or for the planes of the shown one.
   get is_busy(): boolean {
     return this.is_wanted || this.in_flight > 0 || this.lacks_planes;
   }
-  /// Whether the points of positions are known. They are not in a view whose picture is moving or whose
-  /// planes have not arrived yet.
+  /// Whether positions in the pane can be converted to points. That is impossible in a view while its picture
+  /// moves or its planes have not arrived.
   get has_places(): boolean {
     return this.is_slice || !this.picture || (this.picture.header.quality === "rest" && !this.lacks_planes);
   }
@@ -77,7 +77,8 @@ export class Pane {
   get is_slice(): boolean {
     return this.setting.mode !== "view";
   }
-  /// Whether the background is white, as for surfaces on a light page. Pictures of samples have a black one.
+  /// Whether the background is white: for views of surfaces on a light page. Slices, radiographs and largest
+  /// samples have a black one.
   get is_on_white(): boolean {
     return !this.is_slice && !is_dark() && !["radiograph", "mip"].includes(this.setting.shading);
   }
@@ -85,8 +86,8 @@ export class Pane {
     return this.setting.mode === "slice" && this.setting.plane === "oblique";
   }
 
-  /// The frame of the present setting. Uses the picture's own directions if it has them, because a
-  /// repositioned head rotates them.
+  /// The frame of the pane's present setting. Uses the directions of the shown picture if they are similar,
+  /// because the server rotates them with a repositioned head.
   get frame(): ViewFrame {
     const setting = this.setting;
     const own = this.picture?.header.view_frame;
@@ -104,14 +105,14 @@ export class Pane {
   }
   private is_dragging = false;
 
-  /// Adapts the canvas to its size in the page. A pane that becomes visible again sends the request that it
-  /// put off.
+  /// Adapts the canvas to its size in the page. A pane that becomes visible again sends its postponed
+  /// request.
   resized(): void {
     const width = Math.round(this.canvas.clientWidth * this.ratio);
     const height = Math.round(this.canvas.clientHeight * this.ratio);
     if (!width || !height) return;
     if (width === this.canvas.width && height === this.canvas.height) return this.pump();
-    // A pane that changes its size keeps showing the same part.
+    // A pane that changes its size continues to show the same part of the scene.
     const before = this.is_sized ? Math.min(this.canvas.width, this.canvas.height) : Math.min(width, height);
     this.is_sized = true;
     const scale = before / Math.min(width, height);
@@ -122,8 +123,8 @@ export class Pane {
     this.redraw_now();
   }
 
-  /// Requests a picture of the present setting: while dragging a coarse one, followed by one at rest soon
-  /// after the last.
+  /// Requests a picture of the present setting. While dragging, the picture is coarse, and a picture at rest
+  /// follows when the requests have ceased for rest_after_ms.
   want(dragging: boolean): void {
     this.is_wanted = true;
     this.is_dragging = dragging;
@@ -163,7 +164,7 @@ export class Pane {
       this.in_flight = Math.max(0, this.in_flight - 1);
       this.last_asked = "";
       if (error instanceof Refusal && error.code !== "cancelled" && error.code !== "lost") {
-        // A refused preview is reported on its panel, and the panes keep their pictures.
+        // The panel of a preview shows why the server refused it. The pane keeps its picture.
         if (preview?.steps && is_same(state.preview, preview))
           set({tried: {mm3: 0, voxels: 0, refusal: refusal_text(error.message)}});
         else
@@ -174,7 +175,7 @@ export class Pane {
     });
   }
 
-  /// Discards the requests that were pending when the connection broke.
+  /// Forgets the requests that were pending when the connection broke, and requests a new picture.
   reconnected(): void {
     this.in_flight = 0;
     this.last_asked = "";
@@ -214,7 +215,8 @@ export class Pane {
     this.redraw();
   }
 
-  /// Shows the volumes of the dragged piece, unless those of a later request of another pane are shown.
+  /// Shows the volumes that a picture states of the dragged piece, unless the answer to a later request is
+  /// already shown.
   private take_volumes({id, overlap_mm3, difference}: FrameHeader): void {
     if (!state.preview || (overlap_mm3 === undefined && !difference) || id < newest_volumes) return;
     newest_volumes = id;
@@ -222,7 +224,8 @@ export class Pane {
     if (difference && state.preview.move && difference.to === state.preview.difference) set({difference});
   }
 
-  /// The point of the surface or slice at a canvas position, and its object. Null beside all objects.
+  /// The point at a canvas position, and the object whose surface it is on. Null where a view shows no
+  /// surface or is not at rest. In a slice the object is null.
   pick(at: Vec2): {point: Vec3; object: string | null}|null {
     const frame = this.frame;
     if (this.is_slice)
@@ -237,8 +240,8 @@ export class Pane {
         point_of(header.view_frame, [header.width, header.height], [pixel.x + 0.5, pixel.y + 0.5], depth);
     return {point, object: number ? header.objects?.[number - 1] ?? null : null};
   }
-  /// Whether a position of a picture at rest lies beside all surfaces. Always false in a picture without
-  /// depths, such as a radiograph.
+  /// Whether a view at rest shows no surface at a position. Always false in slices and in pictures without
+  /// depths, such as radiographs.
   is_beside(at: Vec2): boolean {
     const {header, planes} = this.picture ?? {};
     if (this.is_slice || !header || header.quality !== "rest" || !planes?.depth) return false;
@@ -250,21 +253,22 @@ export class Pane {
     return {x, y, index: y * header.width + x};
   }
 
-  /// The sample of a slice at rest at a position.
+  /// The scan's sample at a position of a slice at rest. Null outside of the scan and while the slice moves.
   value_at(at: Vec2): number|null {
     const {header, planes} = this.picture ?? {};
     const value = header && planes?.value?.[this.picture_pixel(header, at).index];
     return value === undefined || Number.isNaN(value) ? null : value;
   }
 
-  /// Discards the picture, because the pane is about to show something else.
+  /// Discards the picture, so that the pane does not show it under a new setting.
   forget(): void {
     this.last_asked = "";
     this.picture?.bitmap.close();
     this.picture = null;
   }
 
-  /// The point at a position; where there is no surface, the point on the plane through the cross-hair.
+  /// The point at a position. Where a view shows no surface, this is the point at the depth of the
+  /// cross-hair.
   point_at(at: Vec2): Vec3 {
     const frame = this.frame;
     return this.pick(at)?.point ?? point_of(frame, this.size, at, dot(state.cross_mm, frame.look));
@@ -300,7 +304,7 @@ export class Pane {
   }
 
   // Draws the newest picture, moved and scaled to the present setting, so that panning and zooming need not
-  // wait for the server.
+  // wait for a new picture.
   private draw_picture(context: CanvasRenderingContext2D, picture: Picture): void {
     const shown = picture.header.view_frame;
     const frame = this.frame;
@@ -320,7 +324,7 @@ export class Pane {
     context.drawImage(picture.bitmap, near(left), near(top), near(width), near(height));
   }
 
-  /// Moves the picture's centre by canvas pixels.
+  /// Moves the picture by canvas pixels.
   pan(by: Vec2): void {
     const frame = this.frame;
     const moved = add(scaled(frame.right, -by[0] * frame.pixel_mm), scaled(frame.up, by[1] * frame.pixel_mm));
@@ -328,7 +332,7 @@ export class Pane {
     this.want(true);
   }
 
-  /// Zooms about a position that stays where it is.
+  /// Multiplies the size of a pixel by `factor`. The point at the position `at` stays there.
   zoom(factor: number, at: Vec2): void {
     const frame = this.frame;
     const pixel_mm = Math.max(0.02, Math.min(4, this.setting.pixel_mm * factor));
@@ -341,10 +345,10 @@ export class Pane {
   }
 }
 
-/// Whether the preview of a request is still the one that the page shows.
+/// Whether the page still shows the preview for which a request was sent.
 const is_same = (now: State["preview"], then: State["preview"]|undefined): boolean =>
     now !== null && JSON.stringify(now) === JSON.stringify(then);
-/// A refusal's message without the temporary name of the tried step.
+/// The message of a refusal without the temporary name of the step that was tried.
 export const refusal_text = (message: string): string => message.replace(/^step 'dragged_piece'(\.\w+)?: /, "");
 
 export function change_pane(index: number, change: Partial<PaneSetting>): void {
@@ -352,7 +356,8 @@ export function change_pane(index: number, change: Partial<PaneSetting>): void {
 }
 
 let picture_asker: ((fields: PaneRequest, on_id: (id: number) => void) => Promise<unknown>)|null = null;
-/// Sets the function that requests pictures. It passes a request's id to `on_id` before the answer arrives.
+/// Sets the function that requests pictures. The function must pass the request's id to `on_id` before the
+/// answer arrives.
 export function use_picture_asker(asker: typeof picture_asker): void {
   picture_asker = asker;
 }

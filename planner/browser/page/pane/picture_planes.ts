@@ -4,12 +4,12 @@
 import {FrameHeader} from "../protocol";
 
 export interface Planes {
-  depth: Float32Array|null;  // mm along the view direction, NaN beside all objects
-  object: Uint16Array|null;  // index, from 1, into the header's objects; 0: none
+  depth: Float32Array|null;  // mm along the view direction, NaN where there is no surface
+  object: Uint16Array|null;  // place, from 1, in the header's objects; 0: no object
   value: Float32Array|null;  // samples, NaN outside the scan
 }
 
-// Browsers have this class, but the compiler's declarations lack it.
+// Browsers have this class, but the declarations that the compiler uses lack it.
 declare class DecompressionStream implements GenericTransformStream {
   constructor(format: "deflate");
   readonly readable: ReadableStream;

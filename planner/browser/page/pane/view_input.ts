@@ -52,12 +52,12 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
     want_slices();
   };
 
-  /// Stores the fingers' present positions as the start of the next motion.
+  /// Stores where the fingers are now, as the start of the next motion.
   function hold_fingers(): void {
     last = middle(fingers);
     pinch = spread(fingers);
   }
-  /// Two fingers pan by the motion of their middle, and zoom about it by their distance.
+  /// Pans by the motion of the middle between two fingers, and zooms by the change of their distance.
   function pinch_to(): void {
     const from = last, before = pinch;
     hold_fingers();
@@ -80,7 +80,7 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
     last = start = at_of(event);
     has_moved = false;
     if (fingers.size > 1) {
-      // The first finger's action was the start of a pinch, so it is undone.
+      // The second finger begins a pinch, so the action of the first finger is undone.
       const tool = active_tool();
       if (drag === "tool" && tool?.cancel)
         tool.cancel();
@@ -140,7 +140,7 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
     else
       drag = null;
   };
-  // A dialog that opens during a drag captures the pointer, so the drag ends.
+  // A dialog that opens during a drag takes the pointer capture away. The drag ends then, too.
   for (const end of ["pointerup", "pointercancel", "lostpointercapture"] as const)
     canvas.addEventListener(end, ended);
 
@@ -170,7 +170,8 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
       {passive: false},
   );
 
-  // For a tool that works on positions: arrow keys move one over the pane, Space clicks it.
+  // Moves a position over the pane by arrow keys and clicks it by Space, for a tool that works on positions.
+  // Returns whether it used the key.
   function point_by_key(event: KeyboardEvent, tool: Tool): boolean {
     const arrow = arrows[event.key];
     const at = pane.keyed_at ?? [pane.size[0] / 2, pane.size[1] / 2];
@@ -228,7 +229,7 @@ function spread(fingers: Map<number, Vec2>): number {
   return a && b ? Math.hypot(a[0] - b[0], a[1] - b[1]) : 0;
 }
 
-/// The middle between the first two fingers, or the position of a single one.
+/// The middle between the first two fingers. With one finger, its position.
 function middle(fingers: Map<number, Vec2>): Vec2 {
   const places = [...fingers.values()];
   const a = places[0] ?? [0, 0];
@@ -239,7 +240,7 @@ function middle(fingers: Map<number, Vec2>): Vec2 {
 const round_about = (azimuth: number): number => ((((azimuth + 180) % 360) + 360) % 360) - 180;
 const within = (elevation: number): number => Math.max(-90, Math.min(90, elevation));
 
-/// Rotates a view by CSS pixels of the pointer; the surface follows the pointer.
+/// Rotates a view by a pointer's motion in CSS pixels, so that the surface follows the pointer.
 export function turn(pane: Pane, by_x: number, by_y: number): void {
   const from = turned(pane.setting.view);
   const azimuth = round_about(from.azimuth - by_x * turn_deg_per_px);
@@ -249,7 +250,7 @@ export function turn(pane: Pane, by_x: number, by_y: number): void {
   pane.want(true);
 }
 
-/// Moves the cross-hair by a number of slices.
+/// Moves the cross-hair by a number of slices of the scan along the view direction.
 function step_slice(pane: Pane, by: number, want_slices: () => void): void {
   const spacing = state.plan?.scans.find((scan) => scan.name === shown_scan())?.spacing_mm ?? [1, 1, 1];
   const look = pane.frame.look;

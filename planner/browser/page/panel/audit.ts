@@ -17,8 +17,8 @@ const marks = {
   FAIL: "✕"
 } as const;
 
-/// Lines that compare identities quote what files state about patients. They are hidden when the patient is
-/// hidden.
+/// The sentence of a line. If the patient is hidden, a line that compares identities does not quote the
+/// files.
 function sentence_of(row: AuditRow): string {
   const quotes = /^(identity|patient(?!_position|_orientation).*)$/.test(row.check ?? "");
   return state.hides_patient && quotes && row.verdict !== "PASS" ?
@@ -26,7 +26,7 @@ function sentence_of(row: AuditRow): string {
       row.sentence;
 }
 
-/// The lines of an audit, worst first.
+/// The lines of an audit as a list, the worst verdicts first.
 export function audit_rows(audit: readonly AuditRow[]): Child {
   const order = {FAIL: 0, WARN: 1, PASS: 2};
   const rows = [...audit].sort((a, b) => order[a.verdict] - order[b.verdict]);
@@ -42,11 +42,11 @@ export function audit_rows(audit: readonly AuditRow[]): Child {
                  sentence_of(row)))));
 }
 
-/// Audits by request; null while the answer is pending or if the file cannot be read.
+/// Audits by the request as a text. Null while the answer is pending, or if the server cannot read the file.
 const audits = new Map<string, AuditRow[]|null>();
 on_leaving_plan(() => audits.clear());
 
-/// The audit of the mesh file of a step with a path, a frame and a unit; null for other steps.
+/// Shows the audit of a step's mesh file. Null for steps that lack a path, a frame or a unit.
 export function mesh_audit(step: Step): Child {
   const fields = schema_of(step)?.properties;
   if (!fields?.path || !fields.frame || !fields.unit || typeof step.path !== "string") return null;

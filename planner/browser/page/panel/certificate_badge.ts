@@ -18,12 +18,14 @@ const signs = {
   FAIL: "✕"
 } as const;
 
-/// Whether a number's interval is wider than the number, so that its size is unknown.
+/// Whether the half-width of a number's interval is larger than the number, so that the number's size is
+/// unknown.
 export const is_wider_than_its_value = (measured: Measured|null|undefined): boolean =>
     measured !== null && measured !== undefined && measured.value !== null &&
     (measured.half_width ?? 0) > Math.abs(measured.value);
 
-/// The certificate that a number's badge shows. If the interval is wider than the value, PASS becomes WARN.
+/// The certificate for a number's badge. PASS becomes WARN if the half-width of the interval is larger than
+/// the number.
 export function judged(
     certificate: Certificate|null|undefined, measured: Measured|null|undefined): Certificate|null|undefined {
   if (certificate?.verdict !== "PASS" || !is_wider_than_its_value(measured)) return certificate;
@@ -34,8 +36,8 @@ export function judged(
   };
 }
 
-/// The badge of a number. Its tip is the certificate's sentence; a click shows the certificate's place in all
-/// panes.
+/// A badge with a number's verdict. Its tip is the certificate's sentence; a click shows the certificate's
+/// place in all panes.
 export function badge(
     id: string, of_kernels: Certificate|null|undefined, measured?: Measured|null): Child {
   const certificate = judged(of_kernels, measured);
@@ -66,7 +68,8 @@ export function badge(
       signs[certificate.verdict]);
 }
 
-/// "56 764 ± 310 mm³": digits in groups of three, and only as many decimals as the half-width justifies.
+/// A value with its half-width and unit, such as "56 764 ± 310 mm³": only as many decimals as the half-width
+/// justifies, and a dash if there is no value.
 export function measured_text(measured: Measured|null|undefined): string {
   if (!measured || measured.value === null || !Number.isFinite(measured.value)) return "–";
   const unit = unit_text(measured.unit);

@@ -10,7 +10,8 @@ import {Json, Step} from "../protocol";
 import {Cleaning, Proposal, set, state, step_of, steps, watch} from "../state";
 import {Refusal} from "../wire";
 
-/// A part of an object: the largest, or the one at a point.
+/// An answer to the request "part": the number of an object's parts, the object's volume, and volume and
+/// place of the largest part or of the one at a point.
 export interface Part {
   parts: number;
   whole_mm3: number;
@@ -22,18 +23,19 @@ interface Tried {
   scans: {id: string; details: {[name: string]: number}; findings: string[]}[];
 }
 
-// The steps that make a scan, from the last one back to the scan that was read.
+// The steps that make a scan, from the last one back to the first, which works on a scan from a file. Empty
+// for a scan from a file.
 function makers_of(scan: Json|undefined): Step[] {
   const maker = steps().find((step) => step.id === scan && typeof step.scan === "string");
   return maker ? [maker, ...makers_of(maker.scan)] : [];
 }
-// The part of a step on which the proposals depend, as a text.
+// Everything on which a step's proposals depend, as a text to compare.
 const basis = (step: Step): string =>
     JSON.stringify([state.plan?.path, step, makers_of(step.scan), state.plan?.plan.scans]);
 const is_cleaned = (step: Step): boolean => step.do === "window";
 
-// The steps that replace the window in a preview. If the proposal cleans the scan, the window is applied to
-// the cleaned scan.
+// The steps that the preview of a proposal shows in place of the window. If the proposal makes a scan, the
+// window is applied to that scan.
 function trial_of(step: Step, {made}: Proposal): Step[] {
   return made.scan === undefined ? [made] : [made, {...step, id: free_id(`${step.id}_tried`), scan: made.id}];
 }
@@ -44,7 +46,8 @@ const changed_by = (mm3: number, whole: number): string => Math.abs(mm3) < 0.5 ?
     "The object keeps its volume" :
     `The object ${mm3 < 0 ? "loses" : "gains"} ${cm3(Math.abs(mm3))} (${share(Math.abs(mm3), whole)})`;
 
-/// Computes proposals to clean a window's object, and shows them on the object's panel.
+/// Requests proposals to clean a window's object one after the other, and shows each on the object's panel as
+/// it arrives.
 export async function look_for_cleaning(id: string): Promise<void> {
   const step = step_of(id);
   if (!step || !is_cleaned(step)) return;
@@ -63,7 +66,7 @@ export async function look_for_cleaning(id: string): Promise<void> {
       if (is_wanted()) offer(await propose(step, part.whole_mm3));
   } catch (error) {
     if (!(error instanceof Refusal)) throw error;
-    // An object that cannot be evaluated shows the reason on its own panel.
+    // An object that cannot be evaluated shows the reason in the list of steps.
   }
   if (is_wanted()) change({is_looking: false});
 }
@@ -156,7 +159,7 @@ async function accept(step: Step, {made, title}: Proposal): Promise<void> {
   if (await edit({steps: all}, `${title}: ${step.id}`, step.id)) void look_for_cleaning(step.id);
 }
 
-/// Null for steps that are no windows.
+/// The panel with proposals for a window's object. Null for other steps.
 export function cleaning_rows(step: Step): Child {
   if (!is_cleaned(step) || state.draft_window) return null;
   const cleaning = state.cleaning?.of === basis(step) ? state.cleaning : null;
@@ -207,8 +210,7 @@ function proposal_card(step: Step, proposal: Proposal): Child {
           {class: "primary", "data-key": `${name}-do`}));
 }
 
-// Removes the picture of a proposal when its panel closes, or when the plan from which it was computed
-// changes.
+// Removes the preview of a proposal when its panel closes or the plan from which it was computed changes.
 watch(["plan", "selected", "right_tab", "tool", "draft_window", "draft_step"], () => {
   const {preview, cleaning} = state;
   if (!preview?.steps || preview.by) return;  // another panel tries steps

@@ -14,11 +14,13 @@ interface Place {
   png: string;
 }
 
-// By the scan's name and file; requests that are pending, too, because a page is refilled while it waits.
+// Doubtful places by plan, scan and file. Pending requests are stored too, because the page may be refilled
+// before the answer and must not send them again.
 const found = new Map<string, Promise<Place[]>>();
 on_leaving_plan(() => found.clear());
 
-/// The pictures of a scan, which arrive after the rest of the audit. `leave` closes what stands before the panes.
+/// Pictures of a scan's doubtful places. They arrive after the rest of the audit. `leave` closes the dialog
+/// or page that covers the panes.
 export function doubtful_places(scan: string, leave: () => void): Child {
   if (!may_edit()) return null;
   const host = el("div", {class: "places", "aria-live": "polite"}, el("p", {class: "says"}, "Looking for gaps, metal and a headrest …"));
@@ -40,7 +42,7 @@ function figure(place: Place, leave: () => void): Child {
   const show = (): void => {
     leave();
     set({page: "plan"});
-    // After the panes are in sight again.
+    // The panes have a size only after the browser has laid out the page.
     requestAnimationFrame(() => {
       show_in(0, place.plane);
       show_place(place.at_mm, `${name}: ${place.sentence}`);

@@ -10,7 +10,8 @@ import {set, state, step_of, watch} from "../state";
 const colour = "#ff9f43";
 const usual_most_mm = 10, step_mm = 0.1;
 
-/// The only length field of a step that needs one object and nothing else; null for other steps.
+/// The length field of a step whose only other required field names one object. Null if the step has no such
+/// field or several.
 export function length_of(step: Step): {field: string; about: Schema}|null {
   const schema = schema_of(step);
   if (schema?.["x-makes"] !== "object" || object_fields(schema).length !== 1) return null;
@@ -23,7 +24,8 @@ export function length_of(step: Step): {field: string; about: Schema}|null {
   return length && lengths.length === 1 && !others.length ? {field: length[0], about: length[1]} : null;
 }
 
-// A single element that persists while its panel is refilled, so that it follows a slider during a drag.
+// One element for all refills of the panel. A new element would miss the volumes that arrive while a slider
+// is dragged.
 const tried_line = el("p", {class: "says", role: "status", "data-key": "tried"});
 let waiting = "";
 function write_tried(): void {
@@ -36,16 +38,16 @@ function write_tried(): void {
                                         (tried.findings ?? []).map((finding) => ` ${finding}.`).join("")}`;
 }
 watch(["tried"], write_tried);
-/// The volume that the server computed for the preview, or the reason why there is none; `until_then` before
-/// the first answer.
+/// A line with the volume that the server computed for the preview, or with its reason to refuse. Shows
+/// `until_then` before the first answer.
 export function tried_text(until_then: string): Child {
   waiting = until_then;
   write_tried();
   return tried_line;
 }
 
-/// A slider for the step's length, and the volume that it would produce. `take` receives the step while the
-/// slider moves, `done` when it is released.
+/// A slider for a step's length, and a line with the object's volume at that length. `take` receives the step
+/// while the slider moves, `done` after its release.
 function slider(step: Step, {field, about}: {field: string; about: Schema}, take: (step: Step) => void, done?: (step: Step) => void): Child {
   const value = Number(step[field] ?? about.default ?? 0);
   const most = Math.max(about.maximum ?? usual_most_mm, Math.abs(value));
@@ -73,7 +75,7 @@ function slider(step: Step, {field, about}: {field: string; about: Schema}, take
   ];
 }
 
-/// Null for steps of another kind.
+/// The slider for a step that is not in the plan yet. Null if the step has no single length.
 export function live_rows_of_draft(draft: Step): Child {
   const length = length_of(draft);
   return length && slider(draft, length, (step) => set({draft_step: step}));
@@ -89,7 +91,7 @@ export function live_rows(step: Step): Child {
       });
 }
 
-// The draft is previewed while its panel is open.
+// A new step with a single length is previewed while the inspector is open.
 watch(["draft_step", "right_tab", "plan"], () => {
   const draft = state.right_tab === "inspector" ? state.draft_step : null;
   const is_whole = draft !== null && length_of(draft) !== null && step_of(String(draft.object)) !== undefined;
@@ -102,7 +104,7 @@ watch(["draft_step", "right_tab", "plan"], () => {
   if (before?.by !== "draft" || JSON.stringify(before.steps) !== JSON.stringify(steps))
     set({preview: {object: "", steps, colour, by: "draft"}, ...(before?.by === "draft" ? {} : {tried: null})});
 });
-// A changed step is previewed while it is selected.
+// The preview of a changed step ends when another step is selected.
 watch(["selected", "tool"], () => {
   if (state.preview?.by === "step" && state.preview.object !== state.selected) set({preview: null, tried: null});
 });

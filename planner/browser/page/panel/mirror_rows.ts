@@ -8,7 +8,7 @@ import {Step} from "../protocol";
 import {state} from "../state";
 import {add, hundredths, scaled} from "../base/vector";
 
-/// Null for steps that mirror nothing.
+/// Shows the plane of a mirror step and how well it fits. Null for other steps.
 export function mirror_rows(step: Step): Child {
   if (step.do !== "mirror") return null;
   const plane = plane_of(step);
@@ -33,7 +33,7 @@ export function mirror_rows(step: Step): Child {
     el("p", {class: "says"},
        `Plane through ${point_mm.map((x) => x.toFixed(1)).join(", ")} mm, normal ${
            normal.map((x) => x.toFixed(3)).join(", ")}; drawn in the panes.`),
-    el("label", {class: "field", "data-tip": "Moves the plane along its normal. It is no longer fitted then"},
+    el("label", {class: "field", "data-tip": "Moves the plane along its normal. The plane is then no longer fitted"},
        el("span", {}, "Move the plane by"), el("input", {
          type: "number",
          step: "any",

@@ -93,7 +93,7 @@ export function movement_fields(): Child {
       state.preview?.move ? state.tried?.findings?.map((finding) => el("p", {class: "sentence warn"}, finding)) : null);
 }
 
-/// Chooses the object to which the difference is drawn while the piece moves.
+/// A switch for the object with which the moving piece is compared in two colours.
 function difference_switch(): Child {
   const to = difference_to();
   return el(
@@ -111,7 +111,7 @@ function difference_switch(): Child {
              (id) => el("option", {value: id, selected: id === to}, id.replace(/_/g, " ")))));
 }
 
-/// The volumes of the newest picture's difference, in the colours of its parts.
+/// The volumes of the parts of the newest picture's difference, each with its colour.
 function difference_reading(source: string): Child {
   const {difference, preview} = state;
   if (!preview || !difference) return null;

@@ -6,7 +6,7 @@ import {dialogs} from "../commands";
 import {moves_object} from "../operations";
 import {on_leaving_plan, set, state, steps} from "../state";
 
-/// The motion of a piece and of the landmarks on it.
+/// The motion of a piece and of its landmarks, in words.
 interface MovementRow {
   object: string;
   from: string;
@@ -22,7 +22,7 @@ on_leaving_plan(() => {
 
 export async function fetch_movement(): Promise<void> {
   const plan = state.plan;
-  // After an edit the rows stay until the pieces are evaluated again.
+  // The rows are requested again only if the plan was edited or evaluated since the last request.
   const present = `${plan?.edit} ${state.evaluations}`;
   if (!plan || state.right_tab !== "movement" || fetched === present) return;
   fetched = present;

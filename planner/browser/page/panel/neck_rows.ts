@@ -34,7 +34,8 @@ function row(step: Step, neck: Neck): Child {
       choice("Cut", "The object loses a small cube about the neck", "cut_bridges_mm"));
 }
 
-/// Null for steps that choose no parts, and for objects without thin necks that the step has not decided.
+/// Shows the thin necks of a step's object, with buttons to keep the part beyond each or to cut it off. Null
+/// if the object has none, or if the step has no fields to decide it.
 export function neck_rows(step: Step): Child {
   const found = state.plan?.objects.find((one) => one.id === step.id)?.necks ?? [];
   if (found.length === 0 || !schema_of(step)?.properties?.keep_bridges_mm) return null;

@@ -67,7 +67,7 @@ export function numbers(): Child {
   ];
 }
 
-/// Moves all panes to the largest region where two pieces overlap.
+/// Shows the largest connected part of an overlap in all panes, with its volume.
 async function show_largest(object: string): Promise<void> {
   const part = await try_to<{parts: number; mm3: number; at_mm: Vec3 | null}>("part", {object});
   if (!part?.at_mm) return;

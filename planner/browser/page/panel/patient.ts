@@ -8,13 +8,14 @@ import {hide_patient, state} from "../state";
 const hidden = "patient hidden";
 const unstated = "patient not stated";
 
-/// "Doe, Jane · A17 · 1970-01-31": enough to recognise a patient.
+/// Name, number and birth date of a patient, such as "Doe, Jane · A17 · 1970-01-31": enough to recognise the
+/// patient.
 function short_words(patient: Patient|null|undefined): string {
   if (!patient) return unstated;
   return [patient.name, patient.number, patient.birth_date].filter(Boolean).join(" · ");
 }
 
-/// A button in the bar that shows the patient of the plan's first scan, and hides or shows the name.
+/// A button in the bar with the patient of the plan's first scan. A click hides or shows the name.
 export function patient_button(): Child {
   const scan = state.plan?.scans[0];
   if (!scan) return null;
@@ -27,7 +28,7 @@ export function patient_button(): Child {
       {class: "ghost small patient", "aria-label": `${words}. ${state.hides_patient ? "Show" : "Hide"} the patient`});
 }
 
-/// Lines of a scan's facts.
+/// A scan's facts about its patient, each on its own line.
 export function patient_facts(scan: ScanState): Child {
   const fact = (name: string, value: string): Child => [el("dt", {}, name), el("dd", {}, value)];
   if (state.hides_patient) return fact("Patient", hidden);

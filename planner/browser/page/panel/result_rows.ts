@@ -13,7 +13,8 @@ import {Measurement as Measured} from "../../../result/page/result";
 
 const measured = (found: Measurement): Measured => found.details as unknown as Measured;
 
-/// Two objects whose distance the panes can show in colours; null for other measurements.
+/// The two objects of a measurement whose distance the panes can show in colours. Null for measurements
+/// without such objects.
 function pair_of(one: Measured): {object: string; reference: string; mutual: boolean; range_mm: number}|null {
   if (one.contacts !== undefined)
     return {object: one.object, reference: one.against, mutual: true, range_mm: Math.max(0.5, one.within_mm)};
@@ -21,7 +22,8 @@ function pair_of(one: Measured): {object: string; reference: string; mutual: boo
     return {object: one.a, reference: one.b, mutual: false, range_mm: Math.max(0.5, Number((one.hausdorff95_mm ?? 5).toFixed(1)))};
   return null;
 }
-/// The place of a measurement's result, and words for it.
+/// The place of a measurement's smallest section or nearest contact, with words for it. Null for other
+/// measurements.
 function place_of(one: Measured): {at_mm: Vec3; says: string}|null {
   if (one.airway) return {at_mm: one.airway.narrowest.at_mm, says: `narrowest section of ${one.object}`};
   const nearest = one.contacts?.reduce<NonNullable<Measured["contacts"]>[number]|null>(
@@ -29,7 +31,7 @@ function place_of(one: Measured): {at_mm: Vec3; says: string}|null {
   return nearest ? {at_mm: nearest.at_mm, says: `nearest contact of ${one.object} with ${one.against}`} : null;
 }
 
-/// Null for steps that do not measure, and for a result without a table.
+/// Table, plot and buttons of a step's result. Null if the step has no result with a table.
 export function result_rows(step: Step): Child {
   const found = state.plan?.measurements?.find((one) => one.id === step.id);
   if (!found?.details) return null;

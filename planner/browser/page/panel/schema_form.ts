@@ -7,12 +7,12 @@ import {button, Child, el} from "../base/html";
 import {Json, Schema, Step} from "../protocol";
 import {state} from "../state";
 
-/// A field's name for people; its unit stands behind the value.
+/// A field's name without its unit, which the form shows after the value.
 export const label_of = (field: string): string =>
     field.replace(/_(mm|deg|mm2|mm3|mpa)$/, "").replace(/_/g, " ");
 
-/// A form for a step's fields; `changed` receives the whole changed step. Fields in `elsewhere` are left out,
-/// because another card shows them.
+/// A form for a step's fields. `changed` receives the whole step after each change. Fields in `elsewhere` are
+/// left out, because another card shows them.
 export function step_form(
     step: Step, changed: (step: Step) => void, elsewhere: readonly string[] = []): Child {
   const schema = schema_of(step);
@@ -118,8 +118,8 @@ function choice(
       all.map((name) => el("option", {value: name, selected: value === name}, name.replace(/_/g, " "))));
 }
 
-// A field for points, lists and records as JSON, which is read when it is complete. A point can also be set
-// from the cross-hair.
+// A text field for points, lists and records. It contains JSON, a name, or numbers separated by commas, and
+// is read when the person leaves it. A point also has a button that sets it to the cross-hair.
 function structured(
     shared: {[name: string]: string}, value: Json|undefined, about: Schema,
     set_value: (value: Json|undefined) => void): Child {
@@ -161,7 +161,7 @@ function read_value(typed: string): Json {
   return JSON.parse(typed) as Json;
 }
 
-/// A new step of an operation, with those fields of its example that are valid in any plan.
+/// A new step with those fields of the operation's example that do not depend on the example's plan.
 export function new_step(schema: Schema, id: string): Step {
   const example = schema.examples?.[0];
   const step: Step = {id, do: schema.properties?.do?.const ?? ""};

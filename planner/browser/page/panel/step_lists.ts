@@ -38,7 +38,7 @@ export function make_lists(host: HTMLElement): void {
   watch(["plan", "looks", "selected", "left_tab", "scan", "hello"], again);
 }
 
-/// Chooses the scan that the panes show, if the plan has several.
+/// A list to choose the scan that the panes show. Null if the plan has only one.
 function scan_choice(): Child {
   const names = (state.plan?.scans ?? []).map((scan) => scan.name);
   if (names.length < 2) return null;
@@ -107,7 +107,7 @@ function objects(): Child {
   });
 }
 
-/// What a step does, in one line.
+/// A short description of a step, such as its expression or the object that it changes.
 export function step_words(step: Step): string {
   const list = (value: Json|undefined): string =>
       (Array.isArray(value) ?
@@ -143,7 +143,7 @@ export function step_words(step: Step): string {
   }
 }
 
-/// The reason why a step has no result. For a step that makes a scan, it stands in the measurements.
+/// The reason why a step has no result. A step that makes a scan states it in its measurement.
 function error_of(step: Step): string|null|undefined {
   if (!makes_scan(step)) return object_of(step.id)?.error;
   return state.plan?.measurements?.find((one) => one.id === step.id && one.value === null)?.sentence;
@@ -174,11 +174,12 @@ function step_rows(): Child {
   ];
 }
 
-// The step that is dragged to another place, as long as it is.
+// The id of the step that the person is dragging; null otherwise.
 let dragged: string|null = null;
 const drop_classes = ["before-here", "behind-here"] as const;
 
-/// Attributes by which a row is dragged to another place, and takes another one before or behind it.
+/// Attributes that make a row draggable. A step dropped on the upper half of a row goes before its step, on
+/// the lower half behind it.
 function drag_of(step: Step, index: number): Attributes {
   const row_of = (event: DragEvent): HTMLElement => event.currentTarget as HTMLElement;
   const is_behind = (event: DragEvent): boolean => {
@@ -201,7 +202,7 @@ function drag_of(step: Step, index: number): Attributes {
     ondragover: (event: DragEvent) => {
       if (dragged === null || dragged === step.id) return;
       event.preventDefault();
-      event.stopPropagation();  // the page itself takes dropped files
+      event.stopPropagation();  // otherwise the page would accept the drop as files
       clear(event);
       row_of(event).classList.add(drop_classes[is_behind(event) ? 1 : 0]);
     },
@@ -212,14 +213,14 @@ function drag_of(step: Step, index: number): Attributes {
       event.preventDefault();
       event.stopPropagation();
       const from = steps().findIndex((one) => one.id === dragged);
-      // Its own place is empty while it is elsewhere.
+      // The dragged step leaves its old place, so later places move forward by one.
       const to = index + (is_behind(event) ? 1 : 0);
       put_step_at(dragged, from < to ? to - 1 : to);
     },
   };
 }
 
-// The step whose menu is open. The menu stays open when the list is refilled.
+// Id of the step whose menu is open; empty if none is. The menu stays open when the list is refilled.
 let step_of_menu = "";
 
 export function close_menu(): void {
@@ -274,7 +275,7 @@ function history(): Child {
            [icon("branch", 15), "New branch"],
            "New branch. Changes go to a new branch; the present plan stays on this one", () => void new_branch()),
        button("Name version", "Names this state, so that you find it again", () => void name_version()),
-       button("Merge", "Merge with another plan. Takes over what somebody else has changed", () => dialogs.merge()),
+       button("Merge", "Merge with another plan. Takes over the changes that somebody else has made", () => dialogs.merge()),
        button("Sign", "Sign. Shows who has approved the plan, and what has changed since", () => dialogs.sign())),
     plan.branches.length > 1 && may_edit() ?
         el("label", {class: "field"}, el("span", {}, "Branch"),

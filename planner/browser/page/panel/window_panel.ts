@@ -15,9 +15,10 @@ const usual: Tissue[] = [
   {name: "fat", low: -190, high: -30},
 ];
 const scan_of = (name: string): ScanState|undefined => state.plan?.scans.find((scan) => scan.name === name);
-/// Thresholds of tissues are defined only in Hounsfield units.
+/// Whether a scan is in Hounsfield units, for which alone thresholds of tissues are defined.
 const is_in_hu = (name: string): boolean => (scan_of(name)?.unit ?? "HU") === "HU";
-/// The ends of the sliders: in Hounsfield units the range of tissues, else the range of the scan's samples.
+/// The lowest and highest value of the sliders. In Hounsfield units the scan's range is limited to that of
+/// tissues.
 function range(scan: string): [number, number] {
   const [low, high] = scan_of(scan)?.range ?? [-1000, 3000];
   if (!is_in_hu(scan)) return [Math.floor(low), Math.ceil(high)];
@@ -61,7 +62,7 @@ async function apply(): Promise<void> {
   if (is_made) void look_for_cleaning(next.id);
   if (state.draft_window === draft)
     take_tool("navigate");
-  else if (state.draft_window)  // the window was changed in the meantime
+  else if (state.draft_window)  // the person changed the window before the answer arrived
     set({draft_window: {...state.draft_window, replaces: next.id}});
 }
 

@@ -21,8 +21,8 @@ let radius_mm = usual_radius_mm;
 let thickness_mm = usual_thickness_mm;
 const least_mm = 0.5, most_mm = 50;
 
-/// Strokes that are drawn and not in the plan yet. A stroke in a view has several parts if the surface is
-/// interrupted under it.
+/// Strokes that are drawn but not in the plan yet. A stroke in a view has several parts if there are gaps in
+/// the surface under it.
 interface Draft {
   pane: Pane;
   normal: Vec3;
@@ -31,15 +31,16 @@ interface Draft {
 }
 let draft: Draft|null = null;
 let pointed: {pane: Pane; at: Vec2}|null = null;
-/// Strokes are added one after the other, because the second one may belong to the step that the first
-/// creates.
+/// Ends when the earlier strokes are in the plan. The next one waits for it, because it may belong to the
+/// step that an earlier stroke creates.
 let before: Promise<void> = Promise.resolve();
-/// The plan's limits for the strokes of a step and the points of a stroke.
+/// The largest number of strokes in a step and of points in a stroke that plans allow.
 const most_strokes = 500, most_points = 2000;
 
 const mode_of = (step: Step): Mode => step.mode === "paint" ? "paint" : "erase";
 
-/// The object that a stroke changes, and whether the stroke is added to an existing brush step.
+/// The selected body, and whether a stroke is added to its brush step. Otherwise a stroke makes a new step.
+/// Null if no body is selected.
 function target(as: Mode): {step: Step; going_on: boolean}|null {
   const step = selected_step();
   if (!step || !makes_body(step)) return null;
@@ -47,7 +48,7 @@ function target(as: Mode): {step: Step; going_on: boolean}|null {
   return {step, going_on: step.do === "brush" && mode_of(step) === as && has_room};
 }
 
-/// A line without the points that lie within `within_mm` of the simplified line (Douglas and Peucker 1973).
+/// Thins a line: all left-out points lie within `within_mm` of the result (Douglas and Peucker 1973).
 function simplified(points: Vec3[], within_mm: number): Vec3[] {
   const first = points[0]!, last = points[points.length - 1]!;
   if (points.length < 3) return points;
@@ -128,7 +129,8 @@ function begin(pane: Pane, at: Vec2, by_keys: boolean): boolean {
   return true;
 }
 
-/// Extends the stroke. Where a view shows no surface there is no depth, so the stroke pauses there.
+/// Extends the stroke to a position. Where a view shows no surface, the position has no depth and the stroke
+/// is interrupted.
 function go_on(pane: Pane, at: Vec2): void {
   if (!draft || draft.pane !== pane || pane.is_beside(at)) return;
   const part = draft.parts[draft.parts.length - 1]!;
@@ -136,7 +138,8 @@ function go_on(pane: Pane, at: Vec2): void {
   const point = hundredths(pane.point_at(at));
   const by = sub(point, last);
   if (length(by) < Math.max(0.05, radius_mm / 10)) return;
-  // At a step in depth the stroke is interrupted, so that it does not cut through the parts between.
+  // A large step in depth interrupts the stroke. Otherwise it would pass through everything between both
+  // depths.
   if (!pane.is_slice && Math.abs(dot(by, draft.normal)) > 2 * radius_mm)
     draft.parts.push([point]);
   else
@@ -225,7 +228,7 @@ function draw(pane: Pane, context: CanvasRenderingContext2D): void {
   }
   const at = pane.keyed_at ?? (pointed?.pane === pane ? pointed.at : null);
   if (!at) return;
-  // Draws the ball or disc seen along the view as a polygon of 48 corners, which looks round.
+  // The outline of the ball or disc along the view direction, as a polygon of 48 corners, which looks round.
   const corners = Array.from({length: 48}, (_, i): Vec2 => [
     at[0] + radius_px * Math.cos((i * Math.PI) / 24), at[1] + radius_px * Math.sin((i * Math.PI) / 24)
   ]);
@@ -250,7 +253,7 @@ function panel(): Child {
        choice<Mode>("Erase", "A stroke removes material from the object", mode, "erase", (value) => mode = value),
        choice<Mode>("Paint", "A stroke adds to the object", mode, "paint", (value) => mode = value)),
     el("div", {class: "presets", role: "group", "aria-label": "Shape of the brush"},
-       choice<Shape>("Ball", "Reaches as deep as it is wide", shape, "ball", (value) => shape = value),
+       choice<Shape>("Ball", "A ball, as deep as it is wide", shape, "ball", (value) => shape = value),
        choice<Shape>("Slab", "A disc that faces you, as thick as you set it", shape, "slab", (value) => shape = value)),
     size("Radius", radius_mm, 30, "brush-radius", set_radius),
     shape === "slab" ? size("Depth", thickness_mm, 60, "brush-thickness", (mm) => {

@@ -10,7 +10,7 @@ export const gap = (a: Vec2, b: Vec2): number => Math.hypot(a[0] - b[0], a[1] - 
 const between = (a: Vec2, b: Vec2, share: number): Vec2 => [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
 const to_hundredths = (p: Vec2): Vec2 => [Math.round(p[0] * 100) / 100, Math.round(p[1] * 100) / 100];
 
-/// Signed area; positive if counter-clockwise.
+/// Signed area of a closed line; positive if the line is counter-clockwise.
 export const area_mm2 = (line: Polygon): number => line.reduce((sum, a, i) => {
   const b = line[(i + 1) % line.length]!;
   return sum + (a[0] * b[1] - a[1] * b[0]) / 2;
@@ -26,8 +26,7 @@ export function contains(line: Polygon, p: Vec2): boolean {
   return inside;
 }
 
-/// The point of a closed line that is nearest to a given one: the index of its segment, the point, and the
-/// distance.
+/// The point of a closed line nearest to `p`: the index of its segment, the point, and its distance.
 export function nearest_on(line: Polygon, p: Vec2): {piece: number; at: Vec2; mm: number} {
   let best = {piece: 0, at: line[0]!, mm: Infinity};
   line.forEach((a, piece) => {
@@ -40,8 +39,7 @@ export function nearest_on(line: Polygon, p: Vec2): {piece: number; at: Vec2; mm
   return best;
 }
 
-/// An open line without the points that lie within `within_mm` of the simplified line (Douglas and Peucker
-/// 1973).
+/// Thins an open line: all left-out points lie within `within_mm` of the result (Douglas and Peucker 1973).
 export function simplified(line: Polygon, within_mm: number): Polygon {
   if (line.length < 3) return line;
   const first = line[0]!, last = line[line.length - 1]!;
@@ -53,27 +51,29 @@ export function simplified(line: Polygon, within_mm: number): Polygon {
   return [...simplified(line.slice(0, farthest + 1), within_mm).slice(0, -1), ...simplified(line.slice(farthest), within_mm)];
 }
 
-/// A drawn line, closed, thinned and rounded to hundredths of a millimetre; none if it encloses almost no
-/// area.
+/// Closes a drawn line, thins it and rounds it to hundredths of a millimetre. Null if it encloses less than
+/// 0.5 mm².
 export function closed_line(drawn: Polygon, within_mm: number): Polygon|null {
   if (drawn.length < 3) return null;
-  // Split at the point farthest from the first one, because a closed line has no ends.
+  // simplified() keeps both ends. A closed line has none, so it is split at its first point and the point
+  // farthest from that.
   const far = drawn.reduce((best, p, i) => (gap(p, drawn[0]!) > gap(drawn[best]!, drawn[0]!) ? i : best), 0);
   const halves = [simplified(drawn.slice(0, far + 1), within_mm), simplified([...drawn.slice(far), drawn[0]!], within_mm)];
   const line = tidy([...halves[0]!.slice(0, -1), ...halves[1]!.slice(0, -1)]);
   return line.length > 2 && Math.abs(area_mm2(line)) >= 0.5 ? line : null;
 }
 
-/// Rounds to hundredths of a millimetre and drops points equal to the one before.
+/// Rounds a closed line to hundredths of a millimetre and drops points that then equal the previous one.
 export function tidy(line: Polygon): Polygon {
   const all = line.map(to_hundredths);
   return all.filter((p, i) => gap(p, all[(i + all.length - 1) % all.length]!) > 0);
 }
 
-/// Replaces a part of the line by a stroke that begins and ends on it. The longer part of the line stays.
+/// Replaces a part of a closed line by a stroke that begins and ends near it. The longer part of the line
+/// stays. Null if the result encloses less than 0.5 mm².
 export function spliced(line: Polygon, stroke: Polygon, within_mm: number): Polygon|null {
   const from = nearest_on(line, stroke[0]!), to = nearest_on(line, stroke[stroke.length - 1]!);
-  // The points of the line after one place, up to another.
+  // The line's points from one segment to another, in the line's order.
   const onward = (start: {piece: number}, end: {piece: number}): Polygon => {
     const part: Polygon = [];
     for (let i = (start.piece + 1) % line.length, left = line.length; left > 0; i = (i + 1) % line.length, --left) {
@@ -89,7 +89,8 @@ export function spliced(line: Polygon, stroke: Polygon, within_mm: number): Poly
   return made.length > 2 && Math.abs(area_mm2(made)) >= 0.5 ? made : null;
 }
 
-/// The line with segments of at most `most_mm` near a position, but at most 200 for each original segment.
+/// Divides segments within `reach_mm` of a position into pieces of at most `most_mm`, but at most 200 pieces
+/// each.
 export function refined(line: Polygon, at: Vec2, reach_mm: number, most_mm: number): Polygon {
   return line.flatMap((a, i) => {
     const b = line[(i + 1) % line.length]!;
@@ -98,7 +99,7 @@ export function refined(line: Polygon, at: Vec2, reach_mm: number, most_mm: numb
   });
 }
 
-/// Moves a point and, with it, those nearby: the farther, the less, and not at all beyond the reach.
+/// Moves a point of a line. Points nearer than `reach_mm` move with it, the less the farther they are.
 export function dragged(line: Polygon, point: number, to: Vec2, reach_mm: number): Polygon {
   const from = line[point]!, by = sub(to, from);
   return line.map((p, i) => {
@@ -107,8 +108,8 @@ export function dragged(line: Polygon, point: number, to: Vec2, reach_mm: number
   });
 }
 
-/// Moves points near a position towards the middle of their neighbours, and out again by slightly more, so
-/// that the line becomes smooth without shrinking (Taubin 1995).
+/// Smooths a line within `reach_mm` of a position. Points move towards the middle of their neighbours and
+/// then back by slightly more, so that the line does not shrink (Taubin 1995).
 export function smoothed(line: Polygon, at: Vec2, reach_mm: number): Polygon {
   const step = (all: Polygon, share: number): Polygon => all.map((p, i) => {
     if (gap(p, at) >= reach_mm) return p;
@@ -118,7 +119,7 @@ export function smoothed(line: Polygon, at: Vec2, reach_mm: number): Polygon {
   return step(step(line, 0.5), -0.52);
 }
 
-/// Whether a corner of one closed line lies within the other. True also if one line encloses the other.
+/// Whether a corner of one closed line lies within the other, as when one encloses the other.
 export const overlap = (a: Polygon, b: Polygon): boolean => {
   const inside = a.filter((p) => contains(b, p)).length, around = b.filter((p) => contains(a, p)).length;
   return inside > 0 || around > 0;

@@ -25,7 +25,8 @@ interface Slice {
   position_mm: number;
   polygons_mm: Polygon[];
 }
-/// A slice of the scan in its own orientation, in the frame of the view in which its contours are drawn.
+/// A slice of the scan that is not repositioned: the view whose contours are drawn in it, the view's axes,
+/// and the slice's position along the view direction.
 interface Place {
   view: string;
   right: Vec3;
@@ -34,26 +35,27 @@ interface Place {
   position_mm: number;
 }
 
-/// The unfinished edit, which is not in the plan yet: a line that is drawn, or contours that are dragged or
-/// smoothed.
+/// An edit that is not in the plan yet: `drawn` is a new line, `held` are contours that the person drags or
+/// smooths.
 let drawn: {pane: Pane; points: Polygon; is_by_corners: boolean}|null = null;
 let held: {pane: Pane; step: Step; slices: Slice[]; contour: Polygon; index: number; before: Polygon; point: number}|null = null;
 let pointed: {pane: Pane; at: Vec2}|null = null;
 let last_pane: Pane|null = null;
-/// Changes run one after the other, because each starts from the step that the previous one has made.
+/// Ends when the earlier changes are in the plan. The next one waits for it, because it starts from the step
+/// that they made.
 let queue: Promise<unknown> = Promise.resolve();
 
 const slices_of = (step: Step): Slice[] => structuredClone((step.contours ?? []) as unknown as Slice[]);
 const is_ours = (step: Step|undefined): step is Step => step?.do === "tile" && Array.isArray(step.contours);
 
-/// The frame of a view as a plan names it: a name, or AZ,EL.
+/// The axes of a view that a plan names by a word or as "AZ,EL".
 function frame_of(view: string): {right: Vec3; up: Vec3; look: Vec3} {
   if ((view_names as string[]).includes(view)) return directions_of(view as ViewName);
   const [azimuth = 0, elevation = 0] = view.split(",").map(Number);
   return directions_of(turned({azimuth, elevation} as View));
 }
 
-/// The slice that a pane shows; a message if contours cannot be drawn in it.
+/// The slice that a pane shows. A message if contours cannot be drawn in the pane.
 function place_of(pane: Pane|null): Place|string {
   if (!pane || pane.setting.mode !== "slice") return "Contours are drawn in slices: choose a slice.";
   if (is_elsewhere()) return "This scan has no objects of the plan: show the patient's scan.";
@@ -70,7 +72,8 @@ const needed_place = (pane: Pane|null): Place|null => {
   return null;
 };
 
-/// The step with the contours of a place: the selected one, if it has the place's view.
+/// The step whose contours are edited: the selected one, if its contours have the view of the place. Null if
+/// there is no such step.
 function target(place: Place): Step|null {
   const step = selected_step();
   return is_ours(step) && (step.view ?? "inferior") === place.view ? step : null;
@@ -92,14 +95,14 @@ const pixel_of = (pane: Pane, place: Place, uv: Vec2): Vec2 =>
     pane.pixel_at(add(add(scaled(place.right, uv[0]), scaled(place.up, uv[1])), scaled(place.look, place.position_mm)));
 const near_mm = (pane: Pane): number => near_px * pane.ratio * pane.frame.pixel_mm;
 
-/// The distance between the scan's slices along a view.
+/// The distance in mm between the scan's slices along a view, at least 0.2.
 function slice_mm(place: Place): number {
   const spacing = state.plan?.scans.find((scan) => scan.name === shown_scan())?.spacing_mm ?? [1, 1, 1];
   return Math.max(0.2, hundredth(Math.abs(dot(spacing as Vec3, place.look.map(Math.abs) as Vec3))));
 }
 
-/// Replaces the contours of a slice, as one change of the plan. Adds a step if there is none; removes the
-/// step if no contour is left.
+/// Replaces the contours of one slice by those that `take` returns, in one edit. Null leaves the plan as it
+/// is. Adds a step if there is none, and removes the step if no contour is left.
 async function change(place: Place, what: string, take: (now: Polygon[]) => Polygon[]|null): Promise<boolean> {
   const step = target(place);
   const slices = step ? slices_of(step) : [];
@@ -126,7 +129,8 @@ function then(place: Place, what: string, take: (now: Polygon[]) => Polygon[]|nu
 }
 const at_mm = (place: Place): string => `${place.position_mm} mm`;
 
-/// The contour under the pointer: the nearest within reach of a click; otherwise the smallest one around it.
+/// The index of the contour under the pointer: the nearest one, if it is within reach of a click; otherwise,
+/// with `may_be_inside`, the smallest one around the pointer. Null if there is none.
 function contour_at(pane: Pane, uv: Vec2, may_be_inside: boolean): number|null {
   const all = contours_here(pane);
   const on = all.map((contour, i) => ({i, mm: nearest_on(contour, uv).mm})).sort((a, b) => a.mm - b.mm)[0];
@@ -164,7 +168,7 @@ function take_hold(pane: Pane, at: Vec2): boolean {
   }
   const slices = slices_of(step);
   const here = slices.find((slice) => is_here(slice, place))!;
-  // A contour that is grabbed between two points gets a new point there.
+  // A contour can also be grabbed between two points, so points are added near the pointer first.
   let contour = mode === "drag" && reach_mm > 0 ? refined(here.polygons_mm[index]!, uv, reach_mm, reach_mm / 6) : here.polygons_mm[index]!;
   if (mode === "smooth") contour = refined(contour, uv, reach_mm, Math.max(0.3, reach_mm / 10));
   const on = nearest_on(contour, uv);
@@ -207,7 +211,7 @@ function erase(pane: Pane, at: Vec2): void {
   then(place, `a contour erased at ${at_mm(place)}`, (now) => now.filter((_, i) => i !== index));
 }
 
-/// Requests contours from the server. They replace those that they overlap.
+/// Requests contours from the server. The answer replaces those of the slice's contours that it overlaps.
 function trace(place: Place, asked: object, what: string): void {
   const path = state.plan?.path;
   queue = queue.then(async () => {
@@ -222,7 +226,7 @@ function seed(pane: Pane, at: Vec2): void {
   if (place) trace(place, {seed_mm: hundredths(pane.point_at(at)), scan: shown_scan(), tolerance}, `a region found at ${at_mm(place)}`);
 }
 
-/// The object whose contours the slice may copy: the last visible one before the step.
+/// The object whose contours the slice can take over: the last visible body before the step.
 function other_object(): string|undefined {
   const own = selected_step();
   const all = steps().filter((step) => makes_body(step) && step !== own && (!is_ours(own) || steps().indexOf(step) < steps().indexOf(own)));
@@ -235,10 +239,10 @@ function take_over(): void {
   trace(place, {object}, `contours of ${object} at ${at_mm(place)}`);
 }
 
-/// The pane with a slice that was used last; null if none was.
+/// The pane that the pointer or a key used last; null if there is none.
 const slice_pane = (): Pane|null => last_pane;
 
-/// Copies the slice's contours to the next slice and shows that slice.
+/// Copies the contours of the slice to the one `by` slices further, and shows that slice.
 export function copy_contours(by: number): void {
   const pane = slice_pane(), place = needed_place(pane);
   if (!place || !pane) return;
@@ -351,7 +355,7 @@ function draw(pane: Pane, context: CanvasRenderingContext2D): void {
   const slices = held?.pane === pane ? held.slices : step ? slices_of(step) : [];
   const outline = (contour: Polygon, colour: string, width: number): void =>
       line(context, contour.map((uv) => pixel_of(pane, place, uv)), colour, width * pane.ratio, true);
-  // Draws the nearest contours on either side, so that new ones can be fitted to them.
+  // Draws the nearest contours before and behind the slice, as a guide for new ones.
   const below = slices.filter((slice) => slice.position_mm < place.position_mm - same_slice_mm).pop();
   const above = slices.find((slice) => slice.position_mm > place.position_mm + same_slice_mm);
   context.save();

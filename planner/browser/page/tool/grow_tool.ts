@@ -16,11 +16,12 @@ import {Tool} from "./tool";
 let seeds: Vec3[] = [];
 let adds = false;  // the next click adds a seed
 let running_mean = false;
-let typed: number|null = null;  // null: the scan's default tolerance
+let typed: number|null = null;  // null: the default tolerance of the scan
 let held: {at: Vec2; from: number; ratio: number}|null = null;
 
 const colour = "#ff9f43";
-/// Tolerance per pixel of a drag. A drag across a pane changes it by about the range of a tissue.
+/// Change of the tolerance for each pixel of a drag; for a scan without Hounsfield units, as a share of its
+/// range. A drag across a pane covers about the range of a tissue.
 const hounsfield_per_px = 1, share_per_px = 1 / 1500;
 const usual_hounsfield = 60, usual_share = 1 / 25;
 const most_seeds = 64;
@@ -32,7 +33,7 @@ const span = (): number => {
   return Math.max(1e-6, high - low);
 };
 const is_in_hu = (): boolean => unit() === "HU";
-/// For a scan with a narrow range, such as fractions, tolerances have decimals.
+/// Rounds a tolerance. A scan with a narrow range, such as fractions, needs decimals.
 const rounded = (value: number): number => {
   const digits = Math.max(0, Math.ceil(2 - Math.log10(span())));
   return Number(Math.min(65535, Math.max(0, value)).toFixed(digits));
@@ -49,7 +50,7 @@ const step_of_seeds = (): Step => ({
   ...(running_mean ? {running_mean} : {}),
 });
 
-/// Shows the region that grows from the present seeds.
+/// Shows a preview of the region that grows from the seeds.
 function show(): void {
   set({preview: seeds.length ? {object: "", steps: [step_of_seeds()], colour, by: "grow"} : null});
 }
@@ -64,8 +65,8 @@ function is_in_scan(p: Vec3): boolean {
   return !bounds || p.every((x, axis) => x >= bounds[0][axis]! && x <= bounds[1][axis]!);
 }
 
-/// The position of a seed: the point of a slice. In a view it lies a voxel below the surface, because samples
-/// at the surface are mixed with the tissue in front.
+/// The seed at a position. In a slice it is the point itself. In a view it lies a voxel below the surface,
+/// because samples at the surface are mixed with those in front of it.
 function seed_at(pane: Pane, at: Vec2): Vec3|null {
   const place = place_at(pane, at);
   if (!place || pane.is_slice) return place;

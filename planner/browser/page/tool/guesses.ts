@@ -11,7 +11,7 @@ import type {Pane} from "../pane/panes";
 import {LandmarkGuess, Step} from "../protocol";
 import {notify, selected_step, set, state, steps} from "../state";
 
-/// Guesses that are neither kept nor placed.
+/// Guesses that the person has neither confirmed nor replaced by a landmark.
 export const open_guesses = (): LandmarkGuess[] =>
     state.guesses.filter((guess) => !state.plan?.landmarks.some((mark) => mark.name === guess.name));
 
@@ -21,8 +21,8 @@ interface Found {
   findings: string[];
 }
 
-/// Requests guesses of landmarks on the selected object, or on the first one made directly from a scan.
-/// Returns whether there are any.
+/// Requests guesses of landmarks on the selected object if it uses no other object, or else on the first such
+/// object. Returns whether the server found any.
 export async function ask_guesses(): Promise<boolean> {
   const is_whole = (step: Step): boolean => makes_body(step) && !operands(step).length;
   const object = [selected_step(), ...steps()].find((step) => step && is_whole(step))?.id;
@@ -51,7 +51,7 @@ export function pass_over(guess: LandmarkGuess): void {
 const radius_px = (pane: Pane, guess: LandmarkGuess): number =>
     Math.max(7 * pane.ratio, guess.uncertainty_mm / pane.frame.pixel_mm);
 
-/// Draws a guess as a circle of its uncertainty.
+/// Draws each guess with a circle whose radius is its uncertainty.
 export function draw_guesses(pane: Pane, context: CanvasRenderingContext2D, current: string): void {
   for (const guess of open_guesses()) {
     if (!is_drawn(pane, {name: guess.name, point: guess.point_mm})) continue;
@@ -70,7 +70,7 @@ export function draw_guesses(pane: Pane, context: CanvasRenderingContext2D, curr
   }
 }
 
-/// A card with a guess and the buttons to keep it or pass over it.
+/// A card that describes a guess, with buttons to keep it or to pass over it.
 export function guess_card(guess: LandmarkGuess, keep: () => void, pass: () => void): Child {
   return [
     el("p", {class: "says"}, el("b", {}, `${open_guesses().length} to look at: ${guess.name.replace(/_/g, " ")}, within ${

@@ -14,7 +14,8 @@ import {Tool} from "./tool";
 
 let keeps = false;
 
-/// A step of this tool to which a click adds a part: `chosen` contains its points, `source` is the object.
+/// A step of this tool that a click can extend: `chosen` is the step with the points of the chosen parts,
+/// `source` the object with the parts.
 interface Begun {
   chosen: Step;
   source: string;
@@ -27,7 +28,8 @@ function begun(step: Step): Begun|null {
 }
 const is_rest = (step: Step): boolean => step.do === "combine";
 
-// The selected body, and the step of this tool that the next click extends, if there is one.
+// The selected body and, if it was made by this tool, the step that the next click extends. Null if no body
+// is selected.
 function target(): {step: Step; going_on: Begun|null}|null {
   const step = selected_step();
   if (!step || !makes_body(step)) return null;
@@ -39,8 +41,7 @@ async function take_part(near_mm: Vec3): Promise<void> {
   const on = target();
   if (!on) return notify("Select the object first, then click on one of its parts.", "warning");
   const {step, going_on} = on;
-  // A part to remove is chosen among the remaining parts; a part to keep is chosen among all parts of the
-  // object.
+  // A part to remove must be one of those that remain. A part to keep may be any part of the original object.
   const object = going_on && keeps ? going_on.source : step.id;
   const part = await try_to<Part>("part", {object, near_mm});
   if (!part?.at_mm || state.selected !== step.id) return;

@@ -14,13 +14,12 @@ import {point_of} from "../base/view_frame";
 type End = "at"|"to";
 type Pair = NonNullable<Motion["points"]>[number];
 let pairs: Pair[] = [];
-let open: Vec3|null = null;  // a point of the piece that has no target yet
+let open: Vec3|null = null;  // a clicked point of the piece, before its target is clicked
 let held: {pair: number; end: End}|null = null;
 const near_px = 11;
 const most_pairs = 8;
 
-/// The point at a pane's position with the depth of another point: the point moves within this view and keeps
-/// its depth.
+/// The point at a position of a pane that has the same depth in this view as another point.
 const as_deep_as = (pane: Pane, at: Vec2, p_mm: Vec3): Vec3 =>
     hundredths(point_of(pane.frame, pane.size, at, dot(p_mm, pane.frame.look)));
 
@@ -62,7 +61,7 @@ export const marks_tool: Tool = {
   taken() {
     pairs = (current().points ?? []).map((pair) => ({...pair}));
     open = held = null;
-    // The marks lie on the piece at its original position.
+    // The marks lie on the piece before its motion, so the preview is drawn at that place.
     if (piece()) show();
   },
   left() {

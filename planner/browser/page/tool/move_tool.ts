@@ -19,8 +19,7 @@ interface Held {
 }
 let held: Held|null = null;
 
-/// The ring's radius and the arrows' length in CSS pixels; smaller in a small pane, so that they stay
-/// reachable.
+/// The ring's radius in CSS pixels. It is smaller in a small pane, so that the handles stay inside.
 const ring_px = (pane: Pane): number => Math.min(84, (0.25 * Math.min(...pane.size)) / pane.ratio);
 const arrow_px = (pane: Pane): number => 0.74 * ring_px(pane);
 const turn_axes: Record<Turn, [Vec3, Vec3]> = {
@@ -35,7 +34,8 @@ const arrow_end = (pane: Pane, word: Direction): Vec2|null => {
   const y = -dot(lps[word], frame.up);
   return Math.hypot(x, y) < 0.35 ? null : [x, y];
 };
-/// The rotation about the pane's view direction, and whether it goes counter-clockwise on the screen.
+/// The anatomical rotation whose axis is nearest to the pane's view direction. `sign` is 1 if a positive
+/// angle appears counter-clockwise on the screen, else -1.
 function turn_in(pane: Pane): {turn: Turn; sign: number} {
   const frame = pane.frame;
   const size = (turn: Turn): number => {
@@ -46,12 +46,14 @@ function turn_in(pane: Pane): {turn: Turn; sign: number} {
   return {turn: best, sign: Math.sign(size(best)) || 1};
 }
 
-/// The motion that keys have asked for and that the plan does not have yet. Keys repeat faster than edits are answered.
+/// The motion that keys have requested and that the plan does not contain yet. Keys repeat faster than the
+/// server answers, so only the newest motion is stored.
 let keyed: {source: string; move: Motion}|null = null;
 let is_writing = false;
 on_leaving_plan(() => { keyed = null; });
 
-/// Writes the newest such motion into the plan, one edit after the other.
+/// Writes the newest motion by keys into the plan. Repeats this if further keys were pressed before the
+/// answer.
 async function write_keyed(): Promise<void> {
   if (is_writing) return;
   is_writing = true;

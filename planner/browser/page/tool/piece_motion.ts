@@ -10,7 +10,8 @@ import {Json, Motion, Step} from "../protocol";
 import {selected_step, set, state, steps, watch} from "../state";
 import {add, scaled, Vec3} from "../base/vector";
 
-/// The piece that the tool moves: that of the selected move, or the selected object itself.
+/// The piece that the tool moves: the object of the selected move, or the selected object. `step` is its
+/// move, if the plan has one. Null if no body is selected.
 export function piece(): {source: string; step: Step | undefined}|null {
   const step = selected_step();
   if (!step || !makes_body(step)) return null;
@@ -26,7 +27,7 @@ const motion_of = (step: Step|undefined): Motion =>
     });
 export const current = (): Motion => state.preview?.move ?? motion_of(piece()?.step);
 
-/// The position of a piece's handles: its pivot after the motion.
+/// The position of a piece's handles in mm: the centre of its rotation, after the motion.
 export function pivot_mm(source: string, move: Motion): Vec3 {
   const about = mark_mm(move.turn?.about_mm as Json | undefined) ?? centre_of(source);
   return directions.reduce<Vec3>((p, word) => add(p, scaled(lps[word], move.by?.[word] ?? 0)), about);
@@ -36,7 +37,7 @@ export function centre_of(id: string): Vec3 {
   return bounds ? scaled(add(bounds[0], bounds[1]), 0.5) : state.cross_mm;
 }
 
-/// Objects with which a piece must not overlap: the visible ones that stay.
+/// Visible objects that stay in place. Their overlap with the piece is shown.
 function others(source: string, moved: string|undefined): string[] {
   return steps()
       .filter((step) => makes_body(step) && step.id !== source && step.id !== moved)
@@ -61,7 +62,7 @@ export function preview_motion(move: Motion): void {
   });
 }
 
-/// Objects to which a piece's difference can be drawn: the plan's other bodies, and the piece before the
+/// Bodies with which the moving piece can be compared: the plan's other bodies, and the piece before its
 /// motion.
 export function difference_choices(): string[] {
   const one = piece();
@@ -69,11 +70,11 @@ export function difference_choices(): string[] {
       .filter((step) => makes_body(step) && step.id !== one?.step?.id && !is_overlap(step, steps()))
       .map((step) => step.id);
 }
-/// The chosen object; null if there is none, or if the plan no longer contains it.
+/// The object with which the piece is compared. Null if none is chosen, or if the plan no longer contains it.
 export const difference_to = (): string|null =>
     difference_choices().find((id) => id === state.difference_to) ?? null;
 
-// The plan and the piece for which a difference at rest was drawn.
+// Edit and selection for which the difference was drawn. If either changes, the difference is removed.
 let shown_at = "";
 const place_in_plan = (): string => `${state.plan?.edit} ${state.selected}`;
 watch(["plan", "selected"], () => {
@@ -81,7 +82,8 @@ watch(["plan", "selected"], () => {
     set({preview: null, difference: null});
 });
 
-/// Chooses the object of the difference, and shows the difference at the piece's present position.
+/// Chooses the object with which the piece is compared, and shows the difference at the piece's present
+/// position. Null ends the comparison.
 export function show_difference(to: string|null): void {
   set({difference_to: to, difference: null, overlap_mm3: null});
   if (to) preview_motion(current());
@@ -103,7 +105,8 @@ export async function commit_motion(move: Motion): Promise<void> {
     const id = free_id(`${one.source}_moved`);
     const stays = others(one.source, id);
     const more: Step[] = [{id, do: "move", object: one.source, ...fields} as Step];
-    // Adds the overlap and, last, the operation's outcome, which the report shows.
+    // Adds the overlap with the objects that stay and, as the last step, the union of all, which is the
+    // planned result.
     if (stays.length)
       more.push(
           {

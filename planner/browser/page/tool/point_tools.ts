@@ -28,7 +28,7 @@ let is_snapping = true;
 const named = (p: Vec3): Json =>
     state.plan?.landmarks.find((mark) => distance(mark.point, p) < 0.005)?.name ?? [...p];
 
-/// A click within this distance on the screen selects an existing landmark.
+/// A click within this many CSS pixels of a landmark grabs it.
 const near_px = 10;
 
 function landmark_at(pane: Pane, at: Vec2): {name: string; point: Vec3}|undefined {
@@ -38,8 +38,8 @@ function landmark_at(pane: Pane, at: Vec2): {name: string; point: Vec3}|undefine
     return Math.hypot(p[0] - at[0], p[1] - at[1]) < near_px * pane.ratio;
   });
 }
-/// The point under the pointer. Where a view shows no surface there is no depth: the page shows a message and
-/// nothing is placed.
+/// The point under the pointer. Null, with a message, if a view shows no surface there or its picture is not
+/// at rest.
 export function place_at(pane: Pane, at: Vec2): Vec3|null {
   if (!pane.has_places) {
     notify("The picture is still being drawn: click again once it is at rest.", "warning");
@@ -49,8 +49,8 @@ export function place_at(pane: Pane, at: Vec2): Vec3|null {
   notify("No surface lies there, so the point has no depth: click on an object, or in a slice.", "warning");
   return null;
 }
-/// Points in slices stay where they are clicked. A donor's surface is not an object of the plan, so nothing
-/// snaps to it.
+/// Whether a clicked landmark snaps to bone. Points in slices stay where they are clicked. On another scan,
+/// such as a donor's, there is no object of the plan to snap to.
 const snaps = (pane: Pane): boolean => is_snapping && !pane.is_slice && !is_elsewhere();
 
 function point_tool(
@@ -112,7 +112,7 @@ async function finish(kind: string, points: Vec3[]): Promise<void> {
   if (kind === "surface_distance") {
     const object = step && step.do !== "measure" && step.do !== "landmarks" ? step.id : undefined;
     if (!object)
-      return notify("Select the object on whose surface the way runs, then click its two ends.", "warning");
+      return notify("Select the object on whose surface the path runs, then click both ends of the path.", "warning");
     await add_step({id, do: "measure", object, along: points.map((p) => [...p])}, `way along ${object}`);
   } else {
     await add_step({id, do: "measure", points_mm: points.map(named)}, kind);
@@ -127,13 +127,14 @@ export const surface_tool = point_tool(
     "surface_distance", 2, "Way along a surface", "Select an object, then click two points of its surface.",
     "");
 
-/// Starts placing the landmarks that a procedure needs, one click after the other.
+/// Lets the person place landmarks that a procedure needs, one click each.
 export function ask_for_landmarks(wanted: Wanted[]): void {
   procedure_wants = wanted;
   next_wanted();
   take_tool("landmark");
 }
-// The next landmark to place. `placed` may not be in the plan's state yet.
+// Chooses the procedure's next missing landmark and shows its scan. Ends the tool if none is missing.
+// `placed` counts as placed, even if the plan's state does not contain it yet.
 function next_wanted(placed = ""): void {
   const missing = procedure_wants.find(
       (one) => one.name !== placed && !state.plan?.landmarks.some((mark) => mark.name === one.name));
@@ -148,7 +149,7 @@ function next_wanted(placed = ""): void {
   }
 }
 
-/// The guess for the landmark that is placed next.
+/// The guess for the landmark that the next click places; undefined if there is none.
 const current_guess = (): LandmarkGuess|undefined =>
     open_guesses().find((guess) => guess.name === landmark_name);
 
@@ -162,14 +163,15 @@ export async function guess_landmarks(): Promise<void> {
     next_guess();
 }
 
-/// Continues with the next guess and moves the cross-hair to it. `placed` may not be in the plan's state yet.
+/// Chooses the next guess and moves the cross-hair to it. `placed` is passed over, even if the plan's state
+/// does not contain it yet.
 function next_guess(placed = ""): void {
   const next = open_guesses().find((guess) => guess.name !== placed);
   landmark_name = next?.name ?? "";
   show_guess();
 }
 
-/// Shows the guess of the next landmark in the panel, and moves the cross-hair to it.
+/// Shows the guess for the next landmark in the panel, and moves the cross-hair to it.
 function show_guess(): void {
   const guess = current_guess();
   set(guess ? {tool: state.tool, cross_mm: hundredths(guess.point_mm)} : {tool: state.tool});
@@ -180,7 +182,7 @@ async function place(name: string, point: Vec3, snap: boolean): Promise<void> {
   const at = await put_landmark(name, point, snap);
   if (!at) return;
   set({cross_mm: hundredths(at)});
-  if (landmark_name !== asked) return;  // another name was typed in the meantime
+  if (landmark_name !== asked) return;  // the person typed another name before the answer arrived
   if (procedure_wants.length)
     next_wanted(name);
   else if (open_guesses().length)

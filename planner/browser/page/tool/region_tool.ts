@@ -124,7 +124,8 @@ export const region_tool: Tool = {
   },
 };
 
-/// The object that a mask would cut: the last visible one before it that is not a mask.
+/// The object that a mask cuts by default: the last visible body before the mask, or else the last body
+/// before it.
 function cut_target(mask: Step|undefined): string|undefined {
   if (!mask) return undefined;
   const before = steps().slice(0, steps().findIndex((step) => step.id === mask.id));
@@ -132,7 +133,7 @@ function cut_target(mask: Step|undefined): string|undefined {
   return (solid.filter((step) => look_of(step.id).visible).pop() ?? solid.pop())?.id;
 }
 
-/// Cuts an object by a mask into the piece inside and the rest outside, as two steps.
+/// Cuts an object by a mask. Adds two steps: the piece inside the mask and the rest outside of it.
 export async function cut(mask: Step, target: string): Promise<void> {
   const used = steps().some(
       (step) => step.do === "combine" && operands(step).includes(mask.id) && operands(step).includes(target));

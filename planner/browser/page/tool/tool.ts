@@ -17,11 +17,11 @@ export interface Tool {
   says: string;  // one sentence that explains the tool
   key: string;   // the key that chooses the tool
   cursor: string;
-  is_pointed?: boolean;  // it works on positions: arrow keys move a position in the pane, and Space clicks it
+  is_pointed?: boolean;  // works on positions: arrow keys move one in the pane, Space clicks it
   down?(pointer: Pointer): boolean;  // returns true if the tool takes the drag
   move?(pointer: Pointer): void;
   up?(pointer: Pointer): void;
-  cancel?(): void;  // a second finger came down: undoes what `down` did; without it, `up` is called
+  cancel?(): void;  // undoes `down`, as for a second finger; a tool without it receives `up`
   hover?(pointer: Pointer): void;
   double?(pointer: Pointer): boolean;
   press?(event: KeyboardEvent, pane: Pane): boolean;
@@ -42,12 +42,12 @@ export function take_tool(name: string): void {
   if (name === state.tool || (name !== "navigate" && !may_edit())) return;
   active_tool()?.left?.();
   set({tool: name});
-  // The tool's rows are in the inspector.
+  // The inspector shows the tool's rows.
   if (name !== "navigate") set({right_tab: "inspector"});
   active_tool()?.taken?.();
 }
 
-// A tool's draft belongs to the plan on which it was begun.
+// A tool's unfinished work belongs to the plan that the window leaves.
 on_leaving_plan(() => {
   active_tool()?.left?.();
   set({tool: "navigate"});

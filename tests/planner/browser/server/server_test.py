@@ -563,7 +563,7 @@ class Begun(unittest.TestCase):
             for said, why in ((["--port", taken.getsockname()[1]], "cannot listen there"),
                               (["--listen", "nonsense"], "is not an IP address"),
                               (["--token-file", "token"], "others may read"),
-                              (["other.nrrd"], "name one plan or scan")):
+                              (["other.nrrd"], "name at most one plan or scan")):
                 with self.subTest(said=said):
                     with self.assertRaisesRegex(RuntimeError, why):
                         octotomy(self.folder, "serve", "head.nrrd", *said)

@@ -304,7 +304,7 @@ TEST_F(Verify, WhatCannotBeUnderstoodIsRefusedByName) {
   expect_refused(run("verify " + at("a.ply") + " union " + at("none.ply")), "none.ply");
   expect_refused(run("verify --seed 3"), "--random");
   expect_refused(run("verify " + at("a.nrrd") + " union " + at("b.nrrd") + " --voxel 1"), "--voxel");
-  expect_refused(run("verify --random 2 --thesis"), "one thing at a time");
+  expect_refused(run("verify --random 2 --thesis"), "give only one");
 }
 
 }  // namespace
