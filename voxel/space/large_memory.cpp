@@ -26,7 +26,7 @@ namespace {
 /// Smaller blocks always stay in memory: a file costs more than they do.
 constexpr std::size_t least_filed = std::size_t{64} << 20;
 constexpr std::uint64_t unlimited_share = std::uint64_t{2} << 30;
-constexpr std::uint64_t most_resident = std::uint64_t{512} << 20;
+constexpr std::uint64_t most_resident = std::uint64_t{256} << 20;
 
 /// TMPDIR, or the folder for large temporary files; empty if a file in it would lie in memory.
 std::filesystem::path scratch_folder() {
@@ -91,7 +91,7 @@ class FiledBlocks {
       if (resident_file_bytes() > most_resident)
         for (const auto& [memory, bytes] : bytes_at_) ::madvise(memory, bytes, MADV_DONTNEED);
       lock.unlock();
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
       lock.lock();
     }
   }
