@@ -405,7 +405,7 @@ TEST_F(MeshVerbs, AMeshThatWasMovedIsRegisteredAndComparedBackToNothing) {
   const CommandAnswer open = run("compare " + at("open.off") + " " + at("open.off") + " --json");
   ASSERT_EQ(open.status, 0) << open.errors;
   EXPECT_TRUE(SortedJson::parse(open.out).at("dice").is_null());
-  expect_refused(run("register " + at("here.json") + " " + at("ball.stl")), "two of a kind");
+  expect_refused(run("register " + at("here.json") + " " + at("ball.stl")), "two files of the same kind");
 }
 
 std::string cube_off(int low, int high) {

@@ -59,7 +59,7 @@ TEST_F(PictureOptions, OfTwoScansAreRefusedInOneLineEach) {
   expect_refused(run(two + "--finest 9"), "8");
   expect_refused(run(two + "--least-overlap 0"), "0.05");
   expect_refused(run(two + "-o " + at("moved.stl")), ".nrrd");
-  expect_refused(run(two + "--watch " + at("")), "name a new folder");
+  expect_refused(run(two + "--watch " + at("")), "choose the name of a new folder");
   expect_refused(run("register" + ball("nrrd") + ball("stl")), "two scans");
   expect_refused(run("register" + ball("stl") + ball("stl") + "--by correlation"), "two scans");
   expect_refused(run("register" + ball("stl") + ball("stl") + "--finest 4"), "two scans");

@@ -178,7 +178,7 @@ TEST(Affine, RigidOnlyConsumersRefuseInOneSentence) {
             std::string::npos);
   EXPECT_NE(ball_refusal(folder, R"({"id": "m", "do": "move", "object": "ball",
       "matrix": [[2, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]})")
-                .find("'affine' scales and shears"),
+                .find("use 'affine'"),
             std::string::npos);
   const Plan plan = ball_plan(folder, egg);
   const Evaluation evaluation = evaluate(plan);
@@ -204,9 +204,9 @@ TEST(Affine, WrongInputIsRefusedInOneLineEach) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {R"("about_mm": [0, 0, 0])", "changes nothing"},
       {R"("scale": [1, 1, 2])", "'about_mm' is missing"},
-      {R"("scale": [1, 1, 1])" + about, "rigid motion, which scales and shears nothing"},
+      {R"("scale": [1, 1, 1])" + about, "rigid motion, which neither scales nor shears"},
       {R"("scale": [1, 0, 1])" + about, "become flat"},
-      {R"("scale": [1, -1, 1])" + about, "mirrors: mirror the object by 'mirror'"},
+      {R"("scale": [1, -1, 1])" + about, "mirrors the object: use 'mirror'"},
       {R"("scale": [1, 1, 1e300])" + about, "0.01 to 100 are allowed"},
       {R"("scale": [1, 1, "x"])" + about, "scale"},
       {R"("shear": {"by": 0.3, "along": [1, 0, 0], "normal": [1, 0, 1]})" + about, "at right angles"},
@@ -234,7 +234,7 @@ TEST(Affine, ATransformFileThatScalesIsRead) {
       evaluate(ball_plan(folder, R"({"id": "egg", "do": "affine", "object": "ball", "file": "wide.tfm"})"));
   expect_certified(evaluation.object("egg"), 1.25 * ball_mm3(ball_radius_mm), 0.005);
   EXPECT_NE(ball_refusal(folder, R"({"id": "m", "do": "transform", "object": "ball", "file": "wide.tfm"})")
-                .find("take 'affine'"),
+                .find("use 'affine'"),
             std::string::npos);
 }
 
