@@ -188,7 +188,7 @@ TEST(Affine, RigidOnlyConsumersRefuseInOneSentence) {
       {"id": "other", "do": "screw", "object": "upper", "at": [8, -18, 8], "direction": [0, 1, 0]},
       {"id": "thick", "do": "affine", "object": "other", "scale": [2, 2, 1], "about_mm": [0, 0, 20]},
       {"id": "plate", "do": "plate", "object": "upper", "side": "anterior", "screws": ["screw", "thick"]})"));
-  EXPECT_NE(text.find("'thick' is scaled or sheared, and a screw keeps its shape"), std::string::npos)
+  EXPECT_NE(text.find("'thick' is scaled or sheared, but a screw must keep its shape"), std::string::npos)
       << text;
 }
 
