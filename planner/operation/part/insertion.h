@@ -23,8 +23,8 @@ struct Insertion {
 void check(const Insertion& insertion, const FieldLocation& place);
 /// The insertion direction as a unit vector, LPS.
 glm::dvec3 direction_of(const Insertion& insertion, const glm::dmat3& lps_from_head);
-/// Directions around a first one, which comes first: rings of directions, `step_deg` apart, up to `within_deg`.
-/// Neighbours on a ring are about one step apart. Precondition: `first` is a unit vector.
+/// Directions around a first one, which comes first: rings of directions, `step_deg` apart, up to
+/// `within_deg`. Neighbours on a ring are about one step apart. Precondition: `first` is a unit vector.
 std::vector<glm::dvec3> directions_about(const glm::dvec3& first, double within_deg, double step_deg);
 /// The direction as text for messages: "(0, 1, 0)" or "the view from anterior".
 std::string in_words(const Insertion& insertion);

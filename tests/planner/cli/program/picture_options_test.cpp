@@ -20,7 +20,7 @@ TEST_F(PictureOptions, OfDrawAreRefusedInOneLineEach) {
   const std::string draw = "draw -o " + at("d.png") + " ";
   expect_refused(run(draw), "nothing to draw");
   expect_refused(run(draw + ball("stl") + "--axial 3"), "--scan");
-  expect_refused(run(draw + "--scan" + ball("nrrd")), "give their positions");
+  expect_refused(run(draw + "--scan" + ball("nrrd")), "state their positions");
   expect_refused(run(draw + "--scan" + ball("nrrd") + "--axial 900"), "900");
   expect_refused(run(draw + "--scan" + ball("nrrd") + "--axial 0 --level 3,0"), "above zero");
   expect_refused(run(draw + "--scan" + ball("nrrd") + "--axial 0 --within" + ball("nrrd")), "octree");
