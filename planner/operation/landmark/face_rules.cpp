@@ -30,6 +30,8 @@ constexpr double least_orbit = 18.0, most_orbit = 42.0;  ///< from the mid-plane
 constexpr double orbit_height = 32.0;
 constexpr double two_rims = 8.0;  ///< largest distance between the results of two rules for a rim
 constexpr double crest = 6.0;     ///< on a crest, no bone within this distance below stands in front of it
+/// Places within `as_far_out` of the outermost one count as equally far out, because of noise. Places within
+/// `as_far_down` count as equally far down and back, because of an uncertain pitch.
 constexpr double as_far_out = 0.25, as_far_down = 1.0;
 constexpr double arch_begin = 15.0, arch_end = 78.0;  ///< behind the nasal spine
 constexpr double arch_beyond = 16.0;                  ///< the arch of a large head may extend this far beyond

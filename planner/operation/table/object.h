@@ -84,6 +84,8 @@ struct BoundTerms {
                                ///< steps (brep::Booleans)
   std::vector<Shown> windows;  ///< windows of all objects from which it was made; their bounds determine its
                                ///< surface
+  /// Names of earlier objects whose surface was replaced by an offset, by smoothing or by decimation. The
+  /// uncertainty of their surfaces also applies to this object.
   std::vector<std::string> reshaped;
   /// The mean distance by which two correct answers may differ, because each kernel computes distances
   /// separately (verify::BoundInputs).
