@@ -39,9 +39,9 @@ std::string in_words(const Turns& turns);
 
 /// The meaning of the words and signs of in_words(), for reports.
 inline constexpr const char* movement_words =
-    "Forward, left and up are the directions of the patient's head in its natural position. Pitch is "
-    "positive where the front goes "
-    "up, yaw where the front goes to the patient's left, roll where the patient's left side goes up; roll is "
+    "Forward, left and up are the directions of the patient's head: its axes after head_position, otherwise "
+    "the scan's. Pitch is positive where the front goes up, yaw where the front goes to the patient's left, "
+    "roll where the patient's left side goes up; roll is "
     "done first, then pitch, then yaw.";
 
 }  // namespace octotomy::planner

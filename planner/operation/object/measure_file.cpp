@@ -171,8 +171,8 @@ struct OneSurface {
   std::string how;  ///< of the volume
 };
 
-/// The union of a surface's shells; their sum if they only touch. None if the surface is open, a shell
-/// crosses itself, or a shell that lies in no other faces inward.
+/// The union of a surface's shells; their sum if they only touch. None if the surface stays open, is inside
+/// out or has more than `most_united` shells, or if united_shells() finds no union.
 std::optional<OneSurface> one_surface(const brep::Triangles& given, const brep::Health& health,
                                       const std::stop_token& stop) {
   if (health.closed && health.manifold && health.oriented && health.self_intersections == 0)
@@ -429,7 +429,7 @@ verify::SizeIntervals recommended_of(const WindowShown& shown) {
 FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked, const FileBench& bench) {
   Timings& timings = bench.timings;
   const auto read = read_to_octree(file, asked, bench);
-  // References, because lambdas cannot capture structured bindings.
+  // References with short names, which lambdas can capture.
   const voxel::Scene& scene = read.scene;
   const voxel::GreyOctree& grey = read.grey;
   const voxel::Window window = window_of(grey, file, asked);

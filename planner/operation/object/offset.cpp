@@ -31,8 +31,8 @@ void check(const Offset& offset, const FieldLocation& place) {
     place.at("by_mm").refuse("0 moves nothing: state a distance outward, or a negative number for inward");
 }
 
-/// The cell of the lattice of distances. Rounded edges become steps of a quarter of a cell, which must be
-/// small enough for the rounding; the cell is at least about 1/100 of the solid's extent.
+/// The cell of the lattice of distances: half of the distance, so that rounded edges are resolved; at least
+/// 1/100 of the solid's greatest extent.
 double cell_for(const brep::Solid& solid, double by_mm) {
   const glm::dvec3 extent = solid.size().high_mm - solid.size().low_mm;
   return std::max(0.5 * std::abs(by_mm), std::max({extent.x, extent.y, extent.z}) / 100.0);
