@@ -38,8 +38,7 @@ voxel::OctreeFile octree_named(const std::string& name, const FileBench& bench) 
 brep::Triangles triangles_named(const std::string& name, const FileBench& bench) {
   if (bench.step == nullptr) return read_mesh_in(name);
   const Object& object = bench.step->objects.at(name);
-  if (!object.mesh.within)
-    throw std::runtime_error("'" + name + "' has no mesh, see its findings");
+  if (!object.mesh.within) throw std::runtime_error("'" + name + "' has no mesh, see its findings");
   return object.mesh.within->triangles();
 }
 
