@@ -13,7 +13,8 @@
 namespace octotomy::planner {
 namespace {
 
-/// Columns forward, left and up: right-handed, so that the usual matrices of roll, pitch and yaw hold.
+/// The head's axes forward, left and up as columns. They are right-handed, so the usual matrices of roll,
+/// pitch and yaw apply.
 glm::dmat3 lps_from_forward(const glm::dmat3& lps_from_head) {
   return {-lps_from_head[1], lps_from_head[0], lps_from_head[2]};
 }

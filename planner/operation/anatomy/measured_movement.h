@@ -7,10 +7,10 @@
 
 #include "planner/operation/table/record.h"
 
-// The movements of a plan's objects, as in a result's `movements`.
+// Movements of a plan's objects: the records below `movements` in a result.
 namespace octotomy::planner {
 
-/// A displacement along the head's directions, and in words.
+/// A displacement in mm along the head's directions, and the same in words.
 struct MeasuredDisplacement {
   double forward_mm = 0.0, left_mm = 0.0, up_mm = 0.0;
   std::string words;
@@ -21,13 +21,15 @@ constexpr auto members_of(const MeasuredDisplacement&) {
                     member("up_mm", &D::up_mm), member("words", &D::words));
 }
 
-/// A landmark on a moved object.
+/// The displacement of a landmark by the last motion of the object on which it lies; `to_mm` is its position
+/// afterwards, LPS.
 struct LandmarkMovement {
   std::string name;
   double forward_mm = 0.0, left_mm = 0.0, up_mm = 0.0;
   std::string words;
   glm::dvec3 to_mm{0.0};
-  std::optional<MeasuredDisplacement> since_scan;  ///< where earlier steps moved the object as well
+  std::optional<MeasuredDisplacement> since_scan;  ///< from the scan's position; none unless earlier steps
+                                                   ///< moved the object, too
 };
 constexpr auto members_of(const LandmarkMovement&) {
   using L = LandmarkMovement;
@@ -36,12 +38,13 @@ constexpr auto members_of(const LandmarkMovement&) {
                     member("to_mm", &L::to_mm), member_if_any("since_scan", &L::since_scan));
 }
 
-/// A point with a prescribed target.
+/// A point of a piece with a prescribed target: the displacement that was achieved and the distance that
+/// remains.
 struct PointMovement {
   std::string name;
   std::string wanted, achieved;  ///< in words
   double forward_mm = 0.0, left_mm = 0.0, up_mm = 0.0;
-  double residual_mm = 0.0;  ///< from the target
+  double residual_mm = 0.0;  ///< distance of the moved point from its target
 };
 constexpr auto members_of(const PointMovement&) {
   using P = PointMovement;
@@ -50,14 +53,14 @@ constexpr auto members_of(const PointMovement&) {
                     member("up_mm", &P::up_mm), member("residual_mm", &P::residual_mm));
 }
 
-/// The last motion of an object.
+/// The last motion of an object: `from` is the object before it.
 struct ObjectMovement {
   std::string object, from;
   double pitch_deg = 0.0, yaw_deg = 0.0, roll_deg = 0.0;
   std::string words;
   std::optional<MeasuredDisplacement> centroid;  ///< none for an empty object
   std::vector<LandmarkMovement> landmarks;
-  std::vector<PointMovement> points;  ///< of a move by points
+  std::vector<PointMovement> points;  ///< only for a motion that was stated by points
 };
 constexpr auto members_of(const ObjectMovement&) {
   using M = ObjectMovement;

@@ -30,7 +30,8 @@ glm::dmat4 motion_of_two(const WantedPoint& a, const WantedPoint& b, PointFit fi
     throw voxel::InvalidInput("'" + a.name + "' and '" + b.name +
                               "' coincide before or after the motion: choose two that are apart");
   const glm::dmat3 turn = least_turn(glm::normalize(from), glm::normalize(to));
-  const double share = fit == PointFit::Best ? 0.5 : 0.0;  // of the way to the second point
+  const double share = fit == PointFit::Best ? 0.5 : 0.0;  // where the fitted point lies between the first
+                                                           // point (0) and the second (1)
   glm::dmat4 motion(turn);
   motion[3] = glm::dvec4(a.to_mm + share * to - turn * (a.from_mm + share * from), 1.0);
   return motion;
@@ -50,7 +51,7 @@ glm::dmat4 motion_of_many(const std::vector<WantedPoint>& points, PointFit fit) 
 }  // namespace
 
 PointMotion motion_of_points(const std::vector<WantedPoint>& points, PointFit fit) {
-  if (points.empty()) throw voxel::InvalidInput("no point is given: add one");
+  if (points.empty()) throw voxel::InvalidInput("the motion has no points: add a point with its target");
   PointMotion found;
   if (points.size() == 1)
     found.moved_from_still[3] = glm::dvec4(points[0].to_mm - points[0].from_mm, 1.0);

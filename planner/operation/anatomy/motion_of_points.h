@@ -15,21 +15,21 @@ struct WantedPoint {
 
 struct PointMotion {
   glm::dmat4 moved_from_still{1.0};
-  std::vector<double> residuals_mm;  ///< for each point, its distance from the target after the motion
+  std::vector<double> residuals_mm;  ///< distance of each moved point from its target, in the points' order
   double rms_mm = 0.0;
 };
 
 enum class PointFit {
   Best,        ///< the least sum of squared residuals
-  FirstPoint,  ///< the first point is moved to its target exactly, then the direction to the second is
-               ///< matched, then the plane of the third; further points only have residuals
+  FirstPoint,  ///< The first point is moved to its target exactly. Then the direction to the second point is
+               ///< matched, then the plane through the third. Further points only have residuals.
 };
 
 /// The rigid motion that moves points to their targets. One point gives a translation. Two points do not
 /// determine the rotation about their line; the smallest rotation is used (the thesis's R2 with its third
-/// point from a cross product). Throws std::invalid_argument, naming points, where there is none, two points
-/// coincide, or three and more lie on one line. Cost: linear. Source: Ong 1992, 8.3, equations 8.6 to 8.12;
-/// Horn 1987 for the best fit.
+/// point from a cross product). Throws std::invalid_argument if there is no point, two points coincide, or
+/// three or more points lie on one line; the message names the points. Cost: linear. Source: Ong 1992, 8.3,
+/// equations 8.6 to 8.12; Horn 1987 for the best fit.
 PointMotion motion_of_points(const std::vector<WantedPoint>& points, PointFit fit);
 
 }  // namespace octotomy::planner

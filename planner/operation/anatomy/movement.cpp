@@ -15,14 +15,15 @@ namespace {
 
 constexpr double reach_mm = 3.0;
 
-/// The displacement along the head's directions, and in words.
+/// The displacement `by_mm` (LPS) along the head's directions, and the same in words.
 MeasuredDisplacement measured(const glm::dvec3& by_mm, const glm::dmat3& lps_from_head) {
   const Displacement along = displacement_of(by_mm, lps_from_head);
   return {along.forward_mm, along.left_mm, along.up_mm, in_words(along)};
 }
 
-/// The bone from which the moved objects were cut, without the objects that were moved; none where nothing moves
-/// or nothing remains. Other windows, such as of skin or of the operated scan, hold no bone that stays.
+/// The bone of the scan that no step moves: all windows from which pieces were cut, minus the pieces. None if
+/// nothing moves or nothing remains. Other windows are left out, because skin or an operated scan is not bone
+/// that stays.
 std::optional<voxel::Expression> staying_bone(const Objects& objects) {
   std::optional<voxel::Expression> staying, pieces;
   const auto add = [](std::optional<voxel::Expression>& all, const voxel::Octree& octree) {
@@ -48,8 +49,9 @@ std::optional<voxel::Expression> staying_bone(const Objects& objects) {
   return voxel::Expression(voxel::combine(objects.front().voxel.octree.universe(), *staying - *pieces));
 }
 
-/// Whether a piece's bone is nearer to a landmark than the bone that stays. `at_mm` is the landmark's
-/// position with the piece, `still_mm` its position in the scan.
+/// Whether the landmark moves with the piece: in the smallest sphere around it that meets bone, the piece has
+/// more than half as much bone as stays. `at_mm` is the landmark's position with the piece, `still_mm` its
+/// position in the scan.
 bool nearer(const voxel::Octree& piece, const std::optional<voxel::Expression>& staying,
             const glm::dvec3& at_mm, const glm::dvec3& still_mm) {
   for (const double radius_mm : {0.5, 1.0, 2.0, reach_mm}) {
@@ -60,14 +62,15 @@ bool nearer(const voxel::Octree& piece, const std::optional<voxel::Expression>& 
     };
     const double of_piece = in_reach(voxel::Expression(piece), at_mm),
                  of_others = staying ? in_reach(*staying, still_mm) : 0.0;
-    // At a cut, the piece and the bone that stays have about half each. The landmark then moves with the piece, for
-    // which the cut was planned.
+    // At a cut, the piece and the bone that stays fill about half of the sphere each. The landmark then moves
+    // with the piece, because the cut was planned for the piece.
     if (of_piece > 0.0 || of_others > 0.0) return of_piece > 0.5 * of_others;
   }
   return false;
 }
 
-/// Moves the landmarks of the skin as a prediction by ratios states.
+/// Gives the landmarks of the skin the motions that a landmark_ratios step predicts. Does nothing for other
+/// objects.
 void move_skin(const Object& prediction, std::vector<MovedLandmark>& moved) {
   if (prediction.kind != "landmark_ratios") return;
   const auto vector_of = [](const Json& row, const char* key) {

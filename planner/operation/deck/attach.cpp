@@ -23,9 +23,9 @@ Holder moved_holder(const Objects& objects, const std::string& id) {
   return {id, object->voxel.octree, motion};
 }
 
-/// Whether a node lies on an object's voxels or between two of them.
+/// Whether a node lies in one of an object's voxels or on the border of one. `p_voxel` is in voxels.
 bool touches(const voxel::Octree& octree, const glm::dvec3& p_voxel) {
-  // Rounding may move a corner to either side of its position.
+  // Rounding may move a voxel's corner to either side of its exact position.
   constexpr double slack = 1e-6;
   const glm::ivec3 low(glm::floor(p_voxel + 0.5 - slack)), high(glm::floor(p_voxel + 0.5 + slack));
   for (int z = low.z; z <= high.z; ++z)
@@ -49,8 +49,8 @@ class Attacher {
     prescribe();
     part_surfaces();
     if (left_out_mm3 > 0.0)
-      findings.push_back("parts that nothing holds, " + grouped(left_out_mm3, 1) +
-                         " mm\u00b3 together, are left out");
+      findings.push_back("parts that no object holds are left out, " + grouped(left_out_mm3, 1) +
+                         " mm\u00b3 together: attach an object that touches them if they are needed");
     return findings;
   }
 
@@ -91,14 +91,16 @@ class Attacher {
     return glm::dvec3(*holder.motion * glm::dvec4(p_mm, 1.0)) - p_mm;
   }
 
-  /// Frees the nodes on stationary bone that lie so near to moved bone that the tissue between would be torn
-  /// or its elements inverted: along a cut the surgeon lifts the tissue off the bone. Returns findings.
+  /// Frees nodes on stationary bone that lie near moved bone, because the tissue between would be torn or its
+  /// elements inverted. This models the surgeon, who lifts the tissue off the bone along a cut. Returns
+  /// findings.
   std::vector<std::string> lift_off() {
     struct MovedNode {
       glm::dvec3 p_mm;
       double reach_mm;
     };
-    // With twice the displacement as distance, tissue between is strained by at most a half.
+    // Tissue between bones is then strained by at most one half: its length is at least twice the
+    // displacement.
     constexpr double reach_of_displacement = 2.0;
     std::vector<MovedNode> moved;
     double farthest_mm = 0.0;
@@ -133,13 +135,14 @@ class Attacher {
     std::vector<std::string> findings;
     for (std::size_t h = 0; h < holders_.size(); ++h)
       if (freed[h] > 0)
-        findings.push_back("tissue is not held by '" + holders_[h].id + "' at " + std::to_string(freed[h]) +
-                           " of " + std::to_string(held[h]) +
-                           " nodes, because these are nearer to a moved piece than twice its motion");
+        findings.push_back("the tissue is not attached to '" + holders_[h].id + "' at " +
+                           std::to_string(freed[h]) + " of " + std::to_string(held[h]) +
+                           " nodes: they lie nearer to a moved piece than twice its displacement, where "
+                           "attached tissue would tear");
     return findings;
   }
 
-  /// Removes the parts that nothing holds. Returns their volume.
+  /// Removes the parts of the deck without an attached node. Returns their total volume in mm3.
   double keep_held() {
     brep::DisjointSets parts(tetrahedra_.nodes_mm.size());
     for (const auto& tet : tetrahedra_.tets)
@@ -204,14 +207,14 @@ class Attacher {
       }
       if (set.nodes.empty())
         throw std::runtime_error("'" + holder.id +
-                                 "' does not touch the object: attach the object on which it lies, or "
+                                 "' does not touch the object: name the object on which the tissue lies, or "
                                  "subtract the bone from the tissue, for example skin - skull");
       options_.node_sets.push_back(std::move(set));
       options_.prescribed.push_back(std::move(prescribed));
     }
   }
 
-  /// The holder outside of the deck that all of a face's nodes lie on, or `nobody`.
+  /// The number of the holder outside of the deck on which all nodes of a face lie, or `nobody`.
   int holder_of(const convert::ElementFace& face) const {
     const auto corners = convert::corners_of(tetrahedra_, face);
     const int holder = holder_of_node_[corners[0]];
@@ -256,7 +259,8 @@ class Attacher {
   const std::vector<std::string>& names_;
   convert::Tetrahedra& tetrahedra_;
   convert::DeckOptions& options_;
-  std::vector<int> region_of_holder_;  ///< the region's number, or `nobody` for a holder outside of the deck
+  std::vector<int> region_of_holder_;  ///< for each holder its region's number, or `nobody` if it is outside
+                                       ///< of the deck
   std::vector<int> holder_of_node_;
 };
 

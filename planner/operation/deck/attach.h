@@ -11,22 +11,24 @@
 
 namespace octotomy::planner {
 
-/// An object that elements are attached to: its voxels at that time, and its motion by the plan.
+/// An object to which elements are attached: its voxels before all motions of the plan, and their combined
+/// motion.
 struct Holder {
   std::string id;
   voxel::Octree octree;
-  std::optional<glm::dmat4> motion;  ///< LPS to LPS, by all the steps that moved it; none: it is fixed
+  std::optional<glm::dmat4> motion;  ///< LPS to LPS, by all steps that moved the object; none: the object is
+                                     ///< fixed
 };
-/// The holders of a step, moved ones first. A moved object has the voxels from before all of its motions.
+/// The holders that a step names, the moved ones first.
 std::vector<Holder> holders_of(const Objects& objects, const Deck& step);
 
-/// Adds the displacements of a deck's nodes as a static step. A holder that is one of the deck's regions,
-/// `names`, moves all nodes of that region; another holder moves the boundary's nodes on its voxels. A node
-/// on two holders moves with the first. Adds node sets MOVED_<holder> and FIXED_<holder>. Faces on holders
-/// outside of the deck are moved from their surface to ON_<holder>. Parts without any holder would be free to
-/// move, so they are left out, with a finding on their volume. Returns findings. Throws std::runtime_error
-/// where a holder holds no node. Precondition: boundary elements end at voxels' corners, or all holders are
-/// regions.
+/// Prescribes the displacements of a deck's nodes in a static step. `names` are the deck's regions. A holder
+/// that is a region moves all nodes of that region; another holder moves the boundary's nodes on its voxels.
+/// A node on two holders moves with the first. Adds the node sets MOVED_<holder> and FIXED_<holder>. Faces on
+/// holders outside of the deck change from their surface to the surface ON_<holder>. Parts without any holder
+/// could move freely, so they are removed; a finding states their volume. Returns the findings. Throws
+/// std::runtime_error if a holder has no node. Precondition: boundary elements end at voxels' corners, or all
+/// holders are regions.
 std::vector<std::string> attach(const std::vector<Holder>& holders, const std::vector<std::string>& names,
                                 convert::Tetrahedra& tetrahedra, convert::DeckOptions& options);
 

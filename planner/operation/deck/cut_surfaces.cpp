@@ -7,13 +7,13 @@
 namespace octotomy::planner {
 namespace {
 
-/// The largest distance of a cut's point from the mask's wall, due to corefinement and to rounding after
-/// motions. It is far below any distance that a plan can intend.
+/// A point of a cut lies at most this far from the mask's wall, because corefinement and motions round. The
+/// distance is far below any that a plan can intend.
 constexpr double on_wall_mm() {
   return 1e-6;
 }
 
-/// For each point, whether it lies on the wall.
+/// For each point of the moved object, whether it lies on the cut's wall.
 std::vector<bool> on_wall(const std::vector<glm::dvec3>& points_mm, const CutWall& cut) {
   const glm::dmat4 still_from_moved = glm::inverse(cut.moved_from_still);
   std::vector<glm::dvec3> still_mm(points_mm.size());
@@ -28,7 +28,7 @@ std::vector<bool> on_wall(const std::vector<glm::dvec3>& points_mm, const CutWal
 
 constexpr std::size_t outer = std::numeric_limits<std::size_t>::max();
 
-/// For each triangle, the first cut that made it, or `outer`.
+/// For each triangle, the number of the first cut on whose wall its corners lie, or `outer`.
 std::vector<std::size_t> cuts_of(const brep::Triangles& surface, const std::vector<CutWall>& cuts) {
   std::vector<std::size_t> cut_of(surface.faces.size(), outer);
   for (std::size_t c = 0; c < cuts.size(); ++c) {

@@ -8,11 +8,11 @@
 
 namespace octotomy::planner {
 
-/// The surface of an object's elements by origin: CUT_<mask> where the plan cut along a mask, OUTER
-/// elsewhere; empty surfaces are left out. The origin of an element's face is that of the nearest triangle of
-/// the object's exact mesh to the face's centre, so that elements need not contain that mesh's triangles. A
-/// wall made by several masks belongs to the first. Precondition: the object has a mesh with triangles. Cost:
-/// n log n of triangles and faces.
+/// Divides the surface of an object's elements by origin: CUT_<mask> where the plan cut along a mask, OUTER
+/// elsewhere. Empty surfaces are left out. A face has the origin of the triangle of the object's exact mesh
+/// that is nearest to the face's centre; the elements need not contain that triangle. A wall made by several
+/// masks belongs to the first. Precondition: the object has a mesh with triangles. Cost: n log n of triangles
+/// and faces.
 std::vector<convert::DeckSurface> cut_surfaces(const Object& object, const convert::Tetrahedra& tetrahedra);
 
 }  // namespace octotomy::planner

@@ -50,8 +50,10 @@ void check_regions(const Deck& deck, const FieldLocation& place) {
   for (const auto& [one, other] : deck.sliding) {
     for (const std::string& name : {one, other})
       if (std::find(names.begin(), names.end(), name) == names.end())
-        place.at("sliding").refuse("'" + name + "' is no region of this deck" + suggestion(name, names));
-    if (one == other) place.at("sliding").refuse("'" + one + "' cannot slide on itself: cut it in two");
+        place.at("sliding").refuse("'" + name + "' is not a region of this deck" + suggestion(name, names));
+    if (one == other)
+      place.at("sliding").refuse("'" + one +
+                                 "' cannot slide on itself: cut it into two objects and name both");
   }
   for (const auto& [name, unused] : deck.materials)
     if (std::find(names.begin(), names.end(), name) == names.end())
@@ -67,24 +69,31 @@ void check_regions(const Deck& deck, const FieldLocation& place) {
     return;
   }
   if (deck.fallback && !deck.smooth_mm)
-    place.at("fallback").refuse("regions are made of voxels unless 'smooth_mm' is there: leave it out");
+    place.at("fallback")
+        .refuse(
+            "applies only to smooth elements, and regions without 'smooth_mm' are filled with their voxels: "
+            "leave it out, or add 'smooth_mm'");
   if (!deck.smooth_mm) return;
   if (deck.element_mm)
     place.at("element_mm")
-        .refuse("applies only to voxels, and 'smooth_mm' only to smooth elements: leave one out");
+        .refuse(
+            "applies only to elements of voxels, 'smooth_mm' only to smooth elements: leave out one of them");
   for (const std::vector<ObjectName>* holders : {&deck.moved, &deck.fixed})
     for (const ObjectName& holder : *holders)
       if (holder.name != deck.object.name && !contains(deck.regions, holder.name))
         place.at("smooth_mm")
-            .refuse("smooth elements do not lie on voxels: add '" + holder.name +
-                    "', which holds them, to 'regions', or leave 'smooth_mm' out");
+            .refuse("smooth elements do not follow the voxels of an object outside of the deck: add '" +
+                    holder.name + "' to 'regions', or leave 'smooth_mm' out");
 }
 
 void check(const Deck& deck, const FieldLocation& place) {
   check_output_path(deck.path, {".inp", ".vtu", ".feb", ".msh", ".node"}, place.at("path"));
   check_held(deck, place);
   if (deck.fallback && deck.is_held() && !deck.smooth_mm)
-    place.at("fallback").refuse("an object that others hold is always made of its voxels: leave it out");
+    place.at("fallback")
+        .refuse(
+            "an object that others hold is always filled with its voxels, so no mesher can fail: leave it "
+            "out");
   if (deck.order == 2 && deck.path.extension() == ".node")
     place.at("order").refuse("applies only to tetrahedra in .inp, .feb, .vtu or .msh: leave it out");
   check_regions(deck, place);
@@ -93,10 +102,10 @@ void check(const Deck& deck, const FieldLocation& place) {
         .refuse(
             "applies only to a single filled object: leave it out, or leave out 'regions' and the holders");
   if (!deck.finer.empty() && !deck.smooth_mm && (deck.is_held() || !deck.regions.empty()))
-    place.at("finer").refuse("does not apply to voxels' elements: add 'smooth_mm', or leave it out");
+    place.at("finer").refuse("does not apply to elements of voxels: add 'smooth_mm', or leave 'finer' out");
 }
 
-/// The reason why there is nothing to write, or an empty text.
+/// The reason why the object cannot be filled; empty if it can.
 std::string obstacle_of(const Object& object, const Deck& deck) {
   const bool wants_mesh = !deck.is_held() && !deck.fallback && deck.regions.empty();
   if (wants_mesh && !object.mesh.within) return "'" + object.id + "' has no mesh, see its findings";
@@ -106,7 +115,7 @@ std::string obstacle_of(const Object& object, const Deck& deck) {
   return is_empty ? "'" + object.id + "' is empty" : "";
 }
 
-/// The set of nodes along the mid-line's plane.
+/// Adds the node set MIDLINE, the nodes along the plane `midline`, or a finding if there are none.
 void add_midline(const convert::Tetrahedra& tetrahedra, const Deck& deck, convert::DeckOptions& options,
                  Exported& made) {
   if (!deck.midline) return;
@@ -153,7 +162,7 @@ void write_elements(const convert::Tetrahedra& tetrahedra, convert::DeckOptions 
   tell_written(tetrahedra, quality, options, made);
 }
 
-/// A filling that decks of one object share.
+/// A filling that all decks of one object use.
 struct SharedFilling {
   Filling filling;
   std::vector<convert::DeckSurface> surfaces;
@@ -182,7 +191,7 @@ Tried fill(const Object& object, const Deck& deck, const AnswerBench& bench) {
   return filled;
 }
 
-/// The filling that the decks of one object share; the first deck computes it.
+/// The filling of an object. It is computed for the first deck and read by the later ones.
 const Tried& filled_once(const Object& object, const Deck& deck, const AnswerBench& bench) {
   const std::string key = object.id + (deck.fallback ? " or its voxels" : "") + refinement_key(deck);
   std::shared_ptr<const void>& kept = bench.kept[key];
@@ -190,7 +199,7 @@ const Tried& filled_once(const Object& object, const Deck& deck, const AnswerBen
   return *static_cast<const Tried*>(kept.get());
 }
 
-/// The combined motion of all the steps that moved an object.
+/// The combined motion of all steps that moved an object, LPS to LPS.
 glm::dmat4 moved_from_still(const Object& object, const Objects& objects) {
   return object.moved ? object.moved->motion * moved_from_still(objects.at(object.moved->object), objects)
                       : glm::dmat4(1.0);
@@ -251,8 +260,8 @@ void write(const Deck& deck, const AnswerBench& bench, Exported& made) {
     write_filled(object, deck, bench, made);
 }
 
-/// Computes the filling of a single object ahead of writing. Several regions and held objects are filled when
-/// they are written.
+/// Fills a single object before the deck is written. Several regions and held objects are filled during
+/// writing.
 void prepare_file(const Deck& deck, const AnswerBench& bench) {
   const Object& object = bench.objects.at(deck.object.name);
   if (deck.regions.empty() && !deck.is_held() && obstacle_of(object, deck).empty())
@@ -274,21 +283,24 @@ std::vector<Field> material_fields() {
 }  // namespace
 
 Operation deck_operation() {
-  return Describe<Deck>("deck", "Writes a deck of finite elements that fill an object.", Makes::File)
+  return Describe<Deck>("deck", "Fills an object with finite elements and writes them as a solver's deck.",
+                        Makes::File)
       .takes(field("object", &Deck::object, "The object.").required())
-      .takes(
-          field("path", &Deck::path, "The file within the result's folder: .inp, .feb, .vtu, .msh or .node.")
-              .required())
-      .takes(field("moved", &Deck::moved, "Moved objects; the elements on them move with them."))
-      .takes(field("fixed", &Deck::fixed, "Objects that hold the elements on them."))
+      .takes(field("path", &Deck::path,
+                   "Path of the deck within the result's folder: .inp, .feb, .vtu, .msh or .node.")
+                 .required())
+      .takes(field("moved", &Deck::moved, "Moved objects; elements that touch one of them move with it."))
+      .takes(field("fixed", &Deck::fixed,
+                   "Objects that stay; elements that touch one of them are held in place."))
       .takes(field("element_mm", &Deck::element_mm,
-                   "Edge of the smallest elements of an object that others hold. Default: the voxels'.")
+                   "Edge of the smallest elements of an object that others hold. Default: the plan's voxels.")
                  .greater_than(0.0)
                  .for_example("3.0"))
       .takes(record("material", &Deck::material,
-                    "Material of an object that others hold. Default: soft tissue.", material_fields()))
+                    "Material of an object that others hold. Default: soft tissue of 15 kPa.",
+                    material_fields()))
       .takes(field("fallback", &Deck::fallback,
-                   "If no mesher succeeds, use the voxels' own elements, marked as such."))
+                   "If no mesher succeeds, the object's voxels become the elements; the deck states this."))
       .takes(records(
                  "finer", &Deck::finer, "Smaller elements at points or along objects.",
                  {field("at", &Deck::Finer::at, "A point [x, y, z], LPS mm, or an object's name.").required(),
@@ -297,24 +309,26 @@ Operation deck_operation() {
                       .greater_than(0.0)
                       .for_example("0.5")})
                  .for_example("[{\"at\": [0, -80, 20], \"size_mm\": 0.5}]"))
-      .takes(field("regions", &Deck::regions, "Further objects, each a region of the same deck."))
+      .takes(field("regions", &Deck::regions, "Further objects, each one region of the same deck."))
       .takes(field("order", &Deck::order, "1: four-node tetrahedra; 2: ten-node ones.").from(1).to(2))
+      .takes(record(
+          "midline", &Deck::midline, "A plane; the nodes where it meets the surface become the set MIDLINE.",
+          {field("point_mm", &Deck::Plane::point_mm, "A point of the plane, LPS.").required(),
+           field("normal", &Deck::Plane::normal, "The plane's normal, LPS.").required().direction()}))
       .takes(
-          record("midline", &Deck::midline, "A plane; the surface's nodes along it become a set.",
-                 {field("point_mm", &Deck::Plane::point_mm, "A point of the plane, LPS.").required(),
-                  field("normal", &Deck::Plane::normal, "The plane's normal, LPS.").required().direction()}))
-      .takes(field("smooth_mm", &Deck::smooth_mm,
-                   "Size of smooth elements of several regions. Default: the voxels' own elements.")
-                 .greater_than(0.0)
-                 .for_example("3.0"))
-      .takes(field("between", &Deck::between, "Nodes between regions: shared, or apart with contact pairs.")
+          field("smooth_mm", &Deck::smooth_mm,
+                "Size of smooth elements that fill several regions. Default: the voxels become the elements.")
+              .greater_than(0.0)
+              .for_example("3.0"))
+      .takes(field("between", &Deck::between,
+                   "Nodes where regions touch: shared, or separate nodes with contact pairs.")
                  .one_of({"shared", "contact"}))
       .takes(field("sliding", &Deck::sliding, "Pairs of regions that slide on each other.")
                  .for_example("[[\"upper_lip\", \"lower_lip\"]]"))
       .takes(records_by_name("materials", &Deck::materials, "Materials of regions, by their names.",
                              material_fields()))
-      .takes(
-          record("stiffness", &Deck::stiffness, "Materials of the elements from a scan.", stiffness_record()))
+      .takes(record("stiffness", &Deck::stiffness, "Stiffness of each element from the samples of a scan.",
+                    stiffness_record()))
       .example(R"({"id": "deck", "do": "deck", "object": "advanced", "path": "maxilla.inp"})")
       .check(check)
       .prepares_file(prepare_file)

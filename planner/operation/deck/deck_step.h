@@ -12,15 +12,15 @@
 
 namespace octotomy::planner {
 
-/// A deck of finite elements: tetrahedra that fill one object, or several as regions; the objects that hold
-/// and move them; their materials. Moduli in MPa.
+/// A deck of finite elements: tetrahedra that fill one object, or several objects as regions. It also names
+/// the objects that hold and move the elements, and their materials. Moduli are in MPa.
 struct Deck {
   /// Linear elastic.
   struct Material {
     double youngs_modulus_mpa = 0.0;
     double poisson_ratio = 0.0;
   };
-  /// Elements of about a stated size at a point or along an object's surface.
+  /// Requests elements of about a size at a point or along an object's surface.
   struct Finer {
     Site at;
     double size_mm = 1.0;
@@ -32,10 +32,10 @@ struct Deck {
 
   ObjectName object;
   std::filesystem::path path;
-  std::vector<ObjectName> moved;  ///< moved objects that move the deck with them
+  std::vector<ObjectName> moved;  ///< moved objects; elements on them move with them
   std::vector<ObjectName> fixed;
-  std::optional<double> element_mm;  ///< edge of the smallest elements; none: the universe's voxels
-  std::optional<Material> material;  ///< for an object that others hold
+  std::optional<double> element_mm;  ///< edge of the smallest elements; none: that of the universe's voxels
+  std::optional<Material> material;  ///< of an object that others hold
   bool fallback = false;
   int order = 1;
   std::vector<Finer> finer;
@@ -47,7 +47,7 @@ struct Deck {
   std::vector<std::pair<std::string, Material>> materials;  ///< by region
   std::optional<Stiffness> stiffness;                       ///< for a filled object
 
-  /// Whether others hold the object: soft tissue on bone.
+  /// Whether other objects hold this object, as bone holds soft tissue.
   bool is_held() const { return !moved.empty() || !fixed.empty(); }
   bool has_contact() const { return between == "contact"; }
 };

@@ -19,13 +19,13 @@
 namespace octotomy::planner {
 namespace {
 
-/// The least volume of a body, as a share of the largest part's.
+/// Parts smaller than this share of the largest part's volume are left out.
 constexpr double crumb() {
   return 0.01;
 }
 
-/// The parts of the mesh that become the deck, without fragments. Adds a finding on omitted parts, and one on
-/// several bodies.
+/// The mesh without its small fragments. Adds a finding on parts that are left out, and one if several bodies
+/// remain.
 brep::Solid bodies_of(const brep::Solid& solid, Filling& filling) {
   const auto parts = brep::components(solid);
   std::vector<std::uint32_t> faces;
@@ -41,19 +41,19 @@ brep::Solid bodies_of(const brep::Solid& solid, Filling& filling) {
   }
   filling.bodies = bodies;
   if (bodies > 1)
-    filling.findings.push_back(
-        "holds " + std::to_string(bodies) +
-        " bodies that do not touch: hold each body, otherwise the stiffness is singular");
+    filling.findings.push_back("holds " + std::to_string(bodies) +
+                               " bodies that do not touch: hold each of them, because a body that is not "
+                               "held makes the stiffness matrix singular");
   if (bodies < parts.size())
     filling.findings.push_back(
         std::to_string(parts.size() - bodies) + " crumbs, " + grouped(left_out_mm3, 1) +
-        " mm\u00b3 together, each under a hundredth of the largest body, are left out");
+        " mm\u00b3 together, are left out: each has less than a hundredth of the largest body's volume");
   if (bodies == parts.size()) return solid;
   return brep::trusted_solid(brep::part_of(solid, faces), brep::proof_of_part(solid.proof()));
 }
 
-/// The mesh without cavities smaller than a voxel, which are noise at the threshold. Adds a finding on the
-/// filled cavities.
+/// The mesh with all cavities smaller than a voxel filled, because they are noise at the threshold. Adds a
+/// finding on their number and volume.
 brep::Solid filled(const brep::Solid& solid, const voxel::Universe& universe, Filling& filling) {
   convert::FilledCavities made = convert::fill_cavities(solid, universe.lattice().voxel_mm3());
   if (made.cavities > 0)
@@ -62,14 +62,15 @@ brep::Solid filled(const brep::Solid& solid, const voxel::Universe& universe, Fi
   return std::move(made.solid);
 }
 
-/// A third of the voxel's edge, which is below the uncertainty of a sampled surface.
+/// The allowed error of the simplified surface: a third of the voxel's shortest edge, which is below the
+/// uncertainty of a sampled surface.
 double simplification_mm(const voxel::Universe& universe) {
   const glm::dvec3 edge_mm = universe.lattice().spacing_mm();
   return std::min({edge_mm.x, edge_mm.y, edge_mm.z}) / 3.0;
 }
 
-/// The surface with fewer and better triangles, because tetrahedra cannot be better than the triangles at
-/// their base. Where this fails, the surface is returned unchanged.
+/// Simplifies the surface to fewer, better shaped triangles, because tetrahedra cannot be better than the
+/// triangles at their base. If this fails, returns the mesh unchanged, with a finding.
 brep::Mesh simplified(const brep::Mesh& mesh, double error_mm, Filling& filling) {
   brep::DecimateOptions options;
   options.max_error_mm = error_mm;
@@ -83,12 +84,13 @@ brep::Mesh simplified(const brep::Mesh& mesh, double error_mm, Filling& filling)
     return simple;
   } catch (const std::exception& error) {
     if (!is_no_answer(error)) throw;
-    filling.findings.push_back(std::string("the surface was not simplified: ") + error.what());
+    filling.findings.push_back(std::string("the surface was not simplified, because this failed: ") +
+                               error.what());
   }
   return mesh;
 }
 
-/// The voxels' elements, with fragments omitted as for meshes.
+/// The elements of the object's voxels. Small fragments are left out, as with meshes.
 Filling fallback_of(const Object& object, const std::string& why, const voxel::Progress& progress) {
   Filling filling;
   const auto parts = voxel::components(object.voxel.octree).voxel_counts;
@@ -100,11 +102,11 @@ Filling fallback_of(const Object& object, const std::string& why, const voxel::P
   filling.fallback = true;
   filling.findings.push_back(
       "fallback: " + why +
-      "; the elements are the voxels', whose surface is in steps: do not read stresses "
-      "there");
+      "; the elements are the object's voxels, whose surface has steps: do not read stresses at the surface");
   if (bodies.voxel_count() < object.voxel.octree.voxel_count())
-    filling.findings.push_back(grouped(static_cast<double>(parts.size() - filling.bodies), 0) +
-                               " crumbs, each under a hundredth of the largest body, are left out");
+    filling.findings.push_back(
+        grouped(static_cast<double>(parts.size() - filling.bodies), 0) +
+        " crumbs are left out: each has less than a hundredth of the largest body's volume");
   return filling;
 }
 
@@ -116,7 +118,7 @@ Filling by_meshers(const Object& object, const FillingOptions& wanted) {
   options.mesher = convert::Mesher::Best;
   options.progress = wanted.progress;
   options.finer = wanted.finer;
-  // Several times the time that a bone of 50 000 triangles takes.
+  // Several times longer than a bone of 50 000 triangles takes.
   options.time_limit = std::chrono::minutes(2);
   filling.tetrahedra =
       convert::tetrahedralise(simplified(bodies, simplification_mm(universe), filling), options);
@@ -124,7 +126,7 @@ Filling by_meshers(const Object& object, const FillingOptions& wanted) {
   return filling;
 }
 
-/// The meshers' result, or the reason why they failed.
+/// The elements made by a mesher, or the reason why all meshers failed.
 std::variant<Filling, std::string> tried(const Object& object, const FillingOptions& options) {
   if (!object.mesh.within) return "it has no mesh";
   if (object.mesh.within->empty()) return "its mesh is empty";
@@ -149,12 +151,12 @@ std::variant<Filling, std::string> filling_or_fallback(const Object& object, con
   if (auto* filling = std::get_if<Filling>(&made)) {
     why = convert::fault_in_shape(filling->tetrahedra);
     if (why && !has_fallback)
-      filling->findings.push_back(*why + "; \"fallback\": true takes the voxels' elements");
+      filling->findings.push_back(*why + "; \"fallback\": true fills it with its voxels instead");
   } else {
     why = std::get<std::string>(made);
     if (!has_fallback)
-      return *why +
-             (options.fallback ? "; and it has no voxel" : "; \"fallback\": true takes its voxels' elements");
+      return *why + (options.fallback ? "; and it has no voxels for the fallback"
+                                      : "; \"fallback\": true fills it with its voxels instead");
   }
   if (!why || !has_fallback) return made;
   Filling voxels = fallback_of(object, *why, options.progress);

@@ -13,33 +13,33 @@
 
 namespace octotomy::planner {
 
-/// The tetrahedra of an object, with their findings.
+/// The tetrahedra that fill an object, with findings on how they were made.
 struct Filling {
   convert::Tetrahedra tetrahedra;
   std::size_t bodies = 0;
-  bool fallback = false;  ///< the elements are an octree's
+  bool fallback = false;  ///< the elements are the object's voxels
   std::vector<std::string> findings;
 };
 
 struct FillingOptions {
   std::vector<convert::Refinement> finer{};
-  bool fallback = false;       ///< use the voxels' elements where no mesher succeeds
-  voxel::Progress progress{};  ///< a mesher reports the used share of its time
+  bool fallback = false;       ///< if no mesher succeeds, fill the object with its voxels
+  voxel::Progress progress{};  ///< a mesher reports the share of its time limit that it has used
 };
 
-/// Fills the parts of an object's mesh that have at least 1/100 of the largest part's volume: smaller
-/// fragments left by a cut cannot be loaded and held as bodies. Before that, cavities smaller than a voxel
-/// are filled and the surface is simplified within a third of a voxel. Omitted parts are a finding with their
-/// volume; several bodies are a finding as well.
+/// Fills an object's mesh with tetrahedra. Parts below 1/100 of the largest part's volume are left out first,
+/// because such fragments of a cut cannot be loaded and held as bodies. Then cavities smaller than a voxel
+/// are filled, and the surface is simplified within a third of a voxel. Findings state the volume of omitted
+/// parts, and the number of bodies if there are several.
 ///
-/// Where no mesher succeeds, or dihedral angles remain that are unfit for a solver
-/// (convert::fit_dihedral_deg()), and the fallback is allowed, the fallback is used, with a finding on the
-/// reason. Where it is not allowed, the failure is returned as a text, and unfit angles are a finding. Throws
-/// Stopped.
+/// A filling fails if no mesher succeeds, or if dihedral angles are unfit for a solver
+/// (convert::fit_dihedral_deg()). If the fallback is allowed, the object's voxels then become the elements,
+/// with a finding on the reason. Otherwise the meshers' failure is returned as a text, and unfit angles are a
+/// finding. Throws Stopped.
 std::variant<Filling, std::string> filling_of(const Object& object, const FillingOptions& options);
 
-/// The lines on elements in a deck's header: angles, ratio of radius to edge, and volume; then a histogram of
-/// the smallest dihedral angles.
+/// Lines for a deck's header: range of dihedral angles, largest ratio of circumradius to shortest edge, and
+/// volume; then a histogram of the elements' smallest dihedral angles.
 std::vector<std::string> quality_notes(const convert::TetQuality& quality);
 /// The quality of the elements as JSON.
 nlohmann::ordered_json quality_json(const convert::TetQuality& quality);

@@ -21,13 +21,13 @@ namespace {
 
 using convert::NodeSet;
 
-/// A share of the mean side of the surface's triangles, so small that a plane along a row of nodes selects
-/// only that row.
+/// Nodes count as on a plane within this share of the mean side of the surface's triangles. It is so small
+/// that a plane along a row of nodes selects only that row.
 constexpr double on_surface_share() {
   return 0.25;
 }
 
-/// The distance of a mesher's nodes from a flat face, as a share of the distance that counts as on a plane.
+/// A mesher's nodes on a flat face lie within this share of near_mm_ from the face.
 constexpr double rounding_share() {
   return 0.1;
 }
@@ -61,10 +61,9 @@ class Picker {
       return on_plane({n[0], n[1], n[2]}, normal);
     }
     if (n.empty() && std::filesystem::exists(where)) return on_mesh(where);
-    throw std::runtime_error(
-        "--nodes: '" + where +
-        "' is no point x,y,z, ball x,y,z,r or plane x,y,z,u,v,w, no landmark of --landmarks, "
-        "and no mesh file");
+    throw std::runtime_error("--nodes: '" + where +
+                             "' is none of these: a point x,y,z, a ball x,y,z,r, a plane x,y,z,u,v,w, a "
+                             "landmark of --landmarks, a mesh file");
   }
 
  private:
@@ -96,8 +95,8 @@ class Picker {
     return of_faces;
   }
 
-  /// Leaves out nodes that lie much farther off the plane than most: they belong to the rounded edges of the
-  /// face, and holding them would clamp the neighbouring faces.
+  /// Removes nodes that lie more than three times as far off the plane as the median. They belong to the
+  /// rounded edges of the face; if they were held, the neighbouring faces would be clamped.
   void keep_along(const glm::dvec3& point_mm, const glm::dvec3& normal,
                   std::vector<std::uint32_t>& nodes) const {
     constexpr double most_medians = 3.0;
@@ -158,22 +157,22 @@ void check_set_names(const std::vector<std::string>& words) {
       throw std::runtime_error("--nodes: '" + word + "' names no set: for example CUT=0,0,-40,0,0,1");
     const std::string name = word.substr(0, equals);
     if (!convert::is_solver_name(name))
-      throw std::runtime_error(
-          "--nodes: '" + name +
-          "' is no name that solvers accept: a letter, then letters, digits, '_', '-', at "
-          "most 80 in all");
+      throw std::runtime_error("--nodes: '" + name +
+                               "' is not a name that solvers accept: use a letter, then letters, digits, '_' "
+                               "or '-', at most 80 characters");
     if (convert::is_own_node_set_name(name))
       throw std::runtime_error("--nodes: '" + name +
-                               "' is the name of a set that every deck has, in small or capital letters: "
-                               "choose another, as MY_" +
+                               "' is the name of a set that every deck has, with or without capitals: choose "
+                               "another, for example MY_" +
                                name);
     const auto [earlier, is_new] = known.emplace(voxel::lower_case(name), name);
     if (!is_new)
       throw std::runtime_error(
           "--nodes: " + name +
-          (earlier->second == name ? " comes twice"
-                                   : " and " + earlier->second +
-                                         " are one name for solvers, which ignore capitals: choose another"));
+          (earlier->second == name
+               ? " comes twice"
+               : " and " + earlier->second +
+                     " are the same name for solvers, which ignore capitals: rename one of them"));
   }
 }
 
@@ -203,7 +202,9 @@ std::vector<convert::Prescribed> prescribed_of(const std::vector<std::string>& f
   const auto take = [&](const NodeSet& set, const std::string& option) {
     for (const std::uint32_t node : set.nodes)
       if (std::find(taken.begin(), taken.end(), node) != taken.end())
-        throw std::runtime_error(option + ": " + set.name + " shares nodes with a set that stays or moves");
+        throw std::runtime_error(
+            option + ": " + set.name +
+            " shares nodes with another set of --fix or --move: a node can have only one motion");
     taken.insert(taken.end(), set.nodes.begin(), set.nodes.end());
   };
   for (const std::string& name : fixed) {
@@ -222,7 +223,7 @@ std::vector<convert::Prescribed> prescribed_of(const std::vector<std::string>& f
   }
   if (fixed.empty() && !moved.empty())
     throw std::runtime_error(
-        "--move: no nodes are fixed, so that the whole body would move: name a set by --fix");
+        "--move: no nodes are fixed, so the whole body would move: name a set that stays by --fix");
   return step;
 }
 

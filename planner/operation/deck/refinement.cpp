@@ -18,8 +18,8 @@ std::vector<convert::Refinement> refinements(const Objects& objects, const Deck&
     } else {
       const Object& object = objects.at(text.at.object);
       if (!object.mesh.within || object.mesh.within->empty())
-        throw std::runtime_error("elements cannot be finer at '" + text.at.object +
-                                 "', which has no mesh: see its findings, or name a point");
+        throw std::runtime_error("elements cannot be refined along the surface of '" + text.at.object +
+                                 "', because it has no mesh: see its findings, or name a point instead");
       place.surface = object.mesh.within->triangles();
     }
     places.push_back(std::move(place));

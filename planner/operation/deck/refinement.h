@@ -10,11 +10,11 @@
 
 namespace octotomy::planner {
 
-/// The regions where an export step requests finer elements: its points, and the meshes of its objects.
-/// Throws std::runtime_error where an object has no mesh or an empty one.
+/// The places of finer elements that a step requests: its points, and the surfaces of its objects. Throws
+/// std::runtime_error if an object has no mesh or an empty one.
 std::vector<convert::Refinement> refinements(const Objects& objects, const Deck& step);
 
-/// A key for the finer elements of a step: two steps with the same key request the same.
+/// A text that is equal for two steps exactly if they request the same finer elements.
 std::string refinement_key(const Deck& step);
 
 }  // namespace octotomy::planner

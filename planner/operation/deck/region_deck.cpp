@@ -21,7 +21,7 @@ namespace {
 struct Regions {
   std::vector<std::string> names;
   std::vector<voxel::Octree> octrees;
-  double voxels_mm3 = 0.0;  ///< volume of all regions; overlaps are counted more than once
+  double voxels_mm3 = 0.0;  ///< sum of the regions' volumes; a voxel in several regions counts for each
 };
 
 Regions regions_of(const Objects& objects, const Object& object, const Deck& step,
@@ -37,7 +37,7 @@ Regions regions_of(const Objects& objects, const Object& object, const Deck& ste
   return regions;
 }
 
-/// Resamples the regions and holders in a universe of larger voxels.
+/// Resamples the regions and holders in a universe of larger voxels with the edge `voxel_mm`.
 void coarsen(double voxel_mm, Regions& regions, std::vector<Holder>& holders) {
   const voxel::Lattice fine = regions.octrees.front().universe().lattice();
   const voxel::Universe coarse = voxel::universe_around(voxel::bounds(fine), voxel_mm);
@@ -52,7 +52,8 @@ void check_and_count(Regions& regions) {
   std::uint64_t counted = 0;
   for (std::size_t i = 0; i < regions.names.size(); ++i) {
     if (regions.octrees[i].is_empty())
-      throw std::runtime_error("nothing is left of '" + regions.names[i] + "' in voxels of that size");
+      throw std::runtime_error("no voxel remains of '" + regions.names[i] +
+                               "' at the size 'element_mm': state a smaller one");
     counted += regions.octrees[i].voxel_count();
   }
   regions.voxels_mm3 =
@@ -61,7 +62,7 @@ void check_and_count(Regions& regions) {
 
 void fill_by_voxels(const Regions& regions, const Deck& step, const voxel::Progress& progress,
                     RegionDeck& deck) {
-  // The boundaries of holders end at voxels' corners.
+  // Holders' boundaries end at voxels' corners, so the elements of held objects must end there, too.
   const auto cells = step.is_held() ? convert::BoundaryCells::Voxels : convert::BoundaryCells::Nodes;
   if (regions.octrees.size() == 1) {
     deck.tetrahedra = convert::tetrahedra_of(regions.octrees.front(), cells, progress);
@@ -69,12 +70,12 @@ void fill_by_voxels(const Regions& regions, const Deck& step, const voxel::Progr
   }
   deck.tetrahedra = convert::tetrahedra_of(regions.octrees, cells, progress);
   deck.findings.emplace_back(
-      "the elements are the voxels', whose surface is in steps: do not read stresses there");
+      "the elements are voxels, whose surface has steps: do not read stresses at the surface");
   const double volume_mm3 = convert::quality(deck.tetrahedra).volume_mm3;
   const double shared_mm3 = regions.voxels_mm3 - volume_mm3;
   if (shared_mm3 > 1e-6 * volume_mm3)
     deck.findings.push_back("regions overlap by " + grouped(shared_mm3, 1) +
-                            " mm\u00b3: voxels in several belong to the first");
+                            " mm\u00b3: a voxel in several regions belongs to the first of them");
 }
 
 void fill(const Objects& objects, const Regions& regions, const Deck& step, const voxel::Progress& progress,
@@ -101,7 +102,8 @@ void fill(const Objects& objects, const Regions& regions, const Deck& step, cons
     fill_by_voxels(regions, step, progress, deck);
     return;
   }
-  if (!why.empty()) deck.findings.push_back(why + "; \"fallback\": true takes the voxels' elements");
+  if (!why.empty())
+    deck.findings.push_back(why + "; \"fallback\": true fills the regions with their voxels instead");
   for (const std::string& finding : deck.tetrahedra.findings) deck.findings.push_back(finding);
 }
 
@@ -112,8 +114,8 @@ bool is_holder(const Deck& step, const std::string& name) {
   return has(step.moved) || has(step.fixed);
 }
 
-/// Soft tissue, unless the step gives a material: 15 kPa is Chabanas, Luboz and Payan's for the face (2003).
-/// Linear tetrahedra would be too stiff at their Poisson's ratio of 0.49.
+/// The step's material, by default soft tissue: 15 kPa is the value of Chabanas, Luboz and Payan for the face
+/// (2003). Poisson's ratio is 0.45 instead of their 0.49, because linear tetrahedra would be too stiff there.
 convert::DeckMaterial tissue_of(const Deck& step, const std::string& name) {
   const Deck::Material tissue = step.material.value_or(Deck::Material{0.015, 0.45});
   return {name, tissue.youngs_modulus_mpa, tissue.poisson_ratio};
@@ -142,13 +144,12 @@ void add_materials(const Regions& regions, const Deck& step, RegionDeck& deck) {
   }
   deck.options.material_of_tet = deck.tetrahedra.region_of_tet;
   if (!unknown.empty())
-    deck.findings.push_back(
-        "no material is stated for " + unknown +
-        ": the stiffness of cortical bone is used; \"materials\" of the step states another");
+    deck.findings.push_back("no material is stated for " + unknown +
+                            ": cortical bone is assumed; state others by 'materials' in the step");
 }
 
-/// Pairs of regions that slide, by number, the lower number first: the pairs that the step lists, in its
-/// order, or all pairs if the step has contact everywhere.
+/// The pairs of regions that slide, by number, the lower number first: the pairs that the step lists, in its
+/// order, then all pairs if the step has contact everywhere.
 std::vector<convert::RegionPair> sliding_pairs(const Regions& regions, const Deck& step) {
   const auto number_of = [&](const std::string& name) {
     const auto found = std::find(regions.names.begin(), regions.names.end(), name);
@@ -164,7 +165,7 @@ std::vector<convert::RegionPair> sliding_pairs(const Regions& regions, const Dec
   return pairs;
 }
 
-/// Leaves out the faces of an interface whose two sides still share a node.
+/// Removes faces of an interface whose two sides still share a node.
 void keep_parted(const convert::Tetrahedra& apart, convert::Interface& between) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < between.faces.size(); ++i) {
@@ -188,7 +189,7 @@ void add_free_surfaces(const Regions& regions, RegionDeck& deck) {
     if (!surface.faces.empty()) deck.options.surfaces.push_back(std::move(surface));
 }
 
-/// Separates the regions that slide, and adds the surfaces where regions touch.
+/// Gives sliding regions separate nodes where they touch, and adds the surfaces where regions touch.
 void add_interfaces(const Regions& regions, const Deck& step, RegionDeck& deck) {
   convert::DeckOptions& options = deck.options;
   std::vector<convert::Interface> touching = convert::interfaces(deck.tetrahedra);
@@ -213,7 +214,7 @@ void add_interfaces(const Regions& regions, const Deck& step, RegionDeck& deck) 
   for (std::size_t i = 0; i < step.sliding.size(); ++i)
     if (std::find(parted.begin(), parted.end(), pairs[i]) == parted.end())
       throw std::runtime_error("'" + step.sliding[i].first + "' and '" + step.sliding[i].second +
-                               "' share no face that could slide: leave the pair out of 'sliding'");
+                               "' have no faces in common that could slide: leave the pair out of 'sliding'");
 }
 
 }  // namespace

@@ -11,18 +11,20 @@ std::vector<Field> stiffness_fields() {
   std::vector<std::string> laws;
   for (const convert::StiffnessLaw& law : convert::stiffness_laws()) laws.push_back(law.name);
   return {field("density", &Stiffness::density,
-                "Slope and intercept: g/cm3 = intercept + slope HU, by the scan's calibration phantom.")
+                "Slope and intercept of the density in g/cm3 (intercept + slope * HU), from the scan's "
+                "calibration phantom.")
               .from(2)
               .to(2)
               .comma_separated()
               .for_example("[0.0009, 0.05]"),
           field("law", &Stiffness::law, "Stiffness of a density.").one_of(laws),
-          field("bins", &Stiffness::bins, "Number of materials into which elements are grouped by stiffness.")
+          field("bins", &Stiffness::bins, "Number of materials; elements are grouped into them by stiffness.")
               .from(1)
               .to(1000),
           field("surface_depth_mm", &Stiffness::surface_depth_mm,
-                "Points nearer to the surface take the stiffness at this depth if it is larger, because "
-                "voxels at the surface hold bone and its surroundings; 0: every point has its own.")
+                "Points nearer to the surface than this depth have the stiffness at this depth if that is "
+                "larger, because voxels at the surface mix bone with its surroundings. 0: each point has the "
+                "stiffness at its position.")
               .from(0.0)
               .to(20.0),
           field("poisson_ratio", &Stiffness::poisson_ratio, "Poisson's ratio of the materials.")
@@ -57,11 +59,11 @@ std::vector<std::string> add_stiffness(const Stiffness& stiffness, const convert
                              " of " + std::to_string(tetrahedra.tets.size()) +
                              " elements lie outside it, the first at (" + plain(middle_mm.x) + ", " +
                              plain(middle_mm.y) + ", " + plain(middle_mm.z) +
-                             ") mm: give the scan from which the solid was made");
+                             ") mm: name the scan from which the solid was made");
   }
   deck.notes.push_back("stiffness: " + std::to_string(made.materials.size()) +
-                       " materials at equal ratios; an element's own stiffness differs from its material's "
-                       "by a factor of at most " +
+                       " materials, each stiffer than the one before by the same ratio; an element's "
+                       "measured stiffness differs from that of its material by a factor of at most " +
                        three_figures(made.worst_ratio));
   deck.materials = std::move(made.materials);
   deck.material_of_tet = std::move(made.material_of_tet);

@@ -48,7 +48,7 @@ struct Tet {
   int order = 1;
   std::filesystem::path scan;
   Stiffness stiffness;  ///< of that scan
-  /// A step fills the object's octree instead of its mesh, as the verb does for an .octree file.
+  /// Only in plans: fills the object's octree instead of its mesh. The verb does so for an .octree file.
   bool of_voxels = false;
 
   std::vector<std::string> inputs() const {
@@ -61,7 +61,7 @@ struct Tet {
   }
 };
 
-/// Places of --finer: WHERE=SIZE, where a place is a point, a landmark's name or a mesh file.
+/// The places of --finer, each WHERE=SIZE; WHERE is a point, a landmark's name or a mesh file.
 std::vector<convert::Refinement> refinements(const Tet& asked) {
   std::vector<brep::Landmark> landmarks;
   if (!asked.landmarks.empty()) landmarks = read_landmarks(asked.landmarks);
@@ -86,7 +86,7 @@ std::vector<convert::Refinement> refinements(const Tet& asked) {
       place.surface = read_mesh_in(where);
     else
       throw std::runtime_error("--finer: '" + where +
-                               "' is no point x,y,z, no mesh file, and no landmark of --landmarks");
+                               "' is none of these: a point x,y,z, a landmark of --landmarks, a mesh file");
     places.push_back(std::move(place));
   }
   return places;
@@ -108,15 +108,16 @@ convert::TetOptions options_of(const Tet& asked, const FileBench& bench) {
   return options;
 }
 
-/// The contents of a deck, and how they were made.
+/// The elements of a deck, and how they were made.
 struct TetResult {
   convert::Tetrahedra tetrahedra;
   std::size_t regions = 1;
-  std::optional<std::string> fallback;  ///< why the elements are an octree's own
+  std::optional<std::string> fallback;  ///< the reason why the elements are voxels of an octree; none if they
+                                        ///< are not
   std::vector<std::string> findings;
 };
 
-/// A voxel's edge with which a solid has about 200 000 voxels.
+/// The edge of voxels of which a solid contains about 200 000.
 double fallback_voxel_mm(double volume_mm3) {
   return std::cbrt(volume_mm3 / 200000.0);
 }
@@ -135,8 +136,8 @@ voxel::Octree voxels_of(const Tet& asked, const brep::Triangles& triangles, bool
                : convert::voxelise_by_winding_number(universe, brep::joined_surface(triangles).surface);
 }
 
-/// Makes the elements. If there are none or their shapes are unfit: with --fallback records the reason for
-/// the fallback; without it throws, or keeps the unfit elements with a finding.
+/// Makes the elements by `make`. With --fallback, stores the reason if this fails or if shapes are unfit.
+/// Without --fallback, throws if it fails, and keeps unfit elements with a finding.
 void fill(const Tet& asked, bool is_of_voxels, TetResult& filled,
           const std::function<convert::Tetrahedra()>& make) {
   try {
@@ -148,8 +149,8 @@ void fill(const Tet& asked, bool is_of_voxels, TetResult& filled,
       filled.fallback = unfit;
     else
       filled.findings.push_back(*unfit + (is_of_voxels
-                                              ? ": take another --size, or --fallback"
-                                              : ": mend or simplify the surface, or take --fallback"));
+                                              ? ": state another --size, or add --fallback"
+                                              : ": mend or simplify the surface, or add --fallback"));
   } catch (const std::exception& error) {
     if (fault_of(error) == Fault::Cancelled)
       throw voxel::Stopped("stopped before " + asked.out.string() + " was written");
@@ -161,21 +162,22 @@ void fill(const Tet& asked, bool is_of_voxels, TetResult& filled,
   }
 }
 
-/// Replaces smooth elements by those of an octree.
+/// Replaces the elements by the voxels of an octree; the only finding states the reason.
 void fall_back(TetResult& filled, convert::Tetrahedra tetrahedra, const voxel::Universe& universe) {
   filled.tetrahedra = std::move(tetrahedra);
   filled.findings = {"fallback: " + *filled.fallback +
-                     "; the elements are an octree's, whose surface is in steps of " +
-                     grouped(universe.lattice().spacing_mm().x, 3) + " mm: do not read stresses there"};
+                     "; the elements are voxels of an octree, whose surface has steps of " +
+                     grouped(universe.lattice().spacing_mm().x, 3) +
+                     " mm: do not read stresses at the surface"};
 }
 
-/// A mesh and its health: that of a solid, unless the fallback is allowed.
+/// A mesh and its health. It is a solid unless --fallback allows other meshes.
 struct CheckedMesh {
   brep::Triangles triangles;
   brep::Health health;
 };
 
-/// Reads and checks the mesh. Appends findings on the mending.
+/// Reads and checks the mesh. Appends findings on its mending.
 CheckedMesh checked_mesh(const FileBench& bench, const Tet& asked, std::vector<std::string>& findings) {
   CheckedMesh surface;
   if (asked.mend) {
@@ -190,9 +192,9 @@ CheckedMesh checked_mesh(const FileBench& bench, const Tet& asked, std::vector<s
   const Stopwatch watch(bench.timings, "health");
   surface.health = brep::health(surface.triangles);
   if (!surface.health.solid() && !asked.fallback)
-    throw std::runtime_error(asked.file.name + ": is not a solid: " + surface.health.findings.front() +
-                             "; octotomy info lists all defects; mend it with --mend, or use an octree's "
-                             "elements with --fallback");
+    throw std::runtime_error(
+        asked.file.name + ": is not a solid: " + surface.health.findings.front() +
+        "; octotomy info lists all defects; mend it with --mend, or fill it with voxels by --fallback");
   return surface;
 }
 
@@ -212,7 +214,7 @@ TetResult of_mesh(const FileBench& bench, const Tet& asked) {
   if (filled.fallback) {
     const voxel::Octree octree = voxels_of(asked, triangles, health.solid());
     if (octree.is_empty())
-      throw std::runtime_error(asked.file.name + ": encloses no voxel: take smaller ones by --voxel");
+      throw std::runtime_error(asked.file.name + ": encloses no voxel: state a smaller size by --voxel");
     fall_back(filled,
               convert::tetrahedra_of(octree, convert::BoundaryCells::Nodes, bench.progress("elements")),
               octree.universe());
@@ -226,13 +228,12 @@ voxel::Octree octree_in(const std::string& name, const FileBench& bench) {
   auto* octree = std::get_if<voxel::Octree>(&file.tree);
   if (octree == nullptr)
     throw std::runtime_error(
-        name +
-        ": only a binary octree's voxels become elements: make its surface by octotomy mesh "
-        "and fill that");
+        name + ": only a binary octree can be filled: make a surface of it by octotomy mesh and fill that");
   return std::move(*octree);
 }
 
-/// The octree and the regions beside it: smooth elements if a size is requested, else the voxels' own.
+/// Fills an octree and its further regions: with smooth elements if a size is requested, else with their
+/// voxels.
 TetResult of_octrees(const FileBench& bench, const Tet& asked) {
   std::vector<voxel::Octree> octrees;
   for (const std::string& name : asked.inputs()) octrees.push_back(octree_in(name, bench));
@@ -249,7 +250,7 @@ TetResult of_octrees(const FileBench& bench, const Tet& asked) {
     options.progress = common.progress;
     fill(asked, true, filled, [&] { return convert::smooth_tetrahedra_of(octrees, options); });
   } else {
-    filled.fallback = "an octree was given without a size of elements";
+    filled.fallback = "smooth elements of an octree need a --size, which is missing";
   }
   if (filled.fallback)
     fall_back(filled,
@@ -308,12 +309,12 @@ FileAnswer on_files(const Tet& asked, const FileBench& bench) {
   need_folder_of(asked.out);
   convert::need_own_deck_files(asked.out);
   if (!of_voxels && (!asked.regions.empty() || asked.size_mm || asked.contact))
-    throw std::runtime_error("--region, --size and --contact apply only to octrees: make one of " +
+    throw std::runtime_error("--region, --size and --contact apply only to octrees: make an octree of " +
                              asked.file.name + " by octotomy voxelise");
   refinements(asked);
   check_set_names(asked.nodes);
   if (!asked.finer.empty() && of_voxels && !asked.size_mm)
-    throw std::runtime_error("--finer does not apply to voxels' own elements: give --size, too");
+    throw std::runtime_error("--finer applies only to smooth elements: add --size");
   TetResult filled = of_voxels ? of_octrees(bench, asked) : of_mesh(bench, asked);
   const convert::Tetrahedra& tetrahedra = filled.tetrahedra;
   if (std::optional<std::string> hinge = convert::hinge_in(tetrahedra))
@@ -327,7 +328,7 @@ FileAnswer on_files(const Tet& asked, const FileBench& bench) {
     deck.progress = bench.progress("writing");
     convert::write_deck(tetrahedra, asked.out, deck);
   }
-  // Counts are those of the written deck: elements of order 2 have nodes that the linear elements lack.
+  // The counts of the written deck. Elements of order 2 have nodes that the linear elements lack.
   std::size_t nodes = tetrahedra.nodes_mm.size();
   std::vector<convert::NodeSet> written_sets = deck.node_sets;
   if (asked.order == 2) {
@@ -385,27 +386,27 @@ Operation tet_operation() {
                  .from(1.1)
                  .to(10.0))
       .takes(field("max_volume_mm3", &Tet::max_volume_mm3, "Largest tetrahedron.").greater_than(0.0))
-      .verb_takes(
-          field("finer", &Tet::finer,
-                "WHERE=MM: elements with sides of about MM millimetres at a point x,y,z, a landmark or along "
-                "a mesh file's surface, growing from there; deep inside only with --size; repeated.")
-              .repeated())
-      .verb_takes(
-          field("nodes", &Tet::nodes,
-                "NAME=WHERE: a set of surface nodes at a point x,y,z or a landmark, within a ball "
-                "x,y,z,r, on a "
-                "plane x,y,z,u,v,w through a point with a normal, or on a mesh file's surface; repeated.")
-              .repeated())
-      .verb_takes(
-          field("fixed", &Tet::fixed, "A set of nodes that stays: the deck ends in a static step; repeated.")
-              .repeated()
-              .called("fix"))
-      .verb_takes(
-          field("moved", &Tet::moved, "NAME=DX,DY,DZ: a set of nodes that moves by DX, DY, DZ mm; repeated.")
-              .repeated()
-              .called("move"))
+      .verb_takes(field("finer", &Tet::finer,
+                        "WHERE=MM: elements with sides of about MM millimetres at a point x,y,z, at a "
+                        "landmark or along a mesh file's surface. Sizes grow with the distance from there. "
+                        "Places deep inside take effect only with --size; may be repeated.")
+                      .repeated())
+      .verb_takes(field("nodes", &Tet::nodes,
+                        "NAME=WHERE: a set of surface nodes at a point x,y,z or a landmark, within a ball "
+                        "x,y,z,r, on a plane x,y,z,u,v,w through a point with a normal, or on a mesh file's "
+                        "surface; may be repeated.")
+                      .repeated())
+      .verb_takes(field("fixed", &Tet::fixed,
+                        "A set of --nodes that stays fixed in the deck's static step; may be repeated.")
+                      .repeated()
+                      .called("fix"))
+      .verb_takes(field("moved", &Tet::moved,
+                        "NAME=DX,DY,DZ: a set of --nodes that moves by DX, DY, DZ mm in the deck's static "
+                        "step; may be repeated.")
+                      .repeated()
+                      .called("move"))
       .verb_takes(field("landmarks", &Tet::landmarks,
-                        "Landmarks that --finer and --nodes name: JSON, or 3D Slicer's markups.")
+                        "File of the landmarks that --finer and --nodes name: JSON, or 3D Slicer's markups.")
                       .a_file())
       .takes(field("refine_boundary", &Tet::refine_boundary,
                    "Lets TetGen add points on the surface; by default it is kept as it is."))
@@ -413,32 +414,33 @@ Operation tet_operation() {
                  .from(1.0)
                  .to(86400.0))
       .verb_takes(
-          field("mend", &Tet::mend, "A mesh that is no solid is mended first, as repair --solid does."))
+          field("mend", &Tet::mend, "Mends a mesh that is not a solid first, as repair --solid does."))
       .takes(field("fallback", &Tet::fallback,
-                   "If the meshers fail or leave flat elements, or the mesh is no solid, uses an octree's "
-                   "elements, marked as such."))
+                   "If the meshers fail or leave flat elements, or the mesh is not a solid, fills it with "
+                   "voxels of an octree; the answer states this."))
       .takes(field("voxel_mm", &Tet::voxel_mm,
-                   "Edge of the octree's voxels for --fallback. Default: that of about 200 000 voxels.")
+                   "Edge of the octree's voxels for --fallback. Default: so that the solid has about 200 000 "
+                   "voxels.")
                  .greater_than(0.0))
       .takes(field("regions", &Tet::regions,
-                   "A further octree of the same universe, a region of its own; repeated.")
+                   "A further octree of the same universe, filled as a separate region; may be repeated.")
                  .repeated()
                  .called("region"))
       .takes(field("of_voxels", &Tet::of_voxels, "Fills the object's voxels instead of its mesh.")
                  .in_plans_only())
       .takes(field("size_mm", &Tet::size_mm,
-                   "Smooth quality elements of about this size, in place of the voxels' own.")
+                   "Fills octrees with smooth elements of about this size. Default: their voxels become the "
+                   "elements.")
                  .greater_than(0.0))
       .takes(
           field("contact", &Tet::contact,
-                "Regions have nodes of their own where they touch, and contact pairs there; default: shared "
-                "nodes."))
+                "Regions have separate nodes and contact pairs where they touch. Default: they share nodes."))
       .takes(
-          field("order", &Tet::order, "1: four-node tetrahedra; 2: ten-node ones, with nodes on their sides.")
+          field("order", &Tet::order, "1: four-node tetrahedra; 2: ten-node ones, with a node on each side.")
               .from(1)
               .to(2))
       .takes(field("msh_2_2", &Tet::msh_2_2, "Writes .msh in Gmsh's version 2.2.").called("msh2"))
-      .verb_takes(field("scan", &Tet::scan, "Takes each element's stiffness from this scan in HU."))
+      .verb_takes(field("scan", &Tet::scan, "A scan in HU from which each element's stiffness is computed."))
       .verb_takes(&Tet::stiffness, stiffness_fields())
       .reads_scans()
       .example(

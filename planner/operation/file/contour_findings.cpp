@@ -13,7 +13,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// "10, 12 and 3 more".
+/// Text such as "10, 12 and 3 more".
 class Listed {
  public:
   void add(const std::string& word) {
@@ -38,7 +38,7 @@ glm::dvec3 on_plane(const voxel::View& view, const glm::dvec2& p, double positio
   return p.x * view.right + p.y * view.up + position_mm * view.look;
 }
 
-/// A coordinate to a hundredth of a millimetre.
+/// A coordinate in mm as text, rounded to two decimals.
 std::string hundredths(double mm) {
   return plain(std::round(100.0 * mm) / 100.0 + 0.0);
 }
@@ -48,7 +48,8 @@ std::string place(const voxel::View& view, const glm::dvec2& p, double position_
   return "near (" + hundredths(at.x) + ", " + hundredths(at.y) + ", " + hundredths(at.z) + ") mm";
 }
 
-/// Keeps one of several equal contours of a plane: by the even-odd rule they would delete each other.
+/// Removes repeated contours of a plane except one of each, because the even-odd rule would delete them in
+/// pairs. Adds a finding on them.
 void take_once(voxel::SliceMask& mask, const std::string& where, std::vector<std::string>& findings) {
   std::size_t count = 0;
   std::string first;
@@ -67,13 +68,13 @@ void take_once(voxel::SliceMask& mask, const std::string& where, std::vector<std
   }
   if (count > 0)
     findings.push_back(where + ": " + contours(count) + (count == 1 ? " repeats" : " repeat") +
-                       " another of the same plane, which is taken once: planes at " + planes.text() +
-                       " mm, first " + first);
+                       " another contour of the same plane, so only one of them is used: planes at " +
+                       planes.text() + " mm, first " + first);
 }
 
-/// The even-odd rule leaves out the area that two contours enclose, which is a hole if one contour lies in
-/// the other. For contours that cross, DICOM's exclusive or has the same effect (PS3.3, C.8.8.6.3), but other
-/// programs join them.
+/// Reports contours that cross. The even-odd rule leaves out the area that two contours both enclose. If one
+/// contour lies within the other, that area is a hole. For contours that cross, DICOM's exclusive or has the
+/// same effect (PS3.3, C.8.8.6.3), but other programs unite them.
 void tell_crossings(const voxel::SliceMask& mask, const std::string& where,
                     std::vector<std::string>& findings) {
   std::size_t count = 0;
@@ -90,13 +91,13 @@ void tell_crossings(const voxel::SliceMask& mask, const std::string& where,
   if (count > 0)
     findings.push_back(where + ": " + contours(count) +
                        (count == 1 ? " crosses itself" : " cross another of the same plane or themselves") +
-                       ", so that parts enclosed twice are left out: " + planes.text() + ", first " + first +
-                       "; redraw them as one outline if the parts belong to it");
+                       ", so parts enclosed twice are left out: " + planes.text() + ", first " + first +
+                       "; if these parts belong to the structure, redraw the contours as one outline");
   if (!unknown.text().empty())
-    findings.push_back(where +
-                       ": too many edges lie over each other to find all contours that cross: "
-                       "planes at " +
-                       unknown.text() + " mm");
+    findings.push_back(
+        where +
+        ": has too many edges on top of each other to find all contours that cross: check the planes at " +
+        unknown.text() + " mm");
 }
 
 /// A corner of a contour in its view and in the voxels of a lattice.
@@ -105,8 +106,9 @@ struct Corner {
   glm::dvec3 p_voxel;
 };
 
-/// The part of a closed line within a box of voxels, side by side (Sutherland and Hodgman, Comm. ACM 17,
-/// 1974). Where the part falls into several, edges between them run along the box twice and enclose nothing.
+/// The part of a closed line within a box of voxels, clipped at one side of the box after the other
+/// (Sutherland and Hodgman, Comm. ACM 17, 1974). If the result has several parts, pairs of edges along the
+/// box join them; these enclose no area.
 std::vector<Corner> clipped(std::vector<Corner> line, const voxel::Lattice& box) {
   for (int side = 0; side < 6 && !line.empty(); ++side) {
     const int axis = side / 2;
@@ -139,9 +141,9 @@ struct Volumes {
   double drawn_mm3 = 0.0, beyond_mm3 = 0.0;
 };
 
-/// The volume that contours enclose, and the part of it beyond a lattice's samples: the sum of areas times
-/// the thickness that each plane represents. Exact except for crossing contours, and for planes whose slab
-/// ends beyond the samples.
+/// The volume that contours enclose, and its part beyond a lattice's samples: the sum of each plane's area
+/// times the thickness for which the plane stands. Exact except for crossing contours, and for planes whose
+/// slab ends beyond the samples.
 Volumes volumes_of(const voxel::SliceMask& mask, const voxel::Lattice& box) {
   Volumes volumes;
   const auto& slices = mask.slices;
@@ -154,7 +156,7 @@ Volumes volumes_of(const voxel::SliceMask& mask, const voxel::Lattice& box) {
     for (const auto& polygon : polygons) edges.emplace_back(std::vector<std::vector<glm::dvec2>>{polygon});
     for (std::size_t own = 0; own < polygons.size(); ++own) {
       const auto& polygon = polygons[own];
-      // A contour within an odd number of others is a hole's.
+      // A contour that lies within an odd number of others bounds a hole.
       double sign = 1.0;
       for (std::size_t other = 0; other < polygons.size(); ++other)
         if (other != own && edges[other].contains(polygon.front())) sign = -sign;
@@ -169,7 +171,7 @@ Volumes volumes_of(const voxel::SliceMask& mask, const voxel::Lattice& box) {
   return volumes;
 }
 
-/// "about 12 % of its volume, 3400 mm3,".
+/// Text such as "about 12 % of its volume, 3400 mm3,".
 std::string share_of(const Volumes& volumes) {
   const double percent = 100.0 * volumes.beyond_mm3 / volumes.drawn_mm3;
   return "about " + three_figures(percent) + " % of its volume, " + three_figures(volumes.beyond_mm3) +
@@ -195,15 +197,16 @@ std::vector<std::string> findings_of(const voxel::Region& region) {
   std::vector<std::string> findings;
   const std::vector<std::size_t> again = voxel::repeated_polygons(polygons, off_plane_mm());
   if (!again.empty())
-    findings.push_back(count_of(again.size()) + " drawn twice: nothing is left of both, first at " +
+    findings.push_back(count_of(again.size()) +
+                       " drawn twice, so the even-odd rule removes both: delete one of each, first at " +
                        place_of(polygons[again.front()].front()));
   const voxel::CrossingPolygons crossing = voxel::crossing_polygons(polygons, off_plane_mm());
   if (!crossing.all.empty())
     findings.push_back(count_of(crossing.all.size()) +
                        (crossing.all.size() == 1 ? " crosses itself" : " cross another or themselves") +
-                       ", so that parts enclosed twice are left out, first at " +
+                       ", so parts enclosed twice are left out, first at " +
                        place_of(crossing.all.front().at_mm) +
-                       ": join the contours if the parts that are enclosed twice belong to the region");
+                       ": if these parts belong to the region, join the contours");
   return findings;
 }
 
@@ -230,9 +233,9 @@ std::optional<std::string> beyond_scan(const voxel::SliceMask& mask, const voxel
   }
   if (planes == 0) return std::nullopt;
   return where + ": reaches beyond the scan in " + std::to_string(planes) + " of " + std::to_string(drawn) +
-         " planes, by up to " + three_figures(farthest_mm) + " mm " + at + ", with " +
+         " planes, by up to " + three_figures(farthest_mm) + " mm " + at + "; " +
          share_of(volumes_of(mask, scan)) +
-         " there: nothing was measured there; was it drawn on another scan?";
+         " lies where nothing was measured: check whether it was drawn on another scan";
 }
 
 std::optional<std::string> slices_without_contours(const voxel::SliceMask& mask, const voxel::Lattice& scan,
@@ -241,7 +244,7 @@ std::optional<std::string> slices_without_contours(const voxel::SliceMask& mask,
   for (int axis = 0; axis < 3; ++axis) {
     const glm::dvec3 step_mm(scan.lps_from_voxel[axis]);
     const double along_mm = std::abs(glm::dot(step_mm, mask.view.look));
-    // A plane that leans by less than this misses no slice within the scan.
+    // A plane that leans by less than this stays within one slice across the whole scan.
     if (along_mm > 0.9999 * glm::length(step_mm)) slice_mm = along_mm;
   }
   if (slice_mm == 0.0) return std::nullopt;
@@ -251,7 +254,7 @@ std::optional<std::string> slices_without_contours(const voxel::SliceMask& mask,
     const auto &below = mask.slices[i - 1], &above = mask.slices[i];
     if (below.polygons_mm.empty() || above.polygons_mm.empty()) continue;
     const double apart_mm = above.position_mm - below.position_mm;
-    // Reports gaps of two missing slices or more, because people often leave out a single slice.
+    // Only gaps of two or more missing slices are reported, because people often leave out a single slice.
     if (apart_mm < 2.5 * slice_mm) continue;
     ++gaps;
     if (apart_mm <= widest_mm) continue;
@@ -260,21 +263,20 @@ std::optional<std::string> slices_without_contours(const voxel::SliceMask& mask,
   }
   if (gaps == 0) return std::nullopt;
   return where + ": " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") +
-         " between neighbouring contours, the widest of " + three_figures(widest_mm) + " mm from " +
-         hundredths(at_mm) + " mm on, leave out slices of the scan, which are " + three_figures(slice_mm) +
-         " mm apart: each contour is taken as half a gap thick on either side; draw the slices between if "
-         "the "
-         "structure ends there";
+         " where slices of the scan have no contour, the widest " + three_figures(widest_mm) + " mm from " +
+         hundredths(at_mm) + " mm on, while slices are " + three_figures(slice_mm) +
+         " mm apart: each contour is used for half the gap on either side; if the structure ends there, draw "
+         "an empty slice between";
 }
 
 std::optional<std::string> cut_at_cube(const voxel::SliceMask& mask, const voxel::Universe& universe,
                                        const std::string& where) {
   const Volumes volumes = volumes_of(mask, universe.lattice());
-  // Less than a voxel comes from rounding decimals at the border.
+  // A difference below one voxel's volume comes from decimals that were rounded at the border.
   const glm::dvec3 voxel_mm = universe.lattice().spacing_mm();
   if (!(volumes.beyond_mm3 > voxel_mm.x * voxel_mm.y * voxel_mm.z)) return std::nullopt;
   return "FAIL: " + where + ": is cut at the border of the octree's cube: " + share_of(volumes) +
-         " lies beyond and is left out";
+         " lies beyond and is left out: choose a larger cube if it is needed";
 }
 
 }  // namespace octotomy::planner

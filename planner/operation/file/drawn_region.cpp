@@ -67,13 +67,16 @@ PictureFrame frame_of_drawing(const SvgPicture& picture, const fs::path& drawing
   if (const std::string data = "data:image/png;base64,"; picture.link.starts_with(data))
     return read_frame(decoded_base64(std::string_view(picture.link).substr(data.size())), where);
   if (picture.link.starts_with("data:") || voxel::extension_of(unescaped(picture.link)) != ".png")
-    refuse(where, "is no .png, the only kind of picture that states what its pixels show");
+    refuse(where,
+           "is not a .png: only a .png of octotomy render or slice states the positions of its pixels");
   const fs::path path = drawing.parent_path() / unescaped(picture.link);
-  if (!fs::exists(path)) refuse(where, "links to " + path.string() + ", which does not exist");
+  if (!fs::exists(path))
+    refuse(where,
+           "links to " + path.string() + ", which does not exist: move the picture there, or embed it");
   return read_frame(path);
 }
 
-/// Maps user units to positions in the picture, counted from its top left corner.
+/// Maps the drawing's user units to positions in the picture, in pixels from its top left corner.
 glm::dmat3 pixel_from_user(const SvgPicture& picture, const glm::ivec2& size_px) {
   glm::dvec2 units_per_pixel = picture.shown_units / glm::dvec2(size_px), first(0.0);
   if (picture.keeps_aspect) {
@@ -84,7 +87,7 @@ glm::dmat3 pixel_from_user(const SvgPicture& picture, const glm::ivec2& size_px)
   return glm::inverse(picture.user_from_shown * shown_from_pixel);
 }
 
-/// The number of polygons whose first point lies within an odd number of others.
+/// The number of polygons that are holes: their first point lies within an odd number of other polygons.
 std::size_t holes_among(const std::vector<Polygon>& polygons) {
   std::size_t holes = 0;
   for (std::size_t i = 0; i < polygons.size(); ++i) {
@@ -107,7 +110,7 @@ DrawnRegion of_svg(const std::optional<voxel::View>& view, const fs::path& path)
         if (view) return glm::dmat3({mm_per_unit, 0, 0}, {0, -mm_per_unit, 0}, {0, 0, 1});
         const PictureFrame frame = frame_of_drawing(*picture, path);
         seen = frame.view();
-        // In the frame, whole numbers are the centres of pixels; in the drawing, their corners.
+        // A picture's frame counts from the centre of the first pixel, a drawing from its corner.
         const glm::dmat3 centres({1, 0, 0}, {0, 1, 0}, {-0.5, -0.5, 1});
         return frame.view_mm_from_pixel() * centres * pixel_from_user(*picture, frame.size_px);
       },
@@ -118,7 +121,7 @@ DrawnRegion of_svg(const std::optional<voxel::View>& view, const fs::path& path)
   if (const std::size_t holes = holes_among(made.region.polygons_mm); holes > 0)
     made.findings.push_back(path.filename().string() + ": " + std::to_string(holes) +
                             (holes == 1 ? " outline lies" : " outlines lie") +
-                            " within another and count as holes, even if they are filled");
+                            " within another and counts as a hole, even if the drawing fills it");
   return made;
 }
 
@@ -129,7 +132,7 @@ DrawnRegion of_markups(const voxel::View& view, const fs::path& path) {
   return made;
 }
 
-/// Throws unless a region can be made of the polygons.
+/// Throws std::runtime_error unless the polygons form a region.
 void check_drawn(const DrawnRegion& drawn, const std::string& where) {
   try {
     voxel::check(voxel::RegionMask{{drawn.region}});
@@ -143,9 +146,10 @@ void check_drawn(const DrawnRegion& drawn, const std::string& where) {
 DrawnRegion read_drawn_region(const std::string& text) {
   const auto colon = text.find(':');
   if (voxel::extension_of(text) == ".svgz")
-    refuse("--region", "'" + text +
-                           "' is a packed SVG drawing, which is not read: save it as plain .svg, or unpack "
-                           "it by 'gunzip -S .svgz'");
+    refuse("--region",
+           "'" + text +
+               "' is a compressed SVG drawing, which cannot be read: save it as plain .svg, or unpack "
+               "it by 'gunzip -S .svgz'");
   const bool is_drawing = voxel::extension_of(text) == ".svg";
   std::optional<voxel::View> view;
   fs::path path = text;
@@ -157,7 +161,7 @@ DrawnRegion read_drawn_region(const std::string& text) {
       refuse("--region", error.what());
     }
   } else if (!is_drawing) {
-    refuse("--region", "'" + text + "' is no region: give VIEW:FILE, as anterior:cut.json");
+    refuse("--region", "'" + text + "' is not a region: write VIEW:FILE, for example anterior:cut.json");
   }
   DrawnRegion drawn;
   if (is_drawing)
@@ -177,8 +181,8 @@ DrawnRegion region_of_pixels(const std::string& text) {
   const auto colon = text.rfind(':');
   if (colon == std::string::npos || colon == 0)
     refuse(option, "'" + text +
-                       "' is no region: give PICTURE.png:X,Y X,Y X,Y, as \"front.png:120,80 300,80 "
-                       "300,200\"");
+                       "' is not a region: write PICTURE.png:X,Y X,Y X,Y, for example \"front.png:120,80 "
+                       "300,80 300,200\"");
   const fs::path path = text.substr(0, colon);
   if (!fs::exists(path)) refuse(option, path.string() + ": there is no such file");
   const PictureFrame frame = read_frame(path);
@@ -193,7 +197,7 @@ DrawnRegion region_of_pixels(const std::string& text) {
       if (pixel.size() != 2) refuse(option, "'" + word + "' is no pixel X,Y");
       const double x = pixel[0], y = pixel[1];
       if (!(x >= -0.5 && y >= -0.5 && x <= frame.size_px.x - 0.5 && y <= frame.size_px.y - 0.5))
-        refuse(option, "'" + word + "' is no pixel of " + path.string() + ", which has " +
+        refuse(option, "'" + word + "' lies outside of " + path.string() + ", which has " +
                            std::to_string(frame.size_px.x) + " x " + std::to_string(frame.size_px.y));
       polygons.back().emplace_back(mm_from_pixel * glm::dvec3(x, y, 1.0));
     }

@@ -18,14 +18,15 @@
 namespace octotomy::planner {
 namespace {
 
-/// A transform as the file lists it.
+/// A transform with the type and numbers that the file states for it.
 struct ListedTransform {
   std::string type;  ///< "AffineTransform"
   std::string where;
   std::vector<double> parameters, fixed;
 };
 
-/// Files of linear transforms take a few hundred bytes; a larger file contains something else.
+/// Files of linear transforms have a few hundred bytes; larger files are refused, because they contain
+/// something else.
 constexpr std::uintmax_t most_bytes = 1 << 20;
 
 std::vector<double> numbers_of(const std::string& text, const std::string& where) {
@@ -35,18 +36,18 @@ std::vector<double> numbers_of(const std::string& text, const std::string& where
     double number = 0.0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
     if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(number))
-      refuse(where, "'" + word.substr(0, 40) + "' is no finite number");
+      refuse(where, "'" + word.substr(0, 40) + "' is not a finite number");
     numbers.push_back(number);
   }
   return numbers;
 }
 
-/// The type in a word: "AffineTransform" of "AffineTransform_double_3_3".
+/// A type without its ending: "AffineTransform" for "AffineTransform_double_3_3".
 std::string type_of_word(const std::string& word, const std::string& where) {
   for (const std::string_view ending : {"_double_3_3", "_float_3_3"})
     if (word.ends_with(ending)) return word.substr(0, word.size() - ending.size());
-  refuse(where,
-         "'" + word.substr(0, 60) + "' is no transform of points in space, whose names end in _double_3_3");
+  refuse(where, "'" + word.substr(0, 60) +
+                    "' is not a transform of three-dimensional points: its name must end in _double_3_3");
 }
 
 std::vector<ListedTransform> listed_text(const std::string& text, const std::string& file) {
@@ -60,9 +61,8 @@ std::vector<ListedTransform> listed_text(const std::string& text, const std::str
     line = voxel::trimmed(line);
     if (is_first && !line.starts_with("#Insight Transform File"))
       refuse(file,
-             "is no transform of ITK, whose text begins with '#Insight Transform File' and whose .h5 with "
-             "HDF5's "
-             "signature: save it in 3D Slicer as .tfm or .h5");
+             "is not a transform of ITK: its text does not begin with '#Insight Transform File', and it has "
+             "no HDF5 signature; save the transform in 3D Slicer as .tfm or .h5");
     is_first = false;
     if (line.empty() || line.front() == '#') continue;
     const std::string where = file + ", line " + std::to_string(number);
@@ -80,7 +80,8 @@ std::vector<ListedTransform> listed_text(const std::string& text, const std::str
   return found;
 }
 
-/// The numbers of a group's transform. ITK before version 5 misspells the members' names as "Tranform...".
+/// The numbers of a transform's member, such as "Parameters"; empty if there is none. ITK before version 5
+/// misspells the members' names as "Tranform...".
 std::vector<double> numbers_in(const Hdf5File& file, const std::string& group, const std::string& name) {
   for (const char* const before : {"/Transform", "/Tranform"})
     if (const std::string path = group + before + name; file.has(path)) return file.numbers(path);
@@ -92,14 +93,19 @@ std::vector<ListedTransform> listed_hdf5(const std::string& bytes, const std::st
   try {
     const Hdf5File file(bytes);
     if (!file.has("/TransformGroup"))
-      refuse("", "holds no /TransformGroup: it is another kind of HDF5 file than ITK's transforms");
+      refuse("",
+             "has no /TransformGroup, so it is not a file of ITK's transforms: save the transform in 3D "
+             "Slicer as .h5");
     constexpr std::size_t most_transforms = 64;
     const std::size_t count = file.members("/TransformGroup").size();
     if (count > most_transforms)
-      refuse("", "holds " + std::to_string(count) + " transforms: at most 64 are read");
+      refuse("", "holds " + std::to_string(count) +
+                     " transforms, and at most 64 can be read: save a single linear transform");
     for (std::size_t i = 0; i < count; ++i) {
       const std::string group = "/TransformGroup/" + std::to_string(i), where = name + ", " + group;
-      if (!file.has(group)) refuse("", "has no " + group + ": its transforms must be numbered from 0");
+      if (!file.has(group))
+        refuse("", "has no " + group +
+                       ", because its transforms are not numbered from 0: save it anew in 3D Slicer");
       found.push_back({type_of_word(file.text(group + "/TransformType"), where), where, {}, {}});
       if (found.back().type == "CompositeTransform") continue;
       found.back().parameters = numbers_in(file, group, "Parameters");
@@ -117,7 +123,7 @@ std::vector<ListedTransform> listed(const std::filesystem::path& path) {
   const std::string file = path.string();
   if (!std::filesystem::is_regular_file(path)) refuse(file, "is no file");
   if (std::filesystem::file_size(path) > most_bytes)
-    refuse(file, "is larger than any linear transform: save a linear one");
+    refuse(file, "is larger than any file of a linear transform: save a linear transform without a grid");
   const std::string bytes = voxel::file_bytes(path);
   std::vector<ListedTransform> found =
       Hdf5File::begins(bytes) ? listed_hdf5(bytes, file) : listed_text(bytes, file);
@@ -135,14 +141,14 @@ glm::dvec3 three(const std::vector<double>& numbers, std::size_t from) {
   return {numbers[from], numbers[from + 1], numbers[from + 2]};
 }
 
-/// x -> turn (x - centre) + centre + shift.
+/// The matrix of the map x -> turn (x - centre) + centre + shift.
 glm::dmat4 about_centre(const glm::dmat3& turn, const glm::dvec3& shift, const ListedTransform& each) {
   if (each.fixed.size() != 3 && each.fixed.size() != 4 && !each.fixed.empty())
     refuse(each.where, each.type + " has " + std::to_string(each.fixed.size()) +
-                           " fixed parameters: it takes the three of its centre");
+                           " fixed parameters instead of the three coordinates of its centre");
   const glm::dvec3 centre = each.fixed.empty() ? glm::dvec3(0.0) : three(each.fixed, 0);
   glm::dmat4 matrix(turn);
-  // Summed in this order so that a centre of zero causes no rounding.
+  // The sum in this order is exact if the centre is zero.
   matrix[3] = glm::dvec4(shift + (centre - turn * centre), 1.0);
   return matrix;
 }
@@ -160,8 +166,9 @@ glm::dmat3 euler(const ListedTransform& each) {
 glm::dmat3 versor(const ListedTransform& each) {
   const glm::dvec3 v = three(each.parameters, 0);
   const double square = glm::dot(v, v);
-  // Rounding to a file's digits may make the versor of a half turn slightly longer than one.
-  if (square > 1.0 + 1e-6) refuse(each.where, "its versor is longer than 1");
+  // The three numbers of a half turn's versor may be slightly longer than 1 after a file rounded them.
+  if (square > 1.0 + 1e-6)
+    refuse(each.where, "the vector of its versor is longer than 1, so it is not a rotation");
   return glm::mat3_cast(glm::normalize(glm::dquat(std::sqrt(std::max(0.0, 1.0 - square)), v.x, v.y, v.z)));
 }
 
@@ -185,13 +192,12 @@ glm::dmat4 matrix_of(const ListedTransform& each) {
     return about_centre(type == "Euler3DTransform" ? euler(each) : versor(each), three(each.parameters, 3),
                         each);
   }
-  refuse(each.where,
-         "'" + type +
-             "' is not read: save a linear transform, in 3D Slicer by Transforms, after hardening "
-             "any grid or spline");
+  refuse(each.where, "'" + type +
+                         "' cannot be read, because it is not linear: save a linear transform from 3D "
+                         "Slicer's module Transforms, without grids or splines");
 }
 
-/// The shortest text that reads back to the same number.
+/// The shortest decimal text from which the same number is read.
 std::string exact(double value) {
   std::array<char, 32> text{};
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
@@ -203,19 +209,19 @@ TransformFile read_itk_transform(const std::filesystem::path& path) {
   std::vector<ListedTransform> all = listed(path);
   const bool is_composite = all.front().type == "CompositeTransform";
   if (is_composite) all.erase(all.begin());
-  if (all.empty()) refuse(path.string(), "holds a composite of no transforms");
+  if (all.empty()) refuse(path.string(), "has a composite transform without parts");
   if (all.size() > 1 && !is_composite)
-    refuse(path.string(),
-           "holds " + std::to_string(all.size()) +
-               " transforms, and no composite states their order: save each transform in its own file");
+    refuse(path.string(), "holds " + std::to_string(all.size()) +
+                              " transforms, but no composite transform that states their order: save each "
+                              "transform in its own file");
   glm::dmat4 still_from_moved(1.0);
   for (const ListedTransform& each : all) still_from_moved = still_from_moved * matrix_of(each);
   if (std::abs(glm::determinant(glm::dmat3(still_from_moved))) < 1e-6)
-    refuse(path.string(), "its transform flattens space and has no inverse");
+    refuse(path.string(), "its transform has no inverse, because its matrix is singular");
   return {
       glm::inverse(still_from_moved),
-      {path.filename().string() +
-       ": LPS, mm, from after the motion to before, as all of ITK's transforms: the motion is the inverse"}};
+      {path.filename().string() + ": like all ITK transforms it is in LPS and mm and maps positions after "
+                                  "the motion to positions before it, so the motion is its inverse"}};
 }
 
 std::string itk_transform_hdf5(const glm::dmat4& moved_from_still) {

@@ -25,7 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The label that a text states; also "3.0", because some tables have labels as floats.
+/// The label in a text; none if it is not a whole number that a label can have. "3.0" counts as 3, because
+/// some tables store labels as floats.
 std::optional<int> whole(const std::string& text) {
   std::string digits = voxel::trimmed(text);
   if (digits.ends_with(".0")) digits.resize(digits.size() - 2);
@@ -46,15 +47,15 @@ bool is_beyond_labels(const std::string& text) {
          !whole(text);
 }
 
-/// Whether a text is a number with a fraction or an exponent, such as "0.5" or "1e3", and therefore no
-/// name. Whole numbers can be names, for example of teeth.
+/// Whether a text is a number with a fraction or an exponent, such as "0.5" or "1e3". Such a text is not a
+/// name, but a whole number can be one, for example of a tooth.
 bool is_decimal(const std::string& text) {
   double number = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc() && end == text.data() + text.size() && !whole(text);
 }
 
-/// The names of labels while a table is read.
+/// The labels and names read so far, with remarks on rows that were left out.
 class Names {
  public:
   /// `where` is for refusals.
@@ -62,7 +63,7 @@ class Names {
     if (label == 0 || name.empty()) return;
     if (label < 0 || label > voxel::most_label)
       refuse(where, "must have a label from 0 to " + std::to_string(voxel::most_label));
-    if (is_decimal(name)) refuse(where, "has the number " + name + " where a name should be");
+    if (is_decimal(name)) refuse(where, "has the number " + name + " in the place of a name");
     const auto [own, is_new_label] = names_.emplace(label, name);
     if (!is_new_label)
       refuse(where,
@@ -76,14 +77,14 @@ class Names {
   void pass_over(const std::string& where, const std::string& why) {
     constexpr std::size_t most_told = 8;
     if (++passed_over_count_ <= most_told)
-      passed_over_.push_back(where + ": the row is passed over, as " + why);
+      passed_over_.push_back(where + ": the row is left out, because " + why);
   }
-  /// Reports a doubt about the whole table.
+  /// Adds a finding that concerns the whole table.
   void note(std::string text) { notes_.push_back(std::move(text)); }
   LabelTable table(const fs::path& path) && {
     if (passed_over_count_ > passed_over_.size())
       passed_over_.push_back(path.string() + ": " + std::to_string(passed_over_count_ - passed_over_.size()) +
-                             " more rows are passed over");
+                             " more rows are left out");
     passed_over_.insert(passed_over_.begin(), notes_.begin(), notes_.end());
     return {std::move(names_), path, std::move(passed_over_)};
   }
@@ -95,8 +96,8 @@ class Names {
   std::map<std::string, int> labels_;
 };
 
-/// A heading or key without capitals, blanks and punctuation, in which programs differ: "Label Value",
-/// "LabelValue" and "label_value" become "labelvalue"; "#No." becomes "no".
+/// A heading or key reduced to lower-case letters and digits, because programs spell headings differently:
+/// "Label Value", "LabelValue" and "label_value" become "labelvalue"; "#No." becomes "no".
 std::string plain_word(const std::string& text) {
   std::string word;
   for (const unsigned char c : text)
@@ -104,7 +105,7 @@ std::string plain_word(const std::string& text) {
   return word;
 }
 
-/// Column headings and JSON keys of a label's number, in plain_word() spelling, likeliest first.
+/// Column headings and JSON keys of labels in plain_word() spelling, likeliest first.
 const std::vector<std::string>& words_of_labels() {
   static const std::vector<std::string> words{
       "label",  "labelvalue", "labelid", "labelnumber", "labelno",   "labelindex", "value",   "index", "id",
@@ -112,8 +113,8 @@ const std::vector<std::string>& words_of_labels() {
   return words;
 }
 
-/// Column headings and JSON keys of a label's name, in plain_word() spelling, likeliest first. A column
-/// "label" can contain the names if another column contains the numbers.
+/// Column headings and JSON keys of names in plain_word() spelling, likeliest first. A column "label" can
+/// contain the names if another column contains the labels.
 const std::vector<std::string>& words_of_names() {
   static const std::vector<std::string> words{
       "name",        "labelname",  "segmentname", "segmentlabel", "structurename",
@@ -122,7 +123,7 @@ const std::vector<std::string>& words_of_names() {
   return words;
 }
 
-/// The value of the first of these keys that the object has and whose value passes `fits`; null if there is
+/// The value of the first key in `words` that the object has and whose value passes `fits`; null if there is
 /// none.
 template <typename Fits>
 const SortedJson* one_of(const SortedJson& object, const std::vector<std::string>& words, const Fits& fits) {
@@ -133,7 +134,7 @@ const SortedJson* one_of(const SortedJson& object, const std::vector<std::string
   return nullptr;
 }
 
-/// A JSON number as text, or a JSON string's text; empty for other values.
+/// The text of a JSON string or number; empty for other values.
 std::string number_text(const SortedJson& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_number()) return value.dump();
@@ -145,7 +146,7 @@ bool is_label_number(const SortedJson& value) {
   return whole(text) || is_beyond_labels(text);
 }
 
-/// An entry of a JSON list: {"label": 5, "name": "liver"}, {"id": 5, "label": "liver"}.
+/// Adds an entry of a JSON list, such as {"label": 5, "name": "liver"} or {"id": 5, "label": "liver"}.
 void add_entry(Names& table, const SortedJson& entry, const std::string& at) {
   const SortedJson* const label = one_of(entry, words_of_labels(), is_label_number);
   const SortedJson* const name = one_of(
@@ -154,10 +155,10 @@ void add_entry(Names& table, const SortedJson& entry, const std::string& at) {
     const SortedJson* const none =
         one_of(entry, words_of_labels(), [](const SortedJson& value) { return value.is_null(); });
     if (none != nullptr && name != nullptr) return table.pass_over(at, "it has no label");
-    refuse(at, "has no label: a key 'label' with a whole number is expected, and a key 'name'");
+    refuse(at, "has no label: add a key 'label' with a whole number and a key 'name'");
   }
   const std::string number = number_text(*label);
-  if (is_beyond_labels(number)) return table.pass_over(at, "no label map can have the label " + number);
+  if (is_beyond_labels(number)) return table.pass_over(at, "labels cannot have the number " + number);
   if (name == nullptr) word_of(need(entry, "name", at), at + ".name");
   if (name == nullptr || voxel::trimmed(name->get<std::string>()).empty())
     return table.pass_over(at, "label " + number + " has no name");
@@ -168,14 +169,14 @@ void add_json(Names& table, const SortedJson& json, const std::string& where) {
   if (json.is_array()) {
     for (const SortedJson& entry : json) {
       const std::string at = where + "[" + std::to_string(&entry - &json.front()) + "]";
-      if (entry.is_array())  // dcmqi lists the segments of each file
+      if (entry.is_array())  // dcmqi writes one list of segments for each file
         add_json(table, entry, at);
       else
         add_entry(table, entry, at);
     }
     return;
   }
-  if (!json.is_object()) refuse(where, "must be an object or a list of labels and names");
+  if (!json.is_object()) refuse(where, "must be a JSON object or a list of labels and names");
   for (const char* const key : {"labels", "Labels", "LabelMap", "segmentAttributes"})
     if (json.contains(key) && json[key].is_structured())
       return add_json(table, json[key], where + ": labels");
@@ -185,15 +186,15 @@ void add_json(Names& table, const SortedJson& json, const std::string& where) {
     if (const std::optional<int> label = whole(key); label && value.is_string())
       table.add(*label, value.get<std::string>(), at);
     else if (is_beyond_labels(key) && value.is_string())
-      table.pass_over(at, "no label map can have the label " + key);
+      table.pass_over(at, "labels cannot have the number " + key);
     else if (const std::optional<int> own = whole(number))
       table.add(*own, key, at);
     else if (is_beyond_labels(number))
-      table.pass_over(at, "no label map can have the label " + number);
+      table.pass_over(at, "labels cannot have the number " + number);
     else if (value.is_array() && !value.empty() && value.front().is_number_integer())
-      continue;  // nnU-Net's regions are unions of labels
+      continue;  // a region of nnU-Net, which is a union of labels
     else
-      refuse(at, "must be a name with its label, or a label with its name");
+      refuse(at, "must be a name and its label, or a label and its name");
   }
 }
 
@@ -213,8 +214,8 @@ std::vector<std::size_t> columns_of(const std::vector<std::string>& heading,
   return found;
 }
 
-/// Whether a cell of a column is a whole number, or the column is empty, in the rows from `first`. A column
-/// of words alone has no labels.
+/// Whether a column can be the one of labels, in the rows from `first`: at least one cell is a whole number,
+/// or all cells are empty. A column of words has no labels.
 bool may_have_labels(const Rows& rows, std::size_t first, std::size_t column) {
   bool any = false;
   for (std::size_t i = first; i < rows.size(); ++i) {
@@ -225,7 +226,7 @@ bool may_have_labels(const Rows& rows, std::size_t first, std::size_t column) {
   return !any;
 }
 
-/// Whether every cell of a column that is not empty is a whole number, in the rows from `first`.
+/// Whether all non-empty cells of a column are whole numbers, in the rows from `first`.
 bool has_numbers(const Rows& rows, std::size_t first, std::size_t column) {
   return std::all_of(rows.begin() + static_cast<std::ptrdiff_t>(first), rows.end(), [&](const auto& row) {
     const std::string text = cell_of(row, column);
@@ -238,7 +239,7 @@ struct Columns {
 };
 
 /// Finds the columns of labels and of names. In a .tsv the column "index" has the labels (BIDS), even if
-/// other columns have numbers. Reports a second column with other numbers.
+/// other columns have numbers. Adds a finding on a further column of labels with other numbers.
 Columns columns_in(Names& table, const Rows& rows, const std::string& where, bool is_tsv) {
   if (whole(rows[0][0]) || is_beyond_labels(rows[0][0])) {
     const bool has_words = std::any_of(rows.begin(), rows.end(), [](const auto& row) {
@@ -269,14 +270,15 @@ Columns columns_in(Names& table, const Rows& rows, const std::string& where, boo
           return !cell_of(row, other).empty() && cell_of(row, other) != cell_of(row, taken);
         });
         if (differs != rows.end())
-          table.note(where + ": WARN: the labels are taken from the column '" +
+          table.note(where + ": WARN: the labels are read from the column '" +
                      voxel::trimmed(rows[0][taken]) + "'; the column '" + voxel::trimmed(rows[0][other]) +
-                     "' has other numbers, which are not read");
+                     "' has other numbers and is ignored");
       }
       return {taken, names.front(), 1};
     }
   }
-  refuse(where + ":1", "must name a column 'label' and a column 'name', or begin with a label");
+  refuse(where + ":1",
+         "must be a heading with the columns 'label' and 'name', or a row that begins with a label");
 }
 
 void add_rows(Names& table, const Rows& rows, const std::string& where, bool is_tsv) {
@@ -290,7 +292,7 @@ void add_rows(Names& table, const Rows& rows, const std::string& where, bool is_
       continue;
     }
     if (is_beyond_labels(number)) {
-      table.pass_over(at, "no label map can have the label " + number);
+      table.pass_over(at, "labels cannot have the number " + number);
       continue;
     }
     const std::optional<int> label = whole(number);
@@ -300,9 +302,9 @@ void add_rows(Names& table, const Rows& rows, const std::string& where, bool is_
   }
 }
 
-/// The name in a line of words. "left kidney 255 0 0 255": the words before a colour of three or four
-/// numbers. Without a colour: the words before the first number. "0.9 0.9 0.9 left kidney", as FSL writes
-/// it: the words behind the colour.
+/// The name in the rest of a line, without its colour. In "left kidney 255 0 0 255" the words before a colour
+/// of three or four numbers are the name; without a colour, the words before the first number. In FSL's "0.9
+/// 0.9 0.9 left kidney", the words after the colour are the name.
 std::string name_before_colour(const std::string& text) {
   const auto is_number = [](const std::string& word) { return whole(word) || is_decimal(word); };
   std::istringstream in(text);
@@ -336,8 +338,8 @@ bool is_heading(const std::string& text) {
   return any && count > 1;
 }
 
-/// Reads lines such as "5 255 0 0 1 1 1 "liver"" of ITK-SNAP, and "5 liver 255 0 0 255" of 3D Slicer and
-/// FreeSurfer.
+/// Reads lines of ITK-SNAP, such as "5 255 0 0 1 1 1 "liver"", and of 3D Slicer and FreeSurfer, such as "5
+/// liver 255 0 0 255".
 void add_lines(Names& table, std::istream& in, const std::string& where) {
   std::string line;
   bool is_first = true;
@@ -348,7 +350,7 @@ void add_lines(Names& table, std::istream& in, const std::string& where) {
     const std::string word = text.substr(0, blank);
     const bool may_be_heading = std::exchange(is_first, false);
     if (is_beyond_labels(word)) {
-      table.pass_over(at, "no label map can have the label " + word);
+      table.pass_over(at, "labels cannot have the number " + word);
       continue;
     }
     const std::optional<int> label = whole(word);
@@ -357,13 +359,13 @@ void add_lines(Names& table, std::istream& in, const std::string& where) {
       continue;
     }
     if (!label || blank == std::string::npos)
-      refuse(at, "begins with no label from 0 to " + std::to_string(voxel::most_label));
+      refuse(at, "must begin with a label from 0 to " + std::to_string(voxel::most_label));
     const std::string rest = voxel::trimmed(text.substr(blank));
     const std::size_t quote = rest.find('"'), last = rest.rfind('"');
     const bool is_quoted = quote != last;
     std::string name = is_quoted ? rest.substr(quote + 1, last - quote - 1) : name_before_colour(rest);
-    if (!is_quoted && name.empty()) refuse(at, "has a number and no name behind its label");
-    // 3D Slicer writes an underscore for each blank.
+    if (!is_quoted && name.empty()) refuse(at, "has only numbers after its label: write the name there");
+    // 3D Slicer's .ctbl files have underscores in place of blanks.
     if (where.ends_with(".ctbl")) std::replace(name.begin(), name.end(), '_', ' ');
     table.add(*label, name, at);
   }
@@ -380,14 +382,14 @@ int LabelTable::label(const std::string& name) const {
     std::string list;
     for (const int number : numbers) list += (list.empty() ? "" : ", ") + std::to_string(number);
     refuse(file.string(), "has " + std::to_string(numbers.size()) + " labels '" + name +
-                              "', with the numbers " + list + ": select one by its number, 'label'");
+                              "', with the numbers " + list + ": choose one of them by its number, 'label'");
   }
   std::vector<std::string> known;
   for (const auto& [number, label] : names) known.push_back(label);
   if (known.empty())
     throw std::runtime_error("there is no label '" + name +
-                             "': the label map has no names, and no table beside it that could be read has "
-                             "them; give its number, or see what info reports about the table");
+                             "': neither the label map nor a table beside it has names: state the label's "
+                             "number, or read what octotomy info reports on tables beside the label map");
   throw std::runtime_error(file.string() + ": has no label '" + name + "'" + suggestion(name, known));
 }
 
@@ -425,8 +427,8 @@ std::vector<std::string> findings_of_labels(const std::vector<voxel::Label>& lab
     if (++count <= most) numbers += (numbers.empty() ? "" : ", ") + std::to_string(label.number);
   }
   if (count == 0) return {};
-  return {"labels are stored up to " + three_figures(off) +
-          " off whole numbers, and read as the nearest: " + numbers + (count > 8 ? " and more" : "")};
+  return {"labels are stored as fractions, up to " + three_figures(off) +
+          " from a whole number, and rounded to the nearest: " + numbers + (count > 8 ? " and more" : "")};
 }
 
 }  // namespace octotomy::planner

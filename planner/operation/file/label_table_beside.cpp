@@ -18,8 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether a key names a quantity of an acquisition, as files beside scans state them (BIDS, dcm2niix): a
-/// single word of several capitalised parts, the last of which is a quantity.
+/// Whether a key is a quantity of an acquisition, because JSON files beside scans state those (BIDS,
+/// dcm2niix). Such a key is one of a fixed list, or a single capitalised word that ends in a quantity, such
+/// as "SliceThickness".
 bool is_of_acquisition(const std::string& key) {
   static const std::set<std::string> known{"KVP",
                                            "KVp",
@@ -65,7 +66,7 @@ bool is_of_acquisition(const std::string& key) {
          });
 }
 
-/// The parts of a BIDS name: "sub-01", "space-T1w", "dseg".
+/// The parts of a BIDS name between underscores, such as "sub-01", "space-T1w" and "dseg".
 std::set<std::string> entities_of(const std::string& stem) {
   std::set<std::string> parts;
   std::istringstream in(stem);
@@ -73,8 +74,8 @@ std::set<std::string> entities_of(const std::string& stem) {
   return parts;
 }
 
-/// The files "dseg.tsv" in a folder and the folders above whose entities all occur in the label map's name.
-/// The nearest folder comes first; within a folder, the file with most entities.
+/// The files "*dseg.tsv" in the label map's folder and the three folders above, if all their entities occur
+/// in the label map's name. The nearest folder comes first; within a folder, the file with most entities.
 std::vector<fs::path> inherited_tables(const fs::path& label_map, const std::string& stem) {
   std::vector<fs::path> found;
   const std::set<std::string> own = entities_of(stem);
@@ -97,7 +98,7 @@ std::vector<fs::path> inherited_tables(const fs::path& label_map, const std::str
   return found;
 }
 
-/// The files that may be a label map's table, the likeliest first.
+/// The files that may be a label map's table, likeliest first.
 std::vector<fs::path> tables_beside(const fs::path& label_map) {
   std::string stem = label_map.filename().string();
   for (const char* extension :
@@ -107,7 +108,7 @@ std::vector<fs::path> tables_beside(const fs::path& label_map) {
       break;
     }
   std::vector<std::string> extensions{".json", ".csv", ".tsv", ".txt", ".ctbl", ".label", ".lut"};
-  // BIDS names labels in .tsv, and states other facts in .json.
+  // BIDS stores labels' names in .tsv and other facts in .json, so .tsv comes first.
   if (stem.ends_with("dseg")) std::swap(extensions[0], extensions[2]);
   std::vector<fs::path> found;
   for (const char* more : {"", "_labels", "-labels", "_ColorTable", "-ColorTable"})
@@ -118,7 +119,7 @@ std::vector<fs::path> tables_beside(const fs::path& label_map) {
   return found;
 }
 
-/// Reads a table; if the file is not this label map's table, returns the reason.
+/// Reads a table. If the file is not this label map's table, sets `why` to the reason.
 LabelTable table_or_why(const fs::path& path, const std::set<int>& occurring, std::string& why) {
   LabelTable table;
   try {
@@ -135,11 +136,11 @@ LabelTable table_or_why(const fs::path& path, const std::set<int>& occurring, st
     why = "none of its labels occurs";
   if (voxel::extension_of(path) == ".json")
     for (const auto& [label, name] : table.names)
-      if (is_of_acquisition(name)) why = "'" + name + "' is a number of an acquisition";
+      if (is_of_acquisition(name)) why = "'" + name + "' is a quantity of a scan's acquisition, not a name";
   return table;
 }
 
-/// A name or number in which two tables differ; empty if they agree.
+/// The first name or label in which two tables differ, in words; empty if they agree.
 std::string disagreement(const LabelTable& taken, const LabelTable& other) {
   std::map<std::string, int> numbers;
   for (const auto& [number, name] : other.names) numbers.emplace(name, number);
@@ -153,7 +154,7 @@ std::string disagreement(const LabelTable& taken, const LabelTable& other) {
   return {};
 }
 
-/// Reports tables in the label map's folder that contradict the one that is used.
+/// Appends a finding on each table in the label map's folder that contradicts the table in use.
 void add_disagreements(const fs::path& label_map, const std::set<int>& occurring, LabelTable& taken) {
   for (const fs::path& beside : tables_beside(label_map)) {
     if (beside == taken.file || beside.parent_path() != label_map.parent_path()) continue;
@@ -161,9 +162,9 @@ void add_disagreements(const fs::path& label_map, const std::set<int>& occurring
     const LabelTable other = table_or_why(beside, occurring, why);
     if (!why.empty()) continue;
     if (const std::string differs = disagreement(taken, other); !differs.empty())
-      taken.passed_over.push_back(beside.string() + ": not used, because it contradicts " +
+      taken.passed_over.push_back(beside.string() + ": is not used, because it contradicts " +
                                   taken.file.string() + ", whose names are used: " + differs +
-                                  "; remove the wrong one, or choose one by --names");
+                                  "; remove the wrong table, or choose one by --names");
   }
 }
 
@@ -184,8 +185,8 @@ LabelTable label_table_of(const fs::path& label_map, const std::set<int>& occurr
       return table;
     }
     passed_over.push_back(beside.string() +
-                          ": not used, because it is not a table of this label map's names: " + why +
-                          "; --names uses a table without this check");
+                          ": is not used, because it is not a table of this label map's names: " + why +
+                          "; to use it without this check, name it by --names");
   }
   LabelTable none;
   none.passed_over = std::move(passed_over);

@@ -52,8 +52,8 @@ std::vector<brep::Landmark> own_landmarks(const SortedJson& list) {
       throw std::runtime_error("'confirmed' of '" + landmark.name + "' is neither true nor false");
     if (!confirmed.get<bool>())
       throw std::runtime_error("'" + landmark.name +
-                               "' is a guess that nobody has confirmed: look at it, correct it, and set its "
-                               "'confirmed' to true, or leave it out");
+                               "' is a guess that nobody has confirmed: check and correct its position, then "
+                               "set its 'confirmed' to true, or delete the point");
     landmark.p_mm = position_of(entry.value("point_mm", SortedJson()), landmark.name);
     const SortedJson weight = entry.value("weight", SortedJson(1.0));
     if (!weight.is_number()) throw std::runtime_error("the weight of '" + landmark.name + "' is no number");
@@ -63,21 +63,23 @@ std::vector<brep::Landmark> own_landmarks(const SortedJson& list) {
   return landmarks;
 }
 
-/// The factors that convert coordinates of a system to LPS. Slicer writes the system as a word or a number.
+/// The factors by which coordinates of a system are multiplied to obtain LPS. Slicer writes the system as a
+/// word or a number.
 glm::dvec3 lps_of_system(const std::string& system) {
   if (system == "LPS" || system == "1") return glm::dvec3(1.0);
   if (system == "RAS" || system == "0") return {-1.0, -1.0, 1.0};
-  throw std::runtime_error("the coordinate system '" + system + "' is neither LPS (1) nor RAS (0)");
+  throw std::runtime_error("the coordinate system '" + system +
+                           "' is unknown: convert the points to LPS (1) or RAS (0)");
 }
 
 double mm_of_unit(const std::string& unit) {
   const std::optional<brep::LengthUnit> known = brep::length_unit(unit == "[in_i]" ? "inch" : unit);
-  if (!known) throw std::runtime_error("the unit '" + unit + "' is not known: write points in mm");
+  if (!known) throw std::runtime_error("the unit '" + unit + "' is unknown: convert the points to mm");
   return known->mm;
 }
 
-/// The length of a unit in mm. The unit is a text such as "mm", a list of one unit per axis, or a coded
-/// unit such as ["mm", "UCUM", "millimeter"], whose first word counts.
+/// The length of a unit in mm. The unit is a text such as "mm", a list with one unit for each axis, or a
+/// coded unit such as ["mm", "UCUM", "millimeter"], of which only the first word is read.
 double mm_of_units(const SortedJson& units) {
   if (units.is_string()) return mm_of_unit(units.get<std::string>());
   if (!units.is_array() || units.empty())
@@ -86,7 +88,7 @@ double mm_of_units(const SortedJson& units) {
   if (is_coded) return mm_of_units(units[0]);
   for (const SortedJson& each : units)
     if (mm_of_units(each) != mm_of_units(units[0]))
-      throw std::runtime_error("the axes have different units: " + units.dump());
+      throw std::runtime_error("the axes have different units, and only one can be read: " + units.dump());
   return mm_of_units(units[0]);
 }
 
@@ -96,7 +98,7 @@ void assume(const char* check, const std::string& what, Audit& audit) {
   audit.push_back({check, brep::MeshVerdict::Warn, what});
 }
 
-/// The control points of all lists in the file.
+/// The placed control points of all lists in the file, in LPS mm.
 std::vector<brep::Landmark> slicer_landmarks(const SortedJson& markups, Audit& audit) {
   std::vector<brep::Landmark> landmarks;
   for (const SortedJson& list : markups) {
@@ -118,7 +120,7 @@ std::vector<brep::Landmark> slicer_landmarks(const SortedJson& markups, Audit& a
   return landmarks;
 }
 
-/// The key and value of a line such as "# CoordinateSystem = LPS"; none for other lines.
+/// The lower-case key and the value of a line such as "# CoordinateSystem = LPS"; none for other lines.
 std::optional<std::pair<std::string, std::string>> fcsv_fact(const std::string& line) {
   const std::size_t middle = line.find('=');
   if (!line.starts_with("#") || middle == std::string::npos) return std::nullopt;
@@ -132,13 +134,13 @@ double fcsv_number(const std::string& cell, const std::string& name) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (text.empty() || error != std::errc() || end != text.data() + text.size() || !std::isfinite(number))
     throw std::runtime_error("the point of '" + name + "' has a coordinate '" + text +
-                             "', which is no number");
+                             "', which is not a finite number");
   return number;
 }
 
-/// Reads Slicer's points, one a line, separated by commas. Since version 4 the columns are
-/// id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label, ...; before, they were label,x,y,z,... The file states the
-/// version.
+/// Reads Slicer's points, one on each line, separated by commas, and converts them to LPS. Since version 4 of
+/// Slicer the columns are id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label, ...; before, they were label,x,y,z,... The
+/// file's line "columns" states them.
 std::vector<brep::Landmark> fcsv_landmarks(const std::string& text, Audit& audit) {
   std::vector<std::string> columns{"id", "x",  "y",   "z",   "ow",   "ox",
                                    "oy", "oz", "vis", "sel", "lock", "label"};
@@ -154,7 +156,7 @@ std::vector<brep::Landmark> fcsv_landmarks(const std::string& text, Audit& audit
       if (fact->first == "coordinatesystem") {
         const glm::dvec3 stated_mm = lps_of_system(fact->second);
         if (is_stated && stated_mm != lps_mm)
-          throw std::runtime_error("states two coordinate systems, LPS and RAS: keep the right one");
+          throw std::runtime_error("states both coordinate systems, LPS and RAS: delete the wrong one");
         lps_mm = stated_mm;
         is_stated = true;
       }
@@ -171,7 +173,7 @@ std::vector<brep::Landmark> fcsv_landmarks(const std::string& text, Audit& audit
     landmark.name = cell("label");
     if (landmark.name.empty())
       throw std::runtime_error("line " + std::to_string(number + 1) + " has no label in its column " +
-                               "'label', where the name of a point stands");
+                               "'label': write the point's name there");
     for (int axis = 0; axis < 3; ++axis)
       landmark.p_mm[axis] =
           fcsv_number(cell(std::array{"x", "y", "z"}.at(static_cast<std::size_t>(axis))), landmark.name);
@@ -181,8 +183,8 @@ std::vector<brep::Landmark> fcsv_landmarks(const std::string& text, Audit& audit
   if (landmarks.empty()) throw std::runtime_error("there is no point");
   if (!is_stated)
     assume("frame",
-           "the file names no CoordinateSystem: RAS is assumed, which versions of 3D Slicer without this "
-           "entry wrote",
+           "the file names no CoordinateSystem: RAS is assumed, because old versions of 3D Slicer wrote RAS "
+           "without this entry",
            audit);
   return landmarks;
 }
@@ -206,7 +208,7 @@ std::vector<brep::Landmark> read_landmarks(const std::filesystem::path& path) {
   if (!file) throw std::runtime_error(path.string() + ": cannot be read");
   try {
     std::string text{std::istreambuf_iterator<char>(file), {}};
-    // Some editors begin a text with a mark of its byte order.
+    // Some editors write a byte-order mark at the beginning of a text.
     constexpr std::string_view mark = "\xef\xbb\xbf";
     if (text.starts_with(mark)) text.erase(0, mark.size());
     Audit audit;
@@ -226,10 +228,10 @@ std::vector<brep::Landmark> read_landmarks(const std::filesystem::path& path) {
     for (const char* statement : {"frame", "unit", "units", "coordinateSystem", "coordinateUnits", "space"})
       if (is_list("landmarks") && root.contains(statement))
         throw std::runtime_error(std::string("states '") + statement +
-                                 "' beside \"landmarks\", whose \"point_mm\" are LPS millimetres: convert "
-                                 "the points, and delete the statement");
+                                 "' beside \"landmarks\", but \"point_mm\" is always in LPS millimetres: "
+                                 "convert the points, and delete this key");
     if (is_list("landmarks") && is_list("markups"))
-      throw std::runtime_error("has both \"landmarks\" and \"markups\": keep the list that is meant");
+      throw std::runtime_error("has both \"landmarks\" and \"markups\": delete one of these lists");
     if (is_list("landmarks"))
       landmarks = own_landmarks(root["landmarks"]);
     else if (is_list("markups"))

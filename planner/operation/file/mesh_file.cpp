@@ -32,8 +32,9 @@ brep::Linked joined(const std::filesystem::path& path, std::vector<std::string>&
   }
 }
 
-/// The solid of triangles whose sheets share points or sides because the file stores these only once. Each
-/// sheet gets its own copies; the surface does not change. None if the triangles have any other fault.
+/// The solid of triangles whose sheets share points or sides only because the file stores each point once.
+/// Each sheet gets separate copies of its points; the surface does not change. None if the triangles have any
+/// other fault.
 std::optional<brep::Solid> solid_of_sheets(const brep::Triangles& triangles) {
   try {
     const brep::SplitFans split = brep::split_fans(triangles);
@@ -51,8 +52,8 @@ brep::Solid solid_in(const std::filesystem::path& path, const brep::Triangles& t
   } catch (const brep::Error& error) {
     if (const std::optional<brep::Solid> solid = solid_of_sheets(triangles)) return *solid;
     throw brep::Error(error.code(), path.string() + ": " + error.what() +
-                                        "; mend it first: octotomy repair " + path.filename().string() +
-                                        " --solid -o solid.ply");
+                                        "; mend it first, for example by octotomy repair " +
+                                        path.filename().string() + " --solid -o solid.ply");
   }
 }
 
@@ -71,7 +72,7 @@ brep::Solid read_turned_solid(const std::filesystem::path& path, Timings& timing
   if (turned > 0)
     findings.push_back("orient: " + std::to_string(turned) + " of " + std::to_string(triangles.faces.size()) +
                        " triangles of " + path.filename().string() +
-                       " were turned, so that shells face outward and cavities inward");
+                       " were turned, so that outer shells face outward and cavities inward");
   return solid_in(path, turned > 0 ? surface : triangles);
 }
 
@@ -96,11 +97,12 @@ brep::Solid read_mended_solid(const std::filesystem::path& path, Timings& timing
         brep::repair_effect(triangles, repaired.surface, {.before = false, .after = true});
     findings.push_back(
         path.filename().string() + " is no solid (" + health.findings.front() + "), so it was mended: " +
-        (repaired.enclosed_cell_mm
-             ? "enclosed anew by cells of " + three_figures(*repaired.enclosed_cell_mm) + " mm"
-             : grouped(static_cast<double>(repaired.changes.size()), 0) + " changes") +
+        (repaired.enclosed_cell_mm ? "a new surface was built around it from cells of " +
+                                         three_figures(*repaired.enclosed_cell_mm) + " mm"
+                                   : grouped(static_cast<double>(repaired.changes.size()), 0) + " changes") +
         ", volume from " + grouped(effect.volume_before_mm3, 1) + " to " +
-        grouped(effect.volume_after_mm3, 1) + " mm\u00b3, nowhere further apart than " +
+        grouped(effect.volume_after_mm3, 1) +
+        " mm\u00b3, with the old and new surfaces nowhere farther apart than " +
         three_figures(effect.largest_distance_mm) + " mm; octotomy repair --solid lists each change");
     return solid;
   } catch (const brep::Error& error) {
@@ -133,8 +135,9 @@ std::optional<std::string> rounding_finding(const std::filesystem::path& written
   const Stopwatch watch(timings, "health");
   const brep::Health health = brep::health(brep::read_triangles(written));
   if (health.solid()) return std::nullopt;
-  return "WARN rounding: the surface is a solid, but not after rounding to the single precision of .stl (" +
-         health.findings.front() + "): write .ply, .off or .vtp";
+  return "WARN rounding: the surface is no longer a solid after its points were rounded to .stl's single "
+         "precision (" +
+         health.findings.front() + "): write .ply, .off or .vtp instead";
 }
 
 void write_surface(const brep::Triangles& triangles, const std::filesystem::path& out, Timings& timings,
@@ -146,7 +149,7 @@ void write_surface(const brep::Triangles& triangles, const std::filesystem::path
   try {
     brep::write_mesh(triangles, file, data);
   } catch (const brep::Error& error) {
-    std::string reason = error.what();  // begins with the hidden name
+    std::string reason = error.what();  // begins with the path of the staged file
     if (reason.starts_with(file.string())) reason.replace(0, file.string().size(), out.string());
     throw brep::Error(error.code(), reason);
   }

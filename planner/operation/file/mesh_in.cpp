@@ -12,7 +12,7 @@ namespace {
 
 using AuditsByPath = std::map<std::filesystem::path, std::vector<brep::MeshFinding>>;
 
-/// One for the process, because a run of the program executes one verb.
+/// Shared by the whole process, because a run of the program executes one verb.
 struct MeshReading {
   std::mutex mutex;
   std::vector<std::string> frames, units;
@@ -43,7 +43,8 @@ bool names(const std::string& word, const std::filesystem::path& path) {
   return name == path.string() || name == path.filename().string();
 }
 
-/// The choice for a file: one that names the file, else one that names no file.
+/// The word chosen for a file: the one that names the file, else the one that names no file; null if there is
+/// neither.
 std::optional<std::string> chosen(const std::vector<std::string>& words, const std::filesystem::path& path) {
   std::optional<std::string> made;
   for (const std::string& word : words)
@@ -58,14 +59,13 @@ std::optional<std::string> chosen(const std::vector<std::string>& words, const s
 void choose_mesh_reading(const std::vector<std::string>& frames, const std::vector<std::string>& units) {
   for (const std::string& word : frames)
     if (!brep::frame_named(choice_of(word)))
-      throw std::runtime_error(
-          "--frame: '" + word +
-          "' is not a frame: give three letters for the directions of x, y and z, LPS or RAS, or "
-          "FILE=RAS for one file");
+      throw std::runtime_error("--frame: '" + word +
+                               "' is not a frame: write three letters for the directions of x, y and z, such "
+                               "as LPS or RAS, or FILE=RAS for one file");
   for (const std::string& word : units)
     if (!brep::length_unit(choice_of(word)))
       throw std::runtime_error("--unit: '" + word +
-                               "' is not a unit: give um, mm, cm, m or inch, or FILE=inch for one file");
+                               "' is not a unit: write um, mm, cm, m or inch, or FILE=inch for one file");
   MeshReading& now = mesh_reading();
   const std::lock_guard lock(now.mutex);
   now.frames = frames;

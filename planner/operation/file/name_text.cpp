@@ -27,7 +27,8 @@ void append_utf8(std::string& text, std::uint32_t code) {
   byte(0x80 | (code & 0x3f));
 }
 
-/// The number of bytes of the UTF-8 character that begins at `at`; none if it is not valid (RFC 3629).
+/// The number of bytes of the UTF-8 character that begins at `at`; none if the bytes there are not valid
+/// UTF-8 (RFC 3629).
 std::optional<std::size_t> length_at(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char lead = byte(at);
@@ -72,7 +73,7 @@ std::string of_utf16(std::string_view bytes, bool is_big) {
   return text;
 }
 
-/// For each combining mark, pairs of a letter and the character that the letter and the mark become
+/// For each combining mark, pairs of a letter and the character that replaces the letter with the mark
 /// (Unicode, UnicodeData.txt).
 constexpr std::array<std::pair<std::string_view, std::string_view>, 12> marks{{
     {"\u0300", "AÀEÈIÌOÒUÙNǸaàeèiìoòuùnǹ"},
@@ -90,7 +91,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 12> marks{{
 }};
 constexpr std::pair<std::string_view, std::string_view> ogonek{"\u0328", "AĄEĘIĮUŲaąeęiįuų"};
 
-/// The character that a letter and the mark behind it become; empty if there is none.
+/// The single character for a letter with a combining mark; empty if there is none.
 std::string_view joined(char letter, std::string_view mark) {
   const auto in = [&](const std::pair<std::string_view, std::string_view>& entry) -> std::string_view {
     for (std::size_t at = 0; entry.first == mark && at < entry.second.size();) {
@@ -116,7 +117,9 @@ DecodedText decoded(const std::string& bytes) {
     return {std::string(text.substr(text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0)), {}};
   std::string utf8;
   for (const char letter : text) append_utf8(utf8, static_cast<unsigned char>(letter));
-  return {utf8, "Latin-1, by assumption, as it is no UTF-8: check names with letters beyond ASCII"};
+  return {
+      utf8,
+      "Latin-1, which is assumed because the text is not valid UTF-8: check names with letters beyond ASCII"};
 }
 
 std::string composed(const std::string& text) {

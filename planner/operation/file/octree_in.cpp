@@ -13,7 +13,7 @@ std::optional<OctreeKind> octree_kind(const std::filesystem::path& path) {
   if (!is_octree(path) || !std::filesystem::is_regular_file(path, failed)) return std::nullopt;
   std::array<char, 16> header{};
   if (!std::ifstream(path, std::ios::binary).read(header.data(), header.size())) return std::nullopt;
-  // The kind, a little-endian u32 after the magic and the version (octree_file.h).
+  // The file's kind is a little-endian u32 after the magic and the version (octree_file.h).
   switch (header[12]) {
     case 1:
       return OctreeKind::Binary;

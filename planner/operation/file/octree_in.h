@@ -9,13 +9,13 @@
 
 namespace octotomy::planner {
 
-/// The kind of octree in an .octree file.
+/// The kind of an octree in an .octree file: binary or grey.
 enum class OctreeKind { Binary, Grey, Partial };
-/// The kind of an .octree file by its header alone; none if the file cannot be read or is no .octree file,
-/// which its reader reports.
+/// The kind in an .octree file's header. None if the file cannot be read or is not an .octree file; its
+/// reader then reports the reason.
 std::optional<OctreeKind> octree_kind(const std::filesystem::path& path);
 
-/// Reads an .octree file; "read" in the timings.
+/// Reads an .octree file. Adds "read" to the timings.
 voxel::OctreeFile read_timed(const std::filesystem::path& path, Timings& timings);
 
 }  // namespace octotomy::planner

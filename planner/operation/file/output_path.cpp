@@ -14,10 +14,10 @@ namespace octotomy::planner {
 void check_output_path(const std::filesystem::path& path, const std::vector<std::string>& extensions,
                        const FieldLocation& place) {
   const std::string name = output_path(path).generic_string();
-  if (has_control(name)) place.refuse("a path has no control characters: choose another name");
+  if (has_control(name)) place.refuse("the path has control characters: choose another name");
   if (std::none_of(extensions.begin(), extensions.end(),
                    [&](const std::string& known) { return name.ends_with(known); }))
-    place.refuse("nothing can be written as '" + name + "'" +
+    place.refuse("no file can be written with the extension of '" + name + "'" +
                  suggestion(path.extension().string(), extensions));
   if (place.scope == nullptr) return;
   if (path.is_absolute() || name.starts_with("..") || name.starts_with("views/"))

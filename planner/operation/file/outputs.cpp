@@ -16,18 +16,18 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void refuse_twice(const fs::path& out, const fs::path& other) {
   throw std::runtime_error(out.string() + ": is the same file as " + other.string() +
-                           ", which is written, too: choose another name");
+                           ", which this run also writes: choose another name");
 }
 
-/// A message with one path in place of another.
+/// The message with the path `shown` in place of the path `hidden`.
 std::string renamed(std::string message, const std::string& hidden, const std::string& shown) {
   for (std::size_t at = 0; (at = message.find(hidden, at)) != std::string::npos; at += shown.size())
     message.replace(at, hidden.size(), shown);
   return message;
 }
 
-/// Whether a file begins like a surface written by Octotomy: with its comment, or in .glb with its
-/// generator.
+/// Whether the beginning of a file shows that Octotomy wrote it as a surface: by its comment, or in a .glb by
+/// its generator.
 bool is_own_surface(const fs::path& file) {
   if (!fs::is_regular_file(fs::symlink_status(file))) return false;
   std::string head(128, '\0');
@@ -45,15 +45,16 @@ void need_unread(const fs::path& out, const std::vector<fs::path>& read) {
   for (const fs::path& each : read)
     if (fs::equivalent(out, each, is_none))
       throw std::runtime_error(out.string() + ": would replace " + each.string() +
-                               ", which is read: choose another name");
+                               ", which this run reads: choose another name");
 }
 
 void need_untyped_surface(const fs::path& out, const std::vector<fs::path>& read) {
   need_folder_of(out);
   need_unread(out, read);
   if (fs::exists(fs::symlink_status(out)) && !is_own_surface(out))
-    throw std::runtime_error(out.string() +
-                             ": is there already and not Octotomy's: move it away, or choose another name");
+    throw std::runtime_error(
+        out.string() +
+        ": is there already and was not written by Octotomy: move it away, or choose another name");
 }
 
 void need_outputs(const std::vector<fs::path>& outs, const std::vector<fs::path>& read) {

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file's name is longer while it is written: by a process's number and ".part".
+/// While a file is written its name is longer, by a process number and ".part".
 constexpr std::size_t longest_name = NAME_MAX - 20;
 
 bool has_extension(const fs::path& path, std::initializer_list<const char*> known) {
@@ -39,21 +39,21 @@ bool is_octree(const fs::path& path) {
 
 void need_folder_of(const fs::path& out, OutputKind kind) {
   const auto refuse = [&](const std::string& why) { throw std::runtime_error(out.string() + ": " + why); };
-  if (has_control(out.native())) refuse("a file's name has no control characters: choose another name");
+  if (has_control(out.native())) refuse("has control characters in its name: choose another name");
   if (kind == OutputKind::File && !out.has_filename()) refuse("names a folder: add the file's name");
   const fs::path file = voxel::place_of(out), folder = file.parent_path();
   if (!fs::is_directory(folder))
-    refuse("there is no folder " + folder.string() + ": make it, or choose another name");
+    refuse("there is no folder " + folder.string() + ": make the folder, or choose another path");
   if (file.filename().native().size() > longest_name ||
       std::max(out.native().size(), file.native().size()) + longest_name > PATH_MAX)
     refuse("is too long a name: choose a shorter one");
   const fs::file_status status = fs::symlink_status(file);
   const bool is_folder = fs::is_directory(status);
   if (fs::exists(status) && !is_folder && !fs::is_regular_file(status))
-    refuse("is a pipe or device and is not replaced: choose another name");
+    refuse("is a pipe or device, which is not replaced: choose another name");
   if (fs::exists(status) && is_folder != (kind == OutputKind::Folder))
-    refuse(is_folder ? "is a folder and is not replaced: choose another name"
-                     : "is a file, and a folder is made: choose another name");
+    refuse(is_folder ? "is a folder, which is not replaced by a file: choose another name"
+                     : "is a file, which is not replaced by a folder: choose another name");
   kind == OutputKind::File ? voxel::need_own_data_file(out) : voxel::need_no_slices(out);
   try {
     const voxel::StagedFiles trial(folder);
@@ -63,7 +63,7 @@ void need_folder_of(const fs::path& out, OutputKind kind) {
   struct statvfs disk {};
   if (::statvfs(folder.c_str(), &disk) == 0 && disk.f_blocks > 0 && disk.f_bavail == 0)
     throw voxel::Error(voxel::ErrorCode::Resource,
-                       out.string() + ": the disk is full: make room, or choose another name");
+                       out.string() + ": the disk is full: free space, or choose a path on another disk");
 }
 
 void need_folder_of(const fs::path& out) {

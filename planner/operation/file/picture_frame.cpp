@@ -19,7 +19,8 @@ namespace {
 
 constexpr const char* keyword = "octotomy-frame";
 
-/// Directions of a picture are equal where no pixel of the largest picture moves by a tenth.
+/// Directions of two views count as equal if no pixel of the largest picture moves by a tenth of a pixel
+/// between them.
 constexpr double same_direction = 1e-5;
 
 bool same(const voxel::View& a, const voxel::View& b) {
@@ -50,7 +51,7 @@ PictureFrame frame_of(const voxel::ImagePlane& plane) {
   glm::dmat4 matrix(glm::dvec4(plane.view.right * plane.pixel_mm, 0.0),
                     glm::dvec4(-plane.view.up * plane.pixel_mm, 0.0), glm::dvec4(plane.view.look, 0.0),
                     glm::dvec4(first_mm, 1.0));
-  for (int column = 0; column < 4; ++column) matrix[column] += 0.0;  // takes the sign from -0
+  for (int column = 0; column < 4; ++column) matrix[column] += 0.0;  // turns -0 into 0
   return {plane.size_px, matrix};
 }
 
@@ -75,8 +76,8 @@ PictureFrame read_frame(std::string_view png, const std::string& where) {
   }
   if (!found.text)
     refuse(where,
-           "does not state the positions of its pixels: only an unchanged .png in true scale from octotomy "
-           "render or slice does");
+           "does not state the positions of its pixels: use an unchanged .png in true scale from octotomy "
+           "render or slice");
   const SortedJson json = SortedJson::parse(*found.text, nullptr, false);
   PictureFrame frame;
   try {
@@ -86,18 +87,17 @@ PictureFrame read_frame(std::string_view png, const std::string& where) {
         frame.lps_from_pixel[column][row] =
             json.at("lps_from_pixel").at(static_cast<std::size_t>(row)).at(static_cast<std::size_t>(column));
   } catch (const SortedJson::exception&) {
-    refuse(where, "holds a frame that cannot be read: draw the picture again");
+    refuse(where, "states the positions of its pixels in a form that cannot be read: draw the picture again");
   }
   const double right_mm = glm::length(frame.lps_from_pixel[0]),
                down_mm = glm::length(frame.lps_from_pixel[1]);
   if (!(right_mm > 0.0) || !(down_mm > 0.0) || !voxel::is_frame(frame.view()))
-    refuse(where, "holds an invalid frame: draw the picture again");
+    refuse(where, "states positions of its pixels that are no plane in space: draw the picture again");
   if (frame.size_px != found.size_px)
     refuse(where, "was " + std::to_string(frame.size_px.x) + " x " + std::to_string(frame.size_px.y) +
                       " pixels when it was drawn and is " + std::to_string(found.size_px.x) + " x " +
                       std::to_string(found.size_px.y) +
-                      ": its pixels lie elsewhere now; take the picture as "
-                      "it was written");
+                      ": its pixels have moved; use the picture in its original size");
   return frame;
 }
 
@@ -113,7 +113,7 @@ std::string name_of(const voxel::View& view) {
   for (const char* name : {"anterior", "posterior", "left", "right", "superior", "inferior"})
     if (same(voxel::parse_view(name), view)) return name;
   const double elevation_deg = glm::degrees(std::asin(std::clamp(-view.look.z, -1.0, 1.0)));
-  // Seen straight from above or below, only `up` determines the azimuth.
+  // For a view straight from above or below, the azimuth follows from `up` alone.
   const glm::dvec3 ahead =
       std::abs(view.look.z) < 1.0 - same_direction ? view.look : -std::copysign(1.0, view.look.z) * view.up;
   const double azimuth_deg = glm::degrees(std::atan2(-ahead.x, ahead.y));

@@ -16,7 +16,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// The samples of a plane: where the first one lies, and how many there are.
+/// A plane's grid of samples: the position of the first sample, their spacing, and their numbers.
 struct PlaneSamples {
   glm::dvec2 low_mm{0.0};
   double spacing_mm = 1.0;
@@ -35,19 +35,22 @@ PlaneSamples samples_of(const voxel::Scene& scene, const ViewPlane& plane) {
     high = glm::max(high, p);
   }
   PlaneSamples samples{{}, std::min({spacing.x, spacing.y, spacing.z}), 0, 0};
-  // Along the scan's axes points lie on its samples.
+  // The grid begins at a sample of the scan, so that for planes along the scan's axes all points lie on
+  // samples.
   const glm::dvec2 first = plane.view.project(scene.lattice.lps_mm(glm::dvec3(0.0)));
   samples.low_mm = first + samples.spacing_mm * (glm::floor((low - first) / samples.spacing_mm) - 1.0);
   const glm::dvec2 count = glm::ceil((high - samples.low_mm) / samples.spacing_mm) + 2.0;
   if (count.x * count.y > 67108864.0)
     throw voxel::Error(voxel::ErrorCode::Resource,
-                       "a plane of the scan has more than 67 million points: make the scan coarser first");
+                       "a plane of the scan would have more than 67 million points: resample the scan with a "
+                       "coarser spacing first");
   samples.width = static_cast<std::uint32_t>(count.x);
   samples.height = static_cast<std::uint32_t>(count.y);
   return samples;
 }
 
-/// The depth of a point within the window, negative outside of it or of the scan.
+/// How far the sample at a point lies within the window low..high, in sample units; negative if it lies
+/// outside of the window or the point outside of the scan.
 float depth_at(const voxel::Scene& scene, const glm::dvec3& p_mm, double low, double high) {
   constexpr double most = 1e30;
   constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -55,9 +58,9 @@ float depth_at(const voxel::Scene& scene, const glm::dvec3& p_mm, double low, do
   const double sample = voxel::interpolate(scene, glm::clamp(at, glm::dvec3(0.0), last));
   if (std::isnan(sample)) return static_cast<float>(-most);
   const auto depth = static_cast<float>(std::clamp(std::min(sample - low, high - sample), -most, most));
-  // The outermost samples represent another half voxel beyond them. Beyond that the depth is reversed, so that an
-  // object ends half way to the next point. A depth of 0, which labels have at their own value, counts as inside;
-  // the next lower number does not.
+  // Outermost samples extend half a voxel outward. Beyond that, the value has the opposite sign, so that an
+  // object ends half way to the next point. The value 0 counts as inside, because labels equal to a bound
+  // have it; the next lower number counts as outside.
   const bool is_outside =
       glm::any(glm::lessThan(at, glm::dvec3(-0.5))) || glm::any(glm::greaterThan(at, last + 0.5));
   return is_outside ? std::nextafter(-std::abs(depth), -infinity) : depth;
@@ -94,7 +97,7 @@ PlaneContours contours_in_plane(const voxel::Scene& scene, double low, double hi
 }
 
 PlaneContours contours_in_plane(const brep::Mesh& surface, const ViewPlane& plane, std::size_t* open) {
-  // brep::Plane is right-handed, and right x up = -look.
+  // brep::Plane must be right-handed, and right x up = -look.
   brep::CrossSection section = brep::cross_section(
       surface, {plane.position_mm * plane.view.look, plane.view.right, plane.view.up, -plane.view.look});
   if (open != nullptr) *open += section.open;

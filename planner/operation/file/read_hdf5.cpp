@@ -17,10 +17,10 @@ namespace {
 constexpr std::string_view hdf5_signature("\x89HDF\r\n\x1a\n", 8);
 constexpr std::uint64_t undefined = ~std::uint64_t{0};
 constexpr std::size_t most_messages = 256, most_blocks = 64, longest_text = 4096;
-/// The most nodes, symbol tables and chunks that are read from one file. The trees of damaged files may refer
-/// to one node repeatedly.
+/// At most this number of nodes, symbol tables and chunks are read from a file, because the trees of damaged
+/// files may refer to a node repeatedly.
 constexpr std::size_t most_nodes = 1024;
-constexpr int most_levels = 8;  ///< of a tree; each level has at least two children if it has a reason to be
+constexpr int most_levels = 8;  ///< of a tree; each level has at least two children in a file that needs it
 
 enum MessageType : std::uint32_t {
   space_message = 0x01,
@@ -38,7 +38,7 @@ enum Filter : std::uint32_t { deflate_filter = 1, shuffle_filter = 2, checksum_f
   throw std::runtime_error(what);
 }
 
-/// Reads little-endian numbers one after the other, and checks each against the end of the bytes.
+/// Reads little-endian numbers one after the other. Throws where one would end beyond the bytes.
 class Cursor {
  public:
   Cursor(std::string_view bytes, const char* what) : bytes_(bytes), what_(what) {}
@@ -69,7 +69,7 @@ std::string until_zero(std::string_view text) {
 
 }  // namespace
 
-/// The contents of the messages in a dataset's header.
+/// The facts that the messages in a dataset's header state.
 struct Hdf5File::Dataset {
   enum class Kind { Real, FixedText, FarText } kind = Kind::Real;
   std::size_t element_bytes = 0;
@@ -80,8 +80,9 @@ struct Hdf5File::Dataset {
   Address at = 0;
   std::uint64_t bytes = 0;
   std::size_t chunk_count = 0;    ///< elements of a chunk
-  bool is_one_chunk = false;      ///< `at` is the chunk itself, of `bytes` as it is filtered
-  std::uint64_t filter_mask = 0;  ///< filters that the one chunk left out
+  bool is_one_chunk = false;      ///< for a single chunk: its own address, and its size `bytes` as stored
+                                  ///< after the filters
+  std::uint64_t filter_mask = 0;  ///< bits of the filters that were not applied to the single chunk
   std::vector<std::uint64_t> filters;
 
   void take_type(std::string_view bytes_of_type, const std::string& path);
@@ -90,26 +91,27 @@ struct Hdf5File::Dataset {
 
 namespace {
 
-/// [IV.A.2.b] The number of elements.
+/// [IV.A.2.b] The number of elements of a dataspace.
 std::size_t elements_of(std::string_view bytes, const std::string& path) {
   Cursor in(bytes, "dataspace");
   const auto version = in.byte(), rank = in.byte();
   in.byte();
   const auto kind = in.byte();
   if (version != 1 && version != 2)
-    refuse_file(path + " has an unknown dataspace, version " + std::to_string(version));
+    refuse_file(path + " has a dataspace of the unknown version " + std::to_string(version));
   if (version == 1) in.take(4);
   if (version == 2 && kind == 2) return 0;
   if (rank > 1)
-    refuse_file(path + " has " + std::to_string(rank) + " dimensions: a transform's values have one");
+    refuse_file(path + " has " + std::to_string(rank) +
+                " dimensions, but a transform's numbers have one: save a linear transform");
   const std::uint64_t count = rank == 0 ? 1 : in.number(8);
   if (count > Hdf5File::most_numbers)
     refuse_file(path + " has " + std::to_string(count) +
-                " values, more than any linear transform: save a linear one");
+                " values, more than a linear transform has: save a linear transform");
   return count;
 }
 
-/// [IV.A.2.l] The numbers of the filters, in the order in which the writer applied them.
+/// [IV.A.2.l] The ids of the filters, in the order in which the writer applied them.
 std::vector<std::uint64_t> filters_of(std::string_view bytes, const std::string& path) {
   Cursor in(bytes, "filter pipeline");
   const auto version = in.byte(), count = in.byte();
@@ -119,7 +121,7 @@ std::vector<std::uint64_t> filters_of(std::string_view bytes, const std::string&
     const auto id = in.number(2);
     if (id != deflate_filter && id != shuffle_filter && id != checksum_filter)
       refuse_file(path + " is compressed by the filter " + std::to_string(id) +
-                  ", which is not read: save it uncompressed, or by gzip");
+                  ", which cannot be read: save the file uncompressed or with gzip");
     const auto name_bytes = version == 1 ? in.number(2) : 0;
     in.number(2);
     const auto values = in.number(2);
@@ -135,13 +137,13 @@ std::string inflated(std::string_view from, std::size_t most) {
   uLongf size = most;
   if (uncompress(reinterpret_cast<Bytef*>(made.data()), &size, reinterpret_cast<const Bytef*>(from.data()),
                  from.size()) != Z_OK)
-    refuse_file("a compressed chunk is damaged");
+    refuse_file("a compressed chunk cannot be decompressed: the file is damaged");
   made.resize(size);
   return made;
 }
 
-/// Reverses the shuffle filter, which stores the first bytes of all elements together, then all second bytes,
-/// and so on.
+/// Reverses the shuffle filter, which stores the first bytes of all elements, then all second bytes, and so
+/// on.
 std::string unshuffled(const std::string& from, std::size_t element_bytes) {
   const std::size_t count = from.size() / element_bytes;
   std::string made = from;
@@ -168,13 +170,14 @@ Hdf5File::Hdf5File(std::string_view bytes) : bytes_(bytes) {
   if (!begins(bytes)) refuse_file("is no HDF5 file");
   Cursor in(bytes.substr(hdf5_signature.size()), "superblock");
   const auto version = in.byte();
-  if (version > 3) refuse_file("has an unknown superblock, version " + std::to_string(version));
+  if (version > 3) refuse_file("has a superblock of the unknown version " + std::to_string(version));
   if (version < 2) in.take(4);
-  if (in.byte() != 8 || in.byte() != 8) refuse_file("has addresses of another width than 8 bytes");
+  if (in.byte() != 8 || in.byte() != 8)
+    refuse_file("has addresses that are not 8 bytes wide, which cannot be read");
   in.take(version < 2 ? 9 : 1);
   if (version == 1) in.take(4);
-  if (in.number(8) != 0) refuse_file("has a base address other than 0");
-  in.take(16);  // free space or extension, and the end, which part() takes from the bytes that are there
+  if (in.number(8) != 0) refuse_file("has a base address other than 0, which cannot be read");
+  in.take(16);  // free space or extension, and the end of the file, which part() computes from the bytes
   if (version < 2) in.take(16);
   root_ = in.number(8);
 }
@@ -188,7 +191,9 @@ std::string_view Hdf5File::part(Address at, std::uint64_t count, const char* wha
 
 void Hdf5File::count_node() const {
   if (++nodes_ > most_nodes)
-    refuse_file("has more parts than any linear transform, or parts that refer to each other");
+    refuse_file(
+        "has more parts than a linear transform, or parts that refer to each other: the file is damaged or "
+        "no linear transform");
 }
 
 void Hdf5File::take_messages(std::string_view block, bool is_new, bool has_order, std::vector<Message>& found,
@@ -207,7 +212,8 @@ void Hdf5File::take_messages(std::string_view block, bool is_new, bool has_order
       const Address at = place.number(8);
       further.emplace_back(at, place.number(8));
     }
-    if (found.size() == most_messages) refuse_file("an object header has too many messages");
+    if (found.size() == most_messages)
+      refuse_file("an object header has too many messages: the file is damaged");
     found.push_back(message);
   }
 }
@@ -234,7 +240,7 @@ std::vector<Hdf5File::Message> Hdf5File::messages(Address header) const {
     take_messages(in.take(size), false, false, found, further);
   }
   for (std::size_t i = 0; i < further.size(); ++i) {
-    if (i == most_blocks) refuse_file("an object header has too many continuations");
+    if (i == most_blocks) refuse_file("an object header has too many continuations: the file is damaged");
     const auto [at, size] = further[i];
     std::string_view block = part(at, size, "object header's continuation");
     if (is_new) {
@@ -248,13 +254,13 @@ std::vector<Hdf5File::Message> Hdf5File::messages(Address header) const {
 }
 
 void Hdf5File::take_symbols(Address tree, Address heap, int levels, Members& found) const {
-  // [III.A.1] A node's children are nodes, or at level 0 symbol tables.
+  // [III.A.1] The children of a node are nodes, or at level 0 symbol tables.
   count_node();
   Cursor in(part(tree, 24, "tree of a group"), "tree of a group");
   if (in.take(4) != "TREE" || in.byte() != 0) refuse_file("the tree of a group is damaged");
   const auto level = in.byte(), used = in.number(2);
   if (levels == 0 || level >= static_cast<std::uint64_t>(levels))
-    refuse_file("the tree of a group is too deep");
+    refuse_file("the tree of a group is too deep: the file is damaged");
   Cursor children(part(tree + 24, used * 16, "tree of a group"), "tree of a group");
   Cursor segment(part(heap, 32, "names of a group"), "names of a group");
   if (segment.take(4) != "HEAP") refuse_file("the names of a group are damaged");
@@ -298,11 +304,11 @@ Hdf5File::Members Hdf5File::members_at(Address header) const {
       in.byte();
       if ((in.byte() & 1) != 0) in.take(8);
       if (in.number(8) != undefined)
-        refuse_file("a group has more members than fit into its header, a form that is not read");
+        refuse_file("a group has more members than fit into its header, and this form cannot be read");
     } else if (message.type == link_message) {
       in.byte();
       const auto flags = in.byte();
-      if ((flags & 8) != 0 && in.byte() != 0) continue;  // a soft or external link
+      if ((flags & 8) != 0 && in.byte() != 0) continue;  // a soft or external link, which is skipped
       in.take(((flags & 4) != 0 ? 8 : 0) + ((flags & 16) != 0 ? 1 : 0));
       const std::string name(in.take(in.number(std::size_t{1} << (flags & 3))));
       found.emplace(name, in.number(8));
@@ -346,20 +352,20 @@ void Hdf5File::Dataset::take_type(std::string_view bytes_of_type, const std::str
   if (number == 1) {
     is_big_endian = (bits & 1) != 0;
     in.number(2);
-    const std::uint64_t form = in.number(6);  // precision, then places and sizes of exponent and mantissa
+    const std::uint64_t form = in.number(6);  // precision, then positions and sizes of exponent and mantissa
     const bool is_double = element_bytes == 8 && form == 0x34000b340040;
     const bool is_float = element_bytes == 4 && form == 0x170008170020;
     if ((!is_double && !is_float) || (bits & 0x40) != 0)
-      refuse_file(path + " holds real numbers of another form than IEEE's of 4 or 8 bytes");
+      refuse_file(path + " has real numbers that are not IEEE numbers of 4 or 8 bytes");
   } else if (number == 3) {
     kind = Dataset::Kind::FixedText;
     if (element_bytes == 0 || element_bytes > longest_text)
       refuse_file(path + " is a text of " + std::to_string(element_bytes) + " bytes");
   } else if (number == 9 && (bits & 15) == 1) {
     kind = Dataset::Kind::FarText;
-    if (element_bytes != 16) refuse_file(path + " is a text whose place is not stored in 16 bytes");
+    if (element_bytes != 16) refuse_file(path + " is a text with an address that is not stored in 16 bytes");
   } else {
-    refuse_file(path + " holds neither real numbers nor a text");
+    refuse_file(path + " contains neither real numbers nor a text");
   }
 }
 
@@ -385,7 +391,8 @@ void Hdf5File::Dataset::take_layout(std::string_view bytes_of_layout, const std:
     in.number(width);
     if (version == 4) {
       if (in.byte() != 1)
-        refuse_file(path + " is split into several chunks in a form that is not read: save it uncompressed");
+        refuse_file(
+            path + " is split into several chunks in a form that cannot be read: save the file uncompressed");
       is_one_chunk = true;
       if ((flags & 2) != 0) {
         bytes = in.number(8);
@@ -406,7 +413,7 @@ Hdf5File::Dataset Hdf5File::dataset(const std::string& path) const {
         message.type != filters_message)
       continue;
     if (message.is_shared)
-      refuse_file(path + " shares its description with another value, a form that is not read");
+      refuse_file(path + " shares its description with another value, and this form cannot be read");
     seen.insert(message.type);
     if (message.type == space_message) made.count = elements_of(message.bytes, path);
     if (message.type == filters_message) made.filters = filters_of(message.bytes, path);
@@ -414,7 +421,7 @@ Hdf5File::Dataset Hdf5File::dataset(const std::string& path) const {
     if (message.type == layout_message) made.take_layout(message.bytes, path);
   }
   for (const std::uint32_t needed : {space_message, type_message, layout_message})
-    if (!seen.contains(needed)) refuse_file(path + " is no row of values, or is damaged");
+    if (!seen.contains(needed)) refuse_file(path + " is not a row of values, or the file is damaged");
   if (made.layout == Dataset::Layout::Chunked && (made.chunk_count == 0 || made.chunk_count > most_numbers))
     refuse_file(path + " has chunks of " + std::to_string(made.chunk_count) + " values");
   return made;
@@ -422,7 +429,7 @@ Hdf5File::Dataset Hdf5File::dataset(const std::string& path) const {
 
 namespace {
 
-/// A chunk before the writer's filters. They are reversed from the last one applied to the first.
+/// The bytes of a chunk as they were before the writer's filters. The last filter applied is reversed first.
 std::string unfiltered(std::string_view stored, std::uint64_t mask, const std::vector<std::uint64_t>& filters,
                        std::size_t element_bytes, std::size_t chunk_bytes) {
   std::string bytes(stored);
@@ -431,7 +438,7 @@ std::string unfiltered(std::string_view stored, std::uint64_t mask, const std::v
     if (filters[i] == deflate_filter) bytes = inflated(bytes, chunk_bytes + 4);
     if (filters[i] == shuffle_filter) bytes = unshuffled(bytes, element_bytes);
     if (filters[i] == checksum_filter) {
-      if (bytes.size() < 4) refuse_file("a chunk is shorter than its checksum");
+      if (bytes.size() < 4) refuse_file("a chunk is shorter than its checksum: the file is damaged");
       bytes.resize(bytes.size() - 4);
     }
   }
@@ -444,13 +451,13 @@ std::string unfiltered(std::string_view stored, std::uint64_t mask, const std::v
 }  // namespace
 
 void Hdf5File::take_chunks(Address tree, int levels, const Dataset& from, std::string& into) const {
-  constexpr std::uint64_t key_bytes = 24;  // size, mask, and two offsets
+  constexpr std::uint64_t key_bytes = 24;  // size, filter mask, and two offsets
   count_node();
   Cursor in(part(tree, 24, "tree of chunks"), "tree of chunks");
   if (in.take(4) != "TREE" || in.byte() != 1) refuse_file("the tree of chunks is damaged");
   const auto level = in.byte(), used = in.number(2);
   if (levels == 0 || level >= static_cast<std::uint64_t>(levels))
-    refuse_file("the tree of chunks is too deep");
+    refuse_file("the tree of chunks is too deep: the file is damaged");
   Cursor children(part(tree + 24, used * (key_bytes + 8), "tree of chunks"), "tree of chunks");
   const std::size_t chunk_bytes = from.chunk_count * from.element_bytes;
   for (std::uint64_t i = 0; i < used; ++i) {
@@ -484,19 +491,21 @@ std::string Hdf5File::stored(const Dataset& from, const std::string& path) const
     const std::size_t chunk_bytes = from.chunk_count * from.element_bytes;
     const std::string chunk = unfiltered(part(from.at, from.bytes == 0 ? chunk_bytes : from.bytes, "chunk"),
                                          from.filter_mask, from.filters, from.element_bytes, chunk_bytes);
-    if (chunk.size() < needed) refuse_file(path + " has fewer values than it states");
+    if (chunk.size() < needed)
+      refuse_file(path + " has fewer values than its header states: the file is damaged");
     return chunk.substr(0, needed);
   }
   if (from.layout == Dataset::Layout::Contiguous && from.at == undefined)
     refuse_file(path + " was never written");
   const std::string_view bytes =
       from.layout == Dataset::Layout::Compact ? from.compact : part(from.at, from.bytes, "row of values");
-  if (bytes.size() < needed) refuse_file(path + " has fewer values than it states");
+  if (bytes.size() < needed)
+    refuse_file(path + " has fewer values than its header states: the file is damaged");
   return std::string(bytes.substr(0, needed));
 }
 
 std::string Hdf5File::referred_text(std::string_view reference) const {
-  // [III.E] A collection of texts, each with its number.
+  // [III.E] Finds a text in a collection of texts by its number.
   Cursor in(reference, "text");
   const auto length = in.number(4);
   const Address at = in.number(8);
@@ -522,7 +531,7 @@ std::string Hdf5File::referred_text(std::string_view reference) const {
 
 std::string Hdf5File::text(const std::string& path) const {
   const Dataset from = dataset(path);
-  if (from.kind == Dataset::Kind::Real) refuse_file(path + " holds numbers instead of a text");
+  if (from.kind == Dataset::Kind::Real) refuse_file(path + " contains numbers instead of a text");
   if (from.count == 0) return "";
   const std::string first = stored(from, path).substr(0, from.element_bytes);
   std::string found = until_zero(from.kind == Dataset::Kind::FarText ? referred_text(first) : first);
@@ -532,13 +541,13 @@ std::string Hdf5File::text(const std::string& path) const {
 
 std::vector<double> Hdf5File::numbers(const std::string& path) const {
   const Dataset from = dataset(path);
-  if (from.kind != Dataset::Kind::Real) refuse_file(path + " holds a text instead of numbers");
+  if (from.kind != Dataset::Kind::Real) refuse_file(path + " contains a text instead of numbers");
   const std::string bytes = stored(from, path);
   std::vector<double> made(from.count);
   for (std::size_t i = 0; i < made.size(); ++i) {
     made[i] = real_of(std::string_view(bytes).substr(i * from.element_bytes, from.element_bytes),
                       from.is_big_endian);
-    if (!std::isfinite(made[i])) refuse_file(path + " holds a number that is not finite");
+    if (!std::isfinite(made[i])) refuse_file(path + " contains a number that is not finite");
   }
   return made;
 }

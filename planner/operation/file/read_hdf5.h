@@ -9,14 +9,15 @@
 
 namespace octotomy::planner {
 
-/// The small part of HDF5 that transforms of ITK and 3D Slicer use: groups, rows of numbers and texts. Written here instead
-/// of linking libhdf5, because files come from strangers and that library trusts them.
+/// Reads the small part of HDF5 that transforms of ITK and 3D Slicer use: groups, rows of numbers and texts.
+/// libhdf5 is not used, because it trusts files and these come from strangers.
 ///
-/// Read are superblocks 0 to 3, both forms of object headers, groups with symbol tables or compact links, real numbers of
-/// 4 or 8 bytes, texts of fixed or variable length, and the layouts compact, contiguous and chunked, the latter with the
-/// filters deflate, shuffle and fletcher32. Everything else is refused by name. Each address and length is compared with the
-/// file before it is used, a value has at most `most_numbers` numbers, and the parts read are counted, so time and memory are
-/// bounded. For one thread at a time.
+/// The class reads superblocks 0 to 3, both forms of object headers, groups with symbol tables or compact
+/// links, real numbers of 4 or 8 bytes, texts of fixed or variable length, and the layouts compact,
+/// contiguous and chunked. Chunks may have the filters deflate, shuffle and fletcher32. Anything else is
+/// refused with its name. Each address and length is checked against the file before use, a value has at
+/// most `most_numbers` numbers, and the number of parts is limited. Time and memory are therefore bounded.
+/// Only one thread at a time may use an object.
 /// Throws std::runtime_error without a path, with the byte or the member at fault.
 /// Source: HDF5 File Format Specification, version 3.0.
 class Hdf5File {
@@ -29,12 +30,12 @@ class Hdf5File {
   /// `bytes` is the whole file and must outlive the object.
   explicit Hdf5File(std::string_view bytes);
 
-  /// The names of a group's members, sorted. `path` is like "/TransformGroup".
+  /// The names of a group's members, sorted. `path` is a path such as "/TransformGroup".
   std::vector<std::string> members(const std::string& path) const;
   bool has(const std::string& path) const;
-  /// A text without trailing blanks and zeros. If the value holds several texts, the first.
+  /// A text without trailing blanks and zero bytes. If the value has several texts, the first one.
   std::string text(const std::string& path) const;
-  /// A row of real numbers, or a single one.
+  /// A row of real numbers; a single number is a row of one.
   std::vector<double> numbers(const std::string& path) const;
 
  private:

@@ -60,15 +60,15 @@ voxel::SliceMask slices_of(const SortedJson& json, const std::string& source) {
   return mask;
 }
 
-/// Points of one plane may be this far apart along its normal, if planes are ten times as far apart. Some
-/// programs rotate or resample contours and write them with single precision.
+/// Points count as in one plane if they are at most this far apart along its normal and planes are ten times
+/// as far apart. Some programs rotate or resample contours and write them in single precision.
 constexpr double jitter_mm() {
   return 0.1;
 }
 
-/// The summed areas of the triangles from a contour's first point, along its normal. The sum exceeds the
-/// contour's area if the contour is not convex, and stays above zero if the contour crosses itself and its
-/// parts cancel.
+/// The sum of the vector areas of the triangles at a contour's first point, all turned to the same side. Its
+/// direction is the contour's normal. Its length exceeds the area if the contour is not convex; it is above
+/// zero even if the contour crosses itself and the areas of its parts cancel.
 glm::dvec3 area_of(const std::vector<glm::dvec3>& contour) {
   glm::dvec3 largest(0.0), area(0.0);
   const auto triangle = [&](std::size_t i) {
@@ -83,7 +83,8 @@ glm::dvec3 area_of(const std::vector<glm::dvec3>& contour) {
   return area;
 }
 
-/// The view along a contour's normal. A normal within a thousandth of an axis is replaced by that axis.
+/// The view along a contour's normal. If the normal differs from an axis by less than 0.001, the axis is
+/// used.
 voxel::View view_across(const glm::dvec3& area) {
   voxel::View view;
   view.look = glm::normalize(area);
@@ -104,13 +105,14 @@ voxel::View view_across(const glm::dvec3& area) {
 
 using Slices = std::vector<voxel::SliceMask::Slice>;
 
-/// The finding on planes so near each other that they count as one plane.
+/// The end of a message on planes that count as one plane because they are too near each other.
 std::string too_near(double gap_mm) {
-  return plain(gap_mm) + " mm apart, and planes within " + plain(2.0 * off_plane_mm()) +
-         " mm count as one: draw it on planes that are further apart, or check that positions are in mm";
+  return plain(gap_mm) + " mm apart, but planes within " + plain(2.0 * off_plane_mm()) +
+         " mm count as one plane: draw it on planes that are farther apart, or check that its positions are "
+         "in mm";
 }
 
-/// The range of a contour's positions along the view.
+/// The range of a contour's positions along the view, in mm.
 struct Span {
   double low_mm = std::numeric_limits<double>::infinity(), high_mm = -low_mm;
 
@@ -128,14 +130,16 @@ Span span_of(const std::vector<glm::dvec3>& contour, const voxel::View& view) {
 }
 
 struct PlaneDistances {
-  double least_mm = std::numeric_limits<double>::infinity();  ///< of planes that count as different
-  double nearest_mm = least_mm;                               ///< also of planes that count as one
-  double one_plane_mm = 2.0 * off_plane_mm();                 ///< planes that are no farther apart count as
+  double least_mm = std::numeric_limits<double>::infinity();  ///< least distance of planes that count as
+                                                              ///< different
+  double nearest_mm = least_mm;                               ///< least distance of planes, including those
+                                                              ///< that count as one
+  double one_plane_mm = 2.0 * off_plane_mm();                 ///< planes up to this distance apart count as
                                                               ///< one
 };
 
-/// The distances between the planes of all structures that lie across the view; infinite if there is only
-/// one plane.
+/// The distances between the planes of all structures that are perpendicular to the view. They are infinite
+/// if there is only one plane.
 PlaneDistances distances_of_planes(const std::vector<voxel::Structure>& structures, const voxel::View& view) {
   std::vector<double> positions;
   for (const voxel::Structure& structure : structures)
@@ -144,7 +148,7 @@ PlaneDistances distances_of_planes(const std::vector<voxel::Structure>& structur
         positions.push_back(span.middle_mm());
   std::sort(positions.begin(), positions.end());
   PlaneDistances distances;
-  // Gaps this small come from rounding to three decimals.
+  // Smaller gaps come from rounding to three decimals.
   constexpr double in_plane_mm = 0.1 * off_plane_mm();
   double coarse_mm = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < positions.size(); ++i) {
@@ -158,8 +162,8 @@ PlaneDistances distances_of_planes(const std::vector<voxel::Structure>& structur
   return distances;
 }
 
-/// The largest gap beside each plane that counts as covered: the file states it for the whole region, or by slabs
-/// that meet.
+/// The largest gap between neighbouring planes that is interpolated: one value for the whole region, or for
+/// two planes half the sum of their slabs if that is larger.
 class Bridges {
  public:
   Bridges(const voxel::Structure& structure, const voxel::View& view, double bridge_mm) : all_mm_(bridge_mm) {
@@ -169,7 +173,7 @@ class Bridges {
     std::sort(slabs_.begin(), slabs_.end());
   }
 
-  /// The largest gap between these neighbouring planes that is covered.
+  /// The largest gap between these two neighbouring planes that is interpolated.
   double across(double low_mm, double high_mm) const {
     const double a = slab_at(low_mm), b = slab_at(high_mm);
     return a > 0.0 && b > 0.0 ? std::max(all_mm_, 0.5 * rounding * (a + b)) : all_mm_;
@@ -182,7 +186,7 @@ class Bridges {
   }
   double all_mm() const { return all_mm_; }
 
-  /// Positions are rounded, so a hundredth more than stated is covered.
+  /// Gaps up to a hundredth larger than stated are interpolated, because positions are rounded.
   static constexpr double rounding = 1.01;
 
  private:
@@ -190,7 +194,7 @@ class Bridges {
   std::vector<std::pair<double, double>> slabs_;  ///< position and thickness, ascending
 };
 
-/// A structure's contours by plane, ascending. `source` names it in refusals.
+/// A structure's contours, grouped by plane in ascending order. `source` begins refusals and findings.
 Slices planes_of(const voxel::Structure& structure, const voxel::View& view, const PlaneDistances& distances,
                  const std::string& source, std::vector<std::string>& findings) {
   std::vector<voxel::SliceMask::Slice> single;
@@ -198,18 +202,18 @@ Slices planes_of(const voxel::Structure& structure, const voxel::View& view, con
   for (const std::vector<glm::dvec3>& contour : structure.contours_mm) {
     const Span span = span_of(contour, view);
     if (!(span.length_mm() <= distances.one_plane_mm))
-      refuse(source, "has contours in planes that are not parallel: by " + three_figures(span.length_mm()) +
-                         " mm near " + plain(contour.front().x) + ", " + plain(contour.front().y) + ", " +
-                         plain(contour.front().z) + " mm");
+      refuse(source, "has contours that are not in parallel planes: one extends by " +
+                         three_figures(span.length_mm()) + " mm near " + plain(contour.front().x) + ", " +
+                         plain(contour.front().y) + ", " + plain(contour.front().z) + " mm");
     worst_mm = std::max(worst_mm, 0.5 * span.length_mm());
     voxel::SliceMask::Slice slice{span.middle_mm(), {{}}};
     for (const glm::dvec3& p : contour) slice.polygons_mm.back().push_back(view.project(p));
-    // A line there and back encloses nothing.
+    // A contour without area, such as a line there and back, encloses nothing.
     if (glm::length(area_of(contour)) > 0.0) single.push_back(std::move(slice));
   }
   if (worst_mm > off_plane_mm())
-    findings.push_back(source + ": points lie up to " + three_figures(worst_mm) +
-                       " mm off their contour's plane: they are moved into it");
+    findings.push_back(source + ": points up to " + three_figures(worst_mm) +
+                       " mm off their contour's plane were moved into the plane");
   std::stable_sort(single.begin(), single.end(),
                    [](const auto& a, const auto& b) { return a.position_mm < b.position_mm; });
   Slices planes;
@@ -227,7 +231,7 @@ Slices planes_of(const voxel::Structure& structure, const voxel::View& view, con
   return planes;
 }
 
-/// How far apart a structure is usually drawn: the median distance of its planes.
+/// The median distance of a structure's planes in mm; 0 for a single plane.
 double usual_distance_mm(const Slices& planes) {
   std::vector<double> gaps;
   for (std::size_t i = 1; i < planes.size(); ++i)
@@ -238,12 +242,12 @@ double usual_distance_mm(const Slices& planes) {
   return *middle;
 }
 
-/// A gap of one and a half distances misses a plane.
+/// Two planes farther apart than this multiple of the distance have a plane missing between them.
 constexpr double misses_plane = 1.5;
 
-/// The structure's planes, and an empty plane wherever the set has a plane without a contour of the
-/// structure. Gaps that are bridged are left to be interpolated. Beyond an end the region is as thick as
-/// its end plane states, and at least half a distance of planes.
+/// The structure's planes, with empty planes beside each gap and beyond both ends. Gaps that are interpolated
+/// get no empty plane. Beyond an end, the empty plane lies as far away as the thickness of the end plane, and
+/// at least one distance of planes.
 Slices with_empty(const Slices& planes, double apart_mm, const Bridges& bridges) {
   const double usual_mm = usual_distance_mm(planes);
   const double least_mm = usual_mm > apart_mm && usual_mm <= bridges.all_mm() ? usual_mm : apart_mm;
@@ -280,7 +284,8 @@ bool overlap(const voxel::SliceMask::Slice& a, const voxel::SliceMask::Slice& b)
   return glm::all(glm::lessThan(low_a, high_b)) && glm::all(glm::lessThan(low_b, high_a));
 }
 
-/// Planes of a structure that follow each other: each overlaps the one before, seen along the normal.
+/// Groups a structure's planes into parts: in a part, each plane's bounding box overlaps that of the plane
+/// before it, seen along the normal.
 std::vector<Slices> parts_of(const Slices& planes) {
   std::vector<Slices> parts;
   for (const voxel::SliceMask::Slice& plane : planes) {
@@ -313,9 +318,9 @@ bool are_interleaved(const std::vector<Slices>& parts) {
   });
 }
 
-/// Joins parts that are drawn on alternating planes. Each part has the thickness that it would have alone: a
-/// plane covers half the gap to the part's next one, and for half its usual distance beyond its ends and
-/// beside gaps that are not bridged. Nothing is interpolated.
+/// Joins parts that are drawn on alternating planes. Each part gets the thickness that it would have alone: a
+/// plane extends half the gap to the next plane of its part. At a part's ends and beside gaps that are not
+/// interpolated, it extends half the part's usual distance. Nothing is interpolated.
 Slices joined_parts(const std::vector<Slices>& parts, const Bridges& bridges) {
   struct Slab {
     double low_mm, high_mm;
@@ -343,7 +348,8 @@ Slices joined_parts(const std::vector<Slices>& parts, const Bridges& bridges) {
   std::sort(borders.begin(), borders.end());
   const auto are_one = [](double low_mm, double high_mm) { return high_mm - low_mm < 0.1 * off_plane_mm(); };
   borders.erase(std::unique(borders.begin(), borders.end(), are_one), borders.end());
-  // The distance of planes on both sides of each border. combine() moves centres off a border by more.
+  // A plane is added at this distance on either side of each border. combine() moves voxel centres farther
+  // than this off a border.
   constexpr double beside_mm = 0x1p-22;
   Slices all{{borders.front() - beside_mm, {}}};
   for (std::size_t k = 1; k < borders.size(); ++k) {
@@ -361,15 +367,15 @@ Slices joined_parts(const std::vector<Slices>& parts, const Bridges& bridges) {
   return all;
 }
 
-/// The largest gap to interpolate, as requested or as the file states; larger by a hundredth, because
-/// positions are rounded.
+/// The largest gap to interpolate, as the caller requests or else as the file states, enlarged by a hundredth
+/// because positions are rounded.
 double bridge_of(const voxel::Structure& structure, const std::optional<double>& asked_mm) {
   if (asked_mm) return Bridges::rounding * *asked_mm;
   if (structure.is_interpolated) return std::numeric_limits<double>::infinity();
   return Bridges::rounding * structure.slab_mm;
 }
 
-/// Reports planes of the set that lie between the structure's planes and have none of its contours.
+/// Reports gaps in the structure: planes of the set between its planes that have none of its contours.
 void tell_gaps(const Slices& planes, double apart_mm, const Bridges& bridges, const std::string& where,
                std::vector<std::string>& findings) {
   std::size_t gaps = 0, first = 0;
@@ -390,13 +396,14 @@ void tell_gaps(const Slices& planes, double apart_mm, const Bridges& bridges, co
                         " mm, while the set's planes are " + plain(std::round(1000.0 * apart_mm) / 1000.0) +
                         " mm apart"
                   : ": has " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") +
-                        " where planes of the set have none of its contours") +
-      ": it is empty between its planes, first between " + plain(planes[first - 1].position_mm) + " and " +
-      plain(planes[first].position_mm) + " mm; if it continues there, --bridge " +
-      plain(std::ceil(1000.0 * widest_mm) / 1000.0) + " (bridge_mm in a plan) interpolates");
+                        " in which planes of the set have none of its contours") +
+      ": there it is empty, first between " + plain(planes[first - 1].position_mm) + " and " +
+      plain(planes[first].position_mm) + " mm; if the structure continues there, --bridge " +
+      plain(std::ceil(1000.0 * widest_mm) / 1000.0) + " (bridge_mm in a plan) interpolates it");
 }
 
-/// Names in quotes; a name that several structures have is followed by its structure's number.
+/// A list of the structures' names in quotes. A name that several structures have is followed by the
+/// structure's number.
 std::string list_of(const std::vector<voxel::Structure>& structures) {
   std::map<std::string, int> counts;
   for (const voxel::Structure& structure : structures) ++counts[structure.name];
@@ -407,11 +414,12 @@ std::string list_of(const std::vector<voxel::Structure>& structures) {
   return list;
 }
 
-/// The structure of this name; else of this ROI number.
+/// The structure with this name, else the one with this ROI number; without a name, the only structure.
+/// Throws if none or several fit.
 const voxel::Structure& chosen(const std::vector<voxel::Structure>& structures, const std::string& name,
                                const std::string& source) {
   if (name.empty() && structures.size() > 1)
-    refuse(source, "holds several structures: choose by 'structure' one of " + list_of(structures));
+    refuse(source, "has several structures: state by 'structure' one of " + list_of(structures));
   if (name.empty()) return structures.front();
   std::vector<const voxel::Structure*> named, numbered;
   for (const voxel::Structure& structure : structures) {
@@ -421,8 +429,8 @@ const voxel::Structure& chosen(const std::vector<voxel::Structure>& structures, 
   if (named.size() == 1) return *named.front();
   if (numbered.size() == 1) return *numbered.front();
   if (named.empty() && !numbered.empty())
-    refuse(source, "has " + std::to_string(numbered.size()) + " structures of the ROI number " + name +
-                       ": choose by its name one of " + list_of(structures));
+    refuse(source, "has " + std::to_string(numbered.size()) + " structures with the ROI number " + name +
+                       ": name one of " + list_of(structures));
   if (named.empty()) {
     std::vector<std::string> names;
     for (const voxel::Structure& structure : structures) names.push_back(structure.name);
@@ -431,11 +439,11 @@ const voxel::Structure& chosen(const std::vector<voxel::Structure>& structures, 
   std::string numbers;
   for (const voxel::Structure* each : named)
     numbers += (numbers.empty() ? "" : each == named.back() ? " and " : ", ") + std::to_string(each->number);
-  refuse(source, "has " + std::to_string(named.size()) + " structures '" + name + "', of the ROI numbers " +
-                     numbers + ": choose one by its number as 'structure'");
+  refuse(source, "has " + std::to_string(named.size()) + " structures '" + name + "' with the ROI numbers " +
+                     numbers + ": choose one by stating its number as 'structure'");
 }
 
-/// The normal of a structure's contours, weighted by their areas; zero where none encloses anything.
+/// The normal of a structure's contours, weighted by area; zero if no contour encloses an area.
 glm::dvec3 normal_of(const voxel::Structure& structure) {
   glm::dvec3 largest(0.0), sum(0.0);
   for (const auto& contour : structure.contours_mm)
@@ -447,13 +455,14 @@ glm::dvec3 normal_of(const voxel::Structure& structure) {
   return sum;
 }
 
-/// Counts a structure's items other than contours, for people: "2 points or lines".
+/// A phrase that counts the structure's items other than contours, such as "2 points or lines"; empty if
+/// there are none.
 std::string others_of(const voxel::Structure& structure) {
   std::string text;
   if (structure.others > 0) text = std::to_string(structure.others) + " points or lines";
   if (structure.degenerate > 0)
     text += (text.empty() ? "" : " and ") + std::to_string(structure.degenerate) +
-            " contours of fewer than three points";
+            " contours with fewer than three points";
   return text;
 }
 
@@ -469,35 +478,36 @@ DrawnSlices slices_of(const voxel::StructureSet& set, const SlicesOptions& optio
   DrawnSlices drawn{{}, set.identity, {}};
   if (!found.frame_uids.empty()) drawn.identity->frame_uids = found.frame_uids;
   if (found.degenerate > 0)
-    drawn.findings.push_back(where + ": left out contours that enclose no area: " + others);
+    drawn.findings.push_back(where + ": contours that enclose no area were left out: " + others);
   if (found.miscounted > 0)
     drawn.findings.push_back(where + ": " + std::to_string(found.miscounted) +
                              (found.miscounted == 1 ? " contour holds" : " contours hold") +
-                             " another number of points than NumberOfContourPoints states, first " +
+                             " a number of points other than NumberOfContourPoints states, first " +
                              std::to_string(found.held_points) + " for " +
                              std::to_string(found.stated_points) +
                              ": points may be lost; compare the contours with the program that drew them");
   drawn.mask.view = view_across(normal);
   if (found.moved > 0) {
     const glm::dvec3 by_mm = found.farthest_offset_mm;
-    drawn.findings.push_back(where + ": " + std::to_string(found.moved) +
-                             (found.moved == 1 ? " contour is" : " contours are") +
-                             " moved by ContourOffsetVector, as the file states, by up to (" +
-                             plain(by_mm.x) + ", " + plain(by_mm.y) + ", " + plain(by_mm.z) +
-                             ") mm; other programs may leave it out: compare the place with the scan");
+    drawn.findings.push_back(
+        where + ": " + std::to_string(found.moved) + (found.moved == 1 ? " contour is" : " contours are") +
+        " moved by the file's ContourOffsetVector, by up to (" + plain(by_mm.x) + ", " + plain(by_mm.y) +
+        ", " + plain(by_mm.z) +
+        ") mm; other programs may ignore this offset: compare the contours' position with the scan");
   }
   const PlaneDistances distances = distances_of_planes(set.structures, drawn.mask.view);
   Slices planes = planes_of(found, drawn.mask.view, distances, where, drawn.findings);
   const bool is_slab = !std::isfinite(distances.nearest_mm) && found.slab_mm > 0.0;
   if (is_slab)
-    drawn.findings.push_back(where + ": lies in one plane, and is as thick as it states, " +
+    drawn.findings.push_back(where + ": lies in one plane, and has the thickness that the file states, " +
                              plain(found.slab_mm) + " mm");
   else if (!std::isfinite(distances.nearest_mm))
     refuse(where,
-           "lies in one plane, as the whole set does, and states no ContourSlabThickness: its thickness is "
-           "unknown; draw it on the next plane, too");
+           "has no thickness, because the whole set lies in one plane and states no ContourSlabThickness: "
+           "draw the structure on the next plane, too");
   if (!is_slab && !std::isfinite(distances.least_mm))
-    refuse(where, "lies in planes, as the whole set does, that are " + too_near(distances.nearest_mm));
+    refuse(where,
+           "has no thickness, because the planes of the whole set are " + too_near(distances.nearest_mm));
   drawn.mask.slices = std::move(planes);
   add_contour_findings(drawn.mask, where, drawn.findings);
   planes = std::move(drawn.mask.slices);
@@ -511,8 +521,8 @@ DrawnSlices slices_of(const voxel::StructureSet& set, const SlicesOptions& optio
     for (const Slices& part : parts) tell_gaps(part, usual_distance_mm(part), bridges, where, drawn.findings);
     drawn.findings.push_back(
         where + ": its " + std::to_string(parts.size()) +
-        " parts are drawn on different planes that alternate, first at " + plain(planes[0].position_mm) +
-        " and " + plain(planes[1].position_mm) +
+        " parts are drawn on planes that alternate, first at " + plain(planes[0].position_mm) + " and " +
+        plain(planes[1].position_mm) +
         " mm: each part gets the thickness that it would have alone, and nothing is interpolated; draw all "
         "parts on the same planes to avoid this");
     drawn.mask.slices = joined_parts(parts, bridges);
@@ -533,9 +543,11 @@ voxel::Region read_region(const voxel::View& view, const std::filesystem::path& 
 DrawnSlices read_slices(const std::filesystem::path& path, const SlicesOptions& options) {
   const bool is_set = voxel::is_rtstruct(path);
   if (!is_set && !options.structure.empty())
-    refuse(path.string(), "is no DICOM structure set, so 'structure' has nothing to choose from");
+    refuse(path.string(),
+           "is not a DICOM structure set, so it has no structures to choose: leave out 'structure'");
   if (!is_set && options.bridge_mm)
-    refuse(path.string(), "is no DICOM structure set, so 'bridge_mm' has no gaps to fill");
+    refuse(path.string(),
+           "is not a DICOM structure set, and gaps of other files are not filled: leave out 'bridge_mm'");
   try {
     if (is_set) return slices_of(voxel::read_rtstruct(path), options, path.string());
     DrawnSlices drawn{slices_of(read_json(path), path.string())};

@@ -10,25 +10,27 @@
 #include "voxel/solid/slice_mask.h"
 #include "voxel/space/scene.h"
 
-// Regions drawn elsewhere, as JSON files and structure sets. Points are [u, v] in the view's millimetres.
+// Reads regions that were drawn elsewhere, from JSON files and DICOM structure sets. Points are [u, v] in the
+// view's millimetres.
 namespace octotomy::planner {
 
-/// Reads {"polygons_mm": [[[u, v], ...], ...]}, or that list alone. Throws std::runtime_error with the
-/// file, the place and the expected content.
+/// Reads {"polygons_mm": [[[u, v], ...], ...]}, or that list of polygons alone. Throws std::runtime_error
+/// with the file, the place in it and the expected content.
 voxel::Region read_region(const voxel::View& view, const std::filesystem::path& path);
 
 /// {"view": "inferior", "between": "shape_based" or "nearest", "slices": [{"position_mm": p . look,
-/// "polygons_mm": [...]}, ...]}; "between" may be left out. Slices are put in order. Throws as read_region(),
-/// and for masks that check(SliceMask) refuses.
+/// "polygons_mm": [...]}, ...]}; "between" may be left out. Slices are sorted by position. Throws as
+/// read_region(), and for masks that check(SliceMask) refuses.
 ///
 /// From a DICOM structure set: the region with this name, or with this ROI number if no region or several
-/// have the name. Its closed contours are polygons of its planes, holes by the even-odd rule. Planes are as
-/// far apart as the set's nearest ones. The region is empty at a plane without a contour; the first and the
-/// last plane stand for half a distance beyond them. A region that the file declares as interpolated, by the
-/// type INTERPOLATED_PLANAR or by slabs as thick as its planes are apart, continues between its planes.
-/// Throws std::runtime_error if no region of the set has the name or several have it, or if no name is given
-/// and there are several regions; if the region's contours cannot be read, lie in no parallel planes, or lie
-/// all in one plane or in planes within 0.02 mm, which determine no distance.
+/// have the name. Its closed contours are polygons of its planes, holes by the even-odd rule. The distance of
+/// planes is that of the set's nearest ones. At a plane without a contour the region is empty. The region
+/// extends half a distance beyond its first and last plane. A region continues between its planes if the file
+/// declares it as interpolated, by the type INTERPOLATED_PLANAR or by slabs as thick as the distance of its
+/// planes. Throws std::runtime_error if the set has no region or several regions of the name; if no name is
+/// stated and the set has several regions; or if the region's contours cannot be read or do not lie in
+/// parallel planes. Also throws if all planes of the set lie within 0.02 mm, because then their distance is
+/// unknown.
 ///
 /// A voxel whose centre lies on a contour, within a millionth of a millimetre, is inside if the region
 /// continues towards larger u, v or position. So it counts once among regions that share the contour.
@@ -37,17 +39,17 @@ voxel::Region read_region(const voxel::View& view, const std::filesystem::path& 
 /// planes are ten times as far apart.
 voxel::SliceMask read_slices(const std::filesystem::path& path, const std::string& structure = {});
 
-/// As read_slices() above. Adds to `findings` one finding on contours that occur twice, and one on contours
-/// that cross themselves or another contour of their plane, so that the even-odd rule leaves a part out:
-/// their number, planes and places. For structure sets also one line each on planes without a contour between
-/// others, on contours that enclose nothing, and on points off their plane.
+/// Reads as read_slices() above. Adds to `findings` one finding on contours that occur twice, and one on
+/// contours that cross themselves or another contour of their plane, so that the even-odd rule leaves a part
+/// out. A finding states their number, planes and positions. For structure sets, also adds one finding each
+/// on gaps between planes, on contours without area, and on points off their plane.
 voxel::SliceMask read_slices(const std::filesystem::path& path, const std::string& structure,
                              std::vector<std::string>& findings);
 
 struct SlicesOptions {
   std::string structure = {};  ///< of a structure set
-  /// For a structure set: neighbouring planes of the region up to this distance apart are interpolated, so
-  /// that the space between them is not empty. None: as the file states.
+  /// Only for a structure set: gaps up to this width between neighbouring planes of the region are
+  /// interpolated instead of left empty. None: only gaps that the file declares as interpolated.
   std::optional<double> bridge_mm = std::nullopt;
 };
 struct DrawnSlices {
@@ -55,7 +57,7 @@ struct DrawnSlices {
   std::optional<voxel::Identity> identity = std::nullopt;  ///< of a structure set
   std::vector<std::string> findings = {};
 };
-/// Reads slices with all that the file states about them.
+/// Reads slices, with all that the file states about their patient and frame of reference.
 DrawnSlices read_slices(const std::filesystem::path& path, const SlicesOptions& options);
 
 }  // namespace octotomy::planner

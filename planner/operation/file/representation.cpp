@@ -111,7 +111,7 @@ constexpr std::array<Codec, 13> codecs{{
 const Codec& codec(std::string_view name) {
   for (const Codec& known : codecs)
     if (known.name == name) return known;
-  throw voxel::InvalidInput("there is no representation '" + std::string(name) + "'" +
+  throw voxel::InvalidInput("unknown representation '" + std::string(name) + "'" +
                             suggestion(name, representation_names()));
 }
 
@@ -129,7 +129,7 @@ std::string represented(const std::vector<voxel::Octree>& objects, std::string_v
   if (objects.size() == 1) return known.encode(objects.front());
   if (name != multivalued)
     throw voxel::InvalidInput("the form " + std::string(name) +
-                              " holds one object; several objects need the form multivalued");
+                              " can contain only one object: choose multivalued for several objects");
   return closed(text(voxel::multivalued_octree(objects)));
 }
 

@@ -33,15 +33,15 @@ std::string words_of(const glm::dvec3& p_mm) {
   return "the seed " + plain(p_mm.x) + "," + plain(p_mm.y) + "," + plain(p_mm.z) + " mm";
 }
 
-/// The sample nearest to a seed.
+/// The indices of the sample nearest to a seed. Throws if the seed lies outside of the scan.
 glm::ivec3 sample_of(const voxel::Scene& scene, const glm::dvec3& seed_mm) {
   const glm::ivec3 at(glm::floor(scene.lattice.voxel(seed_mm) + 0.5));
   if (glm::any(glm::lessThan(at, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(at, scene.lattice.dims)))
-    throw std::runtime_error(words_of(seed_mm) + " lies outside the scan: choose a point on an edge in it");
+    throw std::runtime_error(words_of(seed_mm) + " lies outside of the scan: choose a point within it");
   return at;
 }
 
-/// Two contours of a slice that cross each other cannot both bound one object.
+/// Throws if two contours of a slice cross each other, because they cannot both bound one object.
 void need_apart(const std::vector<brep::Contour>& contours, double position_mm) {
   const auto side = [](const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p) {
     return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
@@ -54,13 +54,14 @@ void need_apart(const std::vector<brep::Contour>& contours, double position_mm) 
           const glm::dvec2 a = one[i], b = one[(i + 1) % one.size()];
           const glm::dvec2 c = other[j], d = other[(j + 1) % other.size()];
           if (side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0)
-            throw std::runtime_error("the slice at " + plain(position_mm) +
-                                     " mm: contours of two seeds cross each other: leave one seed out");
+            throw std::runtime_error(
+                "the slice at " + plain(position_mm) +
+                " mm: contours of two seeds cross each other: leave out one of the seeds");
         }
     }
 }
 
-/// Finds contours in the slices of seeds, and collects them as a mask.
+/// Collects the contours of seeds' slices as a mask.
 class SeededSlices {
  public:
   explicit SeededSlices(const voxel::Scene& scene) : scene_(scene), spacing_(scene.lattice.spacing_mm()) {
@@ -68,17 +69,17 @@ class SeededSlices {
       made_.mask.view = voxel::parse_view(voxel::contour_view(scene.lattice));
     } catch (const voxel::InvalidInput& error) {
       throw std::runtime_error(std::string(error.what()) +
-                               ": straighten the scan first, for example with octotomy prepare");
+                               ": straighten the scan first, for example by octotomy prepare");
     }
     if (scene.lattice.dims.z < 2)
-      throw std::runtime_error("a scan of one slice has no contours on parallel slices");
+      throw std::runtime_error("the scan has one slice, but contours on parallel slices need at least two");
   }
 
-  /// A seed's sample, and the slice that it lies in.
+  /// A seed's nearest sample, and the slice in which it lies.
   struct Place {
     glm::ivec3 at{0};
     double sample = 0.0;
-    glm::dvec2 p_mm{0.0};  ///< in the slice's own millimetres
+    glm::dvec2 p_mm{0.0};  ///< in mm within the slice, from its first sample
     voxel::Scene slice;
   };
   Place place_of(const glm::dvec3& seed_mm) const {
@@ -87,7 +88,8 @@ class SeededSlices {
         voxel::crop(scene_, {{0, 0, at.z}, {scene_.lattice.dims.x - 1, scene_.lattice.dims.y - 1, at.z}});
     const double sample = voxel::interpolate(slice, {at.x, at.y, 0});
     if ((scene_.padding && sample == *scene_.padding) || !std::isfinite(sample))
-      throw std::runtime_error(words_of(seed_mm) + " lies on padding, where nothing was measured");
+      throw std::runtime_error(words_of(seed_mm) +
+                               " lies on padding, where nothing was measured: choose another point");
     return {at, sample, glm::dvec2(at) * glm::dvec2(spacing_), std::move(slice)};
   }
 
@@ -97,7 +99,7 @@ class SeededSlices {
     return least;
   }
 
-  /// Adds the contours of a seed that are not there yet.
+  /// Adds a seed and those of its contours that its slice does not have yet.
   void add(const glm::dvec3& seed_mm, const Place& place, double threshold,
            const std::vector<brep::Contour>& contours, bool must_be_near) {
     std::vector<brep::Contour>& of_slice = by_slice_[place.at.z];
@@ -156,7 +158,9 @@ SeedContours contours_at_seeds(const voxel::Scene& scene, const std::vector<glm:
         nearest = &contour;
       }
     if (nearest == nullptr)
-      throw std::runtime_error(words_of(seed_mm) + ": its slice has no contour at " + plain(place.sample));
+      throw std::runtime_error(words_of(seed_mm) +
+                               ": no contour of its slice has the seed's sample as threshold, " +
+                               plain(place.sample));
     slices.add(seed_mm, place, place.sample, {*nearest}, true);
   }
   return std::move(slices).finished();
@@ -171,7 +175,7 @@ SeedContours contours_around_seeds(const voxel::Scene& scene, const std::vector<
     const double high =
         samples.window ? samples.window->high_or_infinity() : place.sample + *samples.tolerance;
     if (place.sample < low || place.sample > high)
-      throw std::runtime_error(words_of(seed_mm) + " lies outside the window, its sample is " +
+      throw std::runtime_error(words_of(seed_mm) + " lies outside of the window, because its sample is " +
                                plain(place.sample) + ": choose another seed or window");
     PlaneContours all;
     const std::vector<brep::Section> sections = convert::trace_contours(place.slice, low, high);
@@ -180,7 +184,7 @@ SeedContours contours_around_seeds(const voxel::Scene& scene, const std::vector<
     for (auto& polygon : region_around(all, place.p_mm)) region.push_back({std::move(polygon)});
     if (region.empty())
       throw std::runtime_error(words_of(seed_mm) +
-                               " lies on the region's very border: choose a seed within the region");
+                               " lies on the border of the region: choose a seed inside the region");
     slices.add(seed_mm, place, low, region, false);
   }
   return std::move(slices).finished();

@@ -8,16 +8,17 @@
 #include "voxel/solid/slice_mask.h"
 #include "voxel/space/scene.h"
 
-// Contours whose thresholds come from seed pixels (thesis 2.3.2.2.1).
+// Contours with thresholds from the samples at seeds (thesis 2.3.2.2.1).
 namespace octotomy::planner {
 
-/// The contour that was found for a seed.
+/// A seed and the contour that was found for it.
 struct SeedContour {
   glm::dvec3 seed_mm{0.0};   ///< as given, LPS
-  double threshold = 0.0;    ///< the sample nearest to it
-  double position_mm = 0.0;  ///< of its slice, in the view of the contours
-  double away_mm = 0.0;      ///< of the contour from that sample's middle, within the slice
-  bool is_far = false;       ///< farther than the diagonal of a pixel: the seed lies on no edge
+  double threshold = 0.0;    ///< threshold of the contour, in sample units
+  double position_mm = 0.0;  ///< position of its slice in the view of the contours
+  double away_mm = 0.0;      ///< distance of the contour from the centre of the seed's sample, within the
+                             ///< slice
+  bool is_far = false;       ///< the distance exceeds a pixel's diagonal, so the seed lies on no edge
 };
 
 struct SeedContours {
@@ -25,24 +26,24 @@ struct SeedContours {
   std::vector<SeedContour> seeds;  ///< in the order of the seeds
 };
 
-/// For each seed, the nearest contour of its slice at the seed's own sample as threshold; a contour that
-/// several seeds lead to appears once. The mask has the seeds' slices and, where the scan continues, an empty
-/// slice at either end. Throws std::runtime_error naming the seed if it lies outside of the scan or on
-/// padding, or if its slice has no contour at its threshold; if two contours of a slice cross, which is
-/// possible where seeds there have different samples; and as slice_contours().
+/// Finds for each seed the nearest contour in its slice whose threshold is the sample at the seed. If several
+/// seeds have the same contour, the mask contains it once. The mask has the seeds' slices and, where the scan
+/// continues, an empty slice at either end. Throws std::runtime_error that names the seed if it lies outside
+/// of the scan or on padding, or if its slice has no contour at the threshold. Also throws if two contours of
+/// a slice cross, which can happen if their seeds have different samples, and as slice_contours().
 SeedContours contours_at_seeds(const voxel::Scene& scene, const std::vector<glm::dvec3>& seeds_mm);
 
-/// The samples that belong to the region around a seed: those of a window, or those no farther from the seed's own
-/// sample than the tolerance. Exactly one of the two is set.
+/// The samples that belong to the region around a seed: those in the window, or those that differ from the
+/// seed's sample by at most the tolerance. Exactly one of the two must be set.
 struct RegionSamples {
   std::optional<SampleWindow> window;
   std::optional<double> tolerance;
 };
 
-/// For each seed, the contour around the connected region of the slice that contains the seed, and the
-/// contours of the region's holes; a region with several seeds appears once. `threshold` is the lower bound,
-/// `away_mm` the distance of the seed from the region's contours. The mask and the exceptions are those of
-/// contours_at_seeds(); a seed outside the window is refused with its sample.
+/// Finds for each seed the connected region of its slice that contains the seed: its outline and the contours
+/// of its holes. A region with several seeds appears once. `threshold` is the lower bound, `away_mm` the
+/// distance of the seed from these contours. Mask and exceptions are as for contours_at_seeds(); also throws
+/// if a seed's sample lies outside of the window, stating the sample.
 SeedContours contours_around_seeds(const voxel::Scene& scene, const std::vector<glm::dvec3>& seeds_mm,
                                    const RegionSamples& samples);
 

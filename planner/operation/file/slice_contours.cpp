@@ -41,7 +41,8 @@ std::string place_of(const voxel::SliceMask::Slice& slice) {
                            ", near [" + std::to_string(at.x) + ", " + std::to_string(at.y) + "]");
 }
 
-/// Removes the empty slices at either end except the innermost one, which shows where the object ends.
+/// Removes empty slices at either end except the innermost one, because an empty slice marks the object's
+/// end.
 void drop_empty_ends(std::vector<voxel::SliceMask::Slice>& slices) {
   const auto empty = [](const auto& slice) { return slice.polygons_mm.empty(); };
   while (slices.size() > 2 && empty(slices.back()) && empty(slices[slices.size() - 2])) slices.pop_back();
@@ -50,7 +51,7 @@ void drop_empty_ends(std::vector<voxel::SliceMask::Slice>& slices) {
   slices.erase(slices.begin(), slices.begin() + static_cast<std::ptrdiff_t>(leading));
 }
 
-/// The points of a thinned or smoothed contour; none if it crosses itself.
+/// The points of a contour; none if it crosses itself.
 std::optional<Polygon> uncrossed(const brep::Contour& contour) {
   if (brep::first_crossing(contour)) return std::nullopt;
   return contour.points_mm;
@@ -58,12 +59,13 @@ std::optional<Polygon> uncrossed(const brep::Contour& contour) {
 
 struct Refined {
   Polygon points_mm;
-  std::size_t harmonics = 0;  ///< more than requested if the contour would otherwise cross itself
-  bool is_left = false;       ///< nothing was done, as it would cross itself
+  std::size_t harmonics = 0;  ///< number of harmonics used, if more than requested were needed to avoid a
+                              ///< crossing; else 0
+  bool is_left = false;       ///< the contour stays unchanged, because it would cross itself
 };
 
-/// Thins and smooths a contour. If the requested harmonics make it cross itself, doubles their number
-/// repeatedly, up to a quarter of its points; if that does not help, the contour stays unsmoothed.
+/// Thins and smooths a contour. If the smoothed contour crosses itself, doubles the number of harmonics
+/// repeatedly, up to a quarter of the contour's points. If it still crosses itself, returns it unchanged.
 Refined refined_contour(const Polygon& points_mm, const Refinement& refinement) {
   brep::Contour contour{points_mm};
   if (refinement.thin_mm > 0.0) contour = brep::thin(contour, refinement.thin_mm);
@@ -79,16 +81,17 @@ Refined refined_contour(const Polygon& points_mm, const Refinement& refinement) 
   return {points_mm, 0, true};
 }
 
-/// Reports which contour is smoothed less than requested, or not at all.
+/// Refines a polygon as refined_contour() does. Adds a finding if it is smoothed less than requested or stays
+/// unchanged.
 Polygon refined_at(const Polygon& polygon, const Refinement& refinement, const voxel::SliceMask::Slice& slice,
                    std::vector<std::string>& findings) {
   Refined done = refined_contour(polygon, refinement);
   if (done.is_left)
     findings.push_back(place_of(slice) + ": a contour of " + std::to_string(polygon.size()) +
-                       " points would cross itself after this change and stays unchanged");
+                       " points stays unchanged, because it would cross itself after thinning or smoothing");
   else if (done.harmonics > 0)
     findings.push_back(place_of(slice) + ": a contour of " + std::to_string(polygon.size()) +
-                       " points would cross itself with " + std::to_string(*refinement.harmonics) +
+                       " points would cross itself if smoothed to " + std::to_string(*refinement.harmonics) +
                        " harmonics and has " + std::to_string(done.harmonics));
   return std::move(done.points_mm);
 }
@@ -96,12 +99,12 @@ Polygon refined_at(const Polygon& polygon, const Refinement& refinement, const v
 /// A contour while it is edited.
 struct EditedContour {
   brep::Contour contour;
-  bool is_uncrossed = false;  ///< known not to cross itself: an edit was made to it before
+  bool is_uncrossed = false;  ///< it was checked and does not cross itself
 };
 /// Of each slice.
 using EditedSlices = std::vector<std::vector<EditedContour>>;
 
-/// One edit of a file: its place in the file, and the contours of its slice.
+/// One edit of a file: its JSON, its place in the file, and the contours of its slice.
 class Edit {
  public:
   Edit(const nlohmann::json& json, std::string where, EditedSlices& slices)
@@ -137,7 +140,7 @@ class Edit {
       auto [first, second] = brep::split(contour, count("first"), count("second"));
       put(number, std::move(first));
       contours_.push_back({std::move(second), contours_[number].is_uncrossed});
-      // Both parts are closed by their last piece.
+      // The last piece of either part closes it, so only that piece is new.
       for (const std::size_t part : {number, contours_.size() - 1}) check_edit(part, {piece_before(part, 0)});
     } else if (what == "join") {
       known({"piece", "with", "its_piece"});
@@ -150,7 +153,7 @@ class Edit {
       known({});
       remove(number);
     } else {
-      refuse(where_ + ".do", "is move, insert, delete, split, join, remove or add, not '" + what + "'");
+      refuse(where_ + ".do", "must be move, insert, delete, split, join, remove or add, not '" + what + "'");
     }
   }
 
@@ -175,24 +178,24 @@ class Edit {
   void remove(std::size_t number) {
     contours_.erase(contours_.begin() + static_cast<std::ptrdiff_t>(number));
   }
-  /// The piece that ends at a point, which may be one beyond the last.
+  /// The number of the piece that ends at a point. `point` may be one beyond the last point.
   std::size_t piece_before(std::size_t number, std::size_t point) const {
     return point == 0 ? contours_[number].contour.points_mm.size() - 1 : point - 1;
   }
-  /// Refuses a contour that crosses itself.
+  /// Throws if a contour crosses itself.
   void check(std::size_t number) {
     const brep::Contour& contour = contours_[number].contour;
     if (const auto crossing = brep::first_crossing(contour)) refuse_crossing(contour, *crossing, where_);
     contours_[number].is_uncrossed = true;
   }
-  /// Checks the contour after an edit that changed these pieces.
+  /// Throws if a contour crosses itself, after an edit that changed only these pieces.
   void check_edit(std::size_t number, const std::vector<std::size_t>& changed) {
     if (!contours_[number].is_uncrossed) return check(number);
     const brep::Contour& contour = contours_[number].contour;
     if (const auto crossing = brep::first_crossing_of(contour, changed))
       refuse_crossing(contour, *crossing, where_);
   }
-  /// Checks the contour after an edit that moved or inserted a point.
+  /// Throws if a contour crosses itself, after an edit that moved or inserted only this point.
   void check_about(std::size_t number, std::size_t point) {
     check_edit(number, {piece_before(number, point), point});
   }
@@ -202,17 +205,17 @@ class Edit {
   std::vector<EditedContour>& contours_;
 };
 
-/// The view across a scan's slices. Refuses a scan that lies obliquely to the patient's axes.
+/// The view along the normal of a scan's slices. Throws if the slices are oblique to the patient's axes.
 voxel::View view_of_slices(const voxel::Scene& scene) {
   try {
     return voxel::parse_view(voxel::contour_view(scene.lattice));
   } catch (const voxel::InvalidInput& error) {
     throw std::runtime_error(std::string(error.what()) +
-                             ": straighten the scan first, for example with octotomy prepare");
+                             ": straighten the scan first, for example by octotomy prepare");
   }
 }
 
-/// The sections of a scan's slices as a mask.
+/// The mask of the contours in a scan's slices.
 voxel::SliceMask mask_of(const voxel::Scene& scene, const std::vector<brep::Section>& sections) {
   voxel::SliceMask mask;
   mask.view = view_of_slices(scene);
@@ -232,16 +235,17 @@ voxel::SliceMask mask_of(const voxel::Scene& scene, const std::vector<brep::Sect
     is_empty = is_empty && slice.polygons_mm.empty();
     mask.slices.push_back(std::move(slice));
   }
-  if (is_empty) throw std::runtime_error("no slice has anything in the window: choose another");
+  if (is_empty) throw std::runtime_error("no slice has samples in the window: choose another window");
   if (mask.slices.size() < 2)
-    throw std::runtime_error("a scan of one slice has no contours on parallel slices");
+    throw std::runtime_error("the scan has one slice, but contours on parallel slices need at least two");
   if (mask.slices.front().position_mm > mask.slices.back().position_mm)
     std::reverse(mask.slices.begin(), mask.slices.end());
   drop_empty_ends(mask.slices);
   return mask;
 }
 
-/// The slice of a scan at a position in the view of its contours.
+/// The number of the slice nearest to a position in the view of the contours. Throws if none is within half a
+/// slice's distance.
 int slice_at(const voxel::Scene& scene, double position_mm) {
   const voxel::View view = view_of_slices(scene);
   const double first_mm = glm::dot(scene.lattice.lps_mm(glm::dvec3(0.0)), view.look);
@@ -267,7 +271,7 @@ SliceWindow parse_slice_window(const std::string& text) {
   const std::optional<double> position_mm = number_in(text.substr(0, equals));
   if (equals == std::string::npos || !position_mm)
     throw std::runtime_error("'" + text +
-                             "' is no window of a slice: give POSITION=LOW:HIGH, for example 30=250:");
+                             "' is not a window of a slice: write POSITION=LOW:HIGH, for example 30=250:");
   return {*position_mm, parse_sample_window(text.substr(equals + 1))};
 }
 
@@ -286,7 +290,7 @@ voxel::SliceMask slice_contours(const voxel::Scene& scene, const std::optional<S
     const int k = slice_at(scene, slice.position_mm);
     if (!done.insert(k).second)
       throw std::runtime_error("the slice at " + plain(slice.position_mm) +
-                               " mm has two windows of its own: leave one of them out");
+                               " mm has two separate windows: leave out one of them");
     const voxel::Scene alone =
         voxel::crop(scene, {{0, 0, k}, {scene.lattice.dims.x - 1, scene.lattice.dims.y - 1, k}});
     sections[static_cast<std::size_t>(k)].contours = std::move(
@@ -314,7 +318,8 @@ voxel::SliceMask refined(const voxel::SliceMask& mask, const Refinement& refinem
     is_empty = is_empty && slice.polygons_mm.empty();
   }
   if (is_empty)
-    throw std::runtime_error("no contour is left: reduce the thinning, the smoothing or the inward offset");
+    throw std::runtime_error(
+        "no contour remains: reduce the thinning, the smoothing, the least area or the inward offset");
   return result;
 }
 

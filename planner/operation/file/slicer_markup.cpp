@@ -19,7 +19,7 @@ glm::dvec3 vector_of(const SortedJson& value, const std::string& where) {
   return {number_of(value[0], where), number_of(value[1], where), number_of(value[2], where)};
 }
 
-/// Columns of the first three rows and columns of a matrix of `width` numbers a row.
+/// The upper left 3 x 3 part of a row-major matrix with `width` numbers in a row.
 glm::dmat3 axes_of(const SortedJson& value, std::size_t width, const std::string& where) {
   if (!value.is_array() || value.size() != width * width)
     refuse(where, "must be a list of " + std::to_string(width * width) + " numbers");
@@ -30,7 +30,7 @@ glm::dmat3 axes_of(const SortedJson& value, std::size_t width, const std::string
   return axes;
 }
 
-/// How far a plane's axes may be from perpendicular unit vectors: files have six digits.
+/// Axes count as perpendicular unit vectors within this tolerance, because files have six digits.
 constexpr double axes_to = 1e-4;
 
 void set_axes(const glm::dmat3& axes, const std::string& where, MarkupPlane& plane) {
@@ -39,7 +39,7 @@ void set_axes(const glm::dmat3& axes, const std::string& where, MarkupPlane& pla
   for (int column = 0; column < 3; ++column)
     for (int row = 0; row < 3; ++row) worst = std::max(worst, std::abs(off[column][row]));
   if (!(worst <= axes_to) || glm::determinant(axes) < 0.0)
-    refuse(where, "are no three perpendicular unit vectors, right-handed");
+    refuse(where, "must be three perpendicular unit vectors that form a right-handed system");
   plane.normal = glm::normalize(axes[2]);
   plane.right = glm::normalize(axes[0] - glm::dot(axes[0], plane.normal) * plane.normal);
   plane.up = glm::cross(plane.normal, plane.right);
@@ -52,7 +52,7 @@ void set_bounds(const SortedJson& list, const std::string& where, double mm, Mar
       refuse(where + ".planeBounds", "must be a list of 4 numbers");
     std::array<double, 4> numbers{};
     for (std::size_t i = 0; i < 4; ++i) numbers[i] = mm * number_of(bounds[i], where + ".planeBounds");
-    // Slicer writes empty bounds if it chose the size itself.
+    // Slicer writes empty bounds if it chose the plane's size.
     if (numbers[0] < numbers[1] && numbers[2] < numbers[3]) {
       plane.low_mm = {numbers[0], numbers[2]};
       plane.high_mm = {numbers[1], numbers[3]};
@@ -79,14 +79,14 @@ MarkupPlane plane_of(const SortedJson& list, const glm::dvec3& lps_mm, SlicerMar
     set_axes(lps * axes_of(list["orientation"], 3, markup.where + ".orientation"),
              markup.where + ".orientation", plane);
   } else if (list.contains("baseToNode") && list.value("planeType", "") == "pointNormal") {
-    if (markup.points_mm.empty()) refuse(markup.where, "has no control point that is placed");
+    if (markup.points_mm.empty()) refuse(markup.where, "has no placed control point: place the plane again");
     plane.origin_mm = markup.points_mm.front();
     set_axes(lps * axes_of(list["baseToNode"], 4, markup.where + ".baseToNode"), markup.where + ".baseToNode",
              plane);
   } else {
     if (markup.points_mm.size() < 3)
       refuse(markup.where,
-             "states neither 'center' and 'orientation' nor three placed points: place the plane again");
+             "has neither 'center' and 'orientation' nor three placed points: place the plane again");
     const std::vector<glm::dvec3>& p = markup.points_mm;
     const glm::dvec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
     if (!(glm::length(across) > 1e-3 * glm::length(p[1] - p[0]) * glm::length(p[2] - p[0])))
@@ -96,8 +96,8 @@ MarkupPlane plane_of(const SortedJson& list, const glm::dvec3& lps_mm, SlicerMar
     plane.normal = glm::normalize(across);
     plane.up = glm::cross(plane.normal, plane.right);
     markup.findings.push_back(
-        "WARN, frame: the file states no axes of the plane: they are taken from its first three points, the "
-        "normal by the right hand");
+        "WARN, frame: the file states no axes of the plane: they are computed from its first three points, "
+        "the normal by the right-hand rule");
   }
   set_bounds(list, markup.where, mm, plane);
   return plane;
@@ -115,8 +115,8 @@ SlicerMarkup markup_of(const SortedJson& list, const std::string& where) {
   }
   if (!list.contains("coordinateSystem"))
     markup.findings.push_back(
-        "WARN, frame: the file names no coordinateSystem: LPS is assumed; where its program "
-        "means RAS, left and right are exchanged");
+        "WARN, frame: the file names no coordinateSystem: LPS is assumed; if its program meant RAS, left and "
+        "right are exchanged");
   if (!list.contains("coordinateUnits"))
     markup.findings.push_back("WARN, unit: the file names no coordinateUnits: mm is assumed");
   const SortedJson& controls = need(list, "controlPoints", where);
@@ -131,14 +131,14 @@ SlicerMarkup markup_of(const SortedJson& list, const std::string& where) {
   return markup;
 }
 
-/// How far the closed spline through the points (Catmull and Rom's) bends away from its chords.
+/// The largest distance between the closed spline of Catmull and Rom through the points and its chords.
 double spline_bend_mm(const std::vector<glm::dvec3>& points) {
   double most = 0.0;
   const std::size_t count = points.size();
   for (std::size_t i = 0; i < count; ++i) {
     const glm::dvec3 &a = points[(i + count - 1) % count], &b = points[i], &c = points[(i + 1) % count],
                      &d = points[(i + 2) % count];
-    // At the middle: (9 (b + c) - (a + d)) / 16.
+    // The spline's middle between b and c is (9 (b + c) - (a + d)) / 16.
     most = std::max(most, glm::distance((9.0 * (b + c) - (a + d)) / 16.0, 0.5 * (b + c)));
   }
   return most;
@@ -174,7 +174,8 @@ std::vector<SlicerMarkup> read_slicer_markups(const std::filesystem::path& path,
 MarkupPlane read_plane(const std::filesystem::path& path, std::vector<std::string>& findings) {
   const std::vector<SlicerMarkup> found = read_slicer_markups(path, "Plane", findings);
   if (found.size() > 1)
-    refuse(path.string(), "has " + std::to_string(found.size()) + " planes: save each as a file of its own");
+    refuse(path.string(),
+           "has " + std::to_string(found.size()) + " planes: save each plane in a separate file");
   return *found.front().plane;
 }
 
@@ -185,7 +186,7 @@ std::vector<std::vector<glm::dvec2>> read_closed_curves(const std::filesystem::p
   for (const SlicerMarkup& curve : read_slicer_markups(path, "ClosedCurve", findings)) {
     if (curve.points_mm.size() < 3)
       refuse(curve.where, "has " + std::to_string(curve.points_mm.size()) +
-                              " points that are placed: a region takes three");
+                              " placed points, but a region needs at least three: place further points");
     std::vector<glm::dvec2>& polygon = polygons_mm.emplace_back();
     for (const glm::dvec3& p_mm : curve.points_mm) {
       const glm::dvec2 seen(glm::dot(p_mm, right), glm::dot(p_mm, up));
@@ -193,8 +194,9 @@ std::vector<std::vector<glm::dvec2>> read_closed_curves(const std::filesystem::p
     }
     if (const double bend_mm = spline_bend_mm(curve.points_mm); bend_mm > curve_tolerance_mm)
       findings.push_back(path.filename().string() +
-                         ": straight between control points; a spline through them is up to " +
-                         three_figures(bend_mm) + " mm away: resample the curve in Slicer for more points");
+                         ": the curve is read as straight lines between control points; a spline through "
+                         "these would be up to " +
+                         three_figures(bend_mm) + " mm away: resample the curve in Slicer to more points");
   }
   return polygons_mm;
 }

@@ -11,8 +11,8 @@
 namespace octotomy::planner {
 namespace {
 
-/// Replaces paths in the temporary folder by paths within the result's folder. Results are first written to
-/// a folder of another name.
+/// The text with paths in `folder` shortened to paths within it. A result is written to a temporary folder,
+/// whose name must not appear in findings.
 std::string within(std::string text, const std::filesystem::path& folder) {
   const std::string beginning = (folder / "").string();
   for (std::size_t at = 0; (at = text.find(beginning, at)) != std::string::npos;)
@@ -60,7 +60,7 @@ void write_by_verb(const std::string& object, const std::filesystem::path& path,
       if (name != "written") made.content += (made.content.empty() ? "" : ", ") + name + " " + text;
     made.written = true;
   } catch (const std::exception& error) {
-    // A full disk or exhausted memory is no property of the object.
+    // Errors such as a full disk are no property of the object, so they are thrown.
     if (fault_of(error) != Fault::Input && fault_of(error) != Fault::Geometry) throw;
     made.findings.push_back("not written: " + within(message_of(error), bench.folder));
   }

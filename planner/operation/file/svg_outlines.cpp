@@ -23,14 +23,15 @@
 namespace octotomy::planner {
 namespace {
 
-/// The parser counts bytes in 32 bits. An embedded picture has about ten million.
+/// Larger files are refused, because the parser counts bytes in 32 bits. A drawing with an embedded picture
+/// has about ten million bytes.
 constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 28;
 
-/// Pixels per inch of the program that wrote a drawing, according to its comment or its root. CSS has 96;
-/// Illustrator counts points; Inkscape changed from 90 in version 0.92.
+/// The length of a pixel in the program that wrote a drawing, by the drawing's comment or root. CSS has 96
+/// pixels per inch; Illustrator has 72; Inkscape had 90 before version 0.92 and has 96 since.
 struct PixelLength {
   int per_inch = 96;
-  std::string program;  ///< empty for any other program
+  std::string program;  ///< "Adobe Illustrator" or a version of Inkscape; empty for other programs
   double mm() const { return 25.4 / per_inch; }
 };
 PixelLength pixel_of(const std::string& text) {
@@ -46,8 +47,8 @@ PixelLength pixel_of(const std::string& text) {
   return version < 0.915 ? PixelLength{90, "Inkscape before 0.92"} : PixelLength{96, "Inkscape"};
 }
 
-/// The value of a property. An element's style takes precedence over its attribute; empty if neither states
-/// it.
+/// The value of an element's property. Its style takes precedence over its attribute. Empty if neither states
+/// the property.
 std::string property_of(const XmlTag& element, const std::string& name) {
   if (const auto style = element.attributes.find("style"); style != element.attributes.end()) {
     std::istringstream declarations(style->second);
@@ -61,8 +62,8 @@ std::string property_of(const XmlTag& element, const std::string& name) {
   return attribute == element.attributes.end() ? "" : voxel::trimmed(attribute->second);
 }
 
-/// Text on the clip path or mask of an element, which hides parts of its shapes: "the clip-path of <g>
-/// (line 3)"; empty if there is none.
+/// A description of an element's clip path or mask, which hides parts of its shapes, such as "the clip-path
+/// of <g> (line 3)"; empty if it has neither.
 std::string cut_of(const XmlTag& element) {
   for (const char* property : {"clip-path", "mask"})
     if (const std::string value = property_of(element, property); !value.empty() && value != "none")
@@ -71,18 +72,20 @@ std::string cut_of(const XmlTag& element) {
   return {};
 }
 
-/// A file's elements, in two walks: for the units and the picture, and for the outlines.
+/// The elements of a drawing. They are visited twice: first for the units and the picture, then for the
+/// outlines.
 class Drawing {
  public:
   Drawing(std::string file, const std::string& text)
       : pixel_(pixel_of(text)), elements_(std::move(file), text) {}
 
-  /// Calls `each` for every displayed element, with the element's transform.
+  /// Calls `each` for every displayed element, with the matrix from the element's units to the drawing's.
   template <typename Each>
   void walk(const Each& each) {
     const XmlTags& elements = elements_;
     std::vector<glm::dmat3> open;
-    std::vector<int> alternatives;  // shapes of each open <switch>, of which one is drawn; -1 of others
+    std::vector<int> alternatives;  // for each open <switch> the number of its shapes, of which a viewer
+                                    // draws one; -1 for other elements
     std::size_t hidden_from = none;
     cuts_.clear();
     for (const XmlTag& element : elements) {
@@ -94,14 +97,15 @@ class Drawing {
         continue;
       }
       if (open.empty() && element.name != "svg")
-        elements.refuse_at(element.line, "is no SVG file: its root is <" + element.name + ">");
+        elements.refuse_at(element.line, "is not an SVG file: its root is <" + element.name + ">");
       if (!alternatives.empty() && alternatives.back() >= 0 && !is_hidden(element) &&
           element.name != "foreignObject" && ++alternatives.back() > 1)
-        elements.refuse_at(element.line, "<switch> has alternatives: keep the one that is meant");
+        elements.refuse_at(element.line, "<switch> has several alternatives: delete all but one");
       if (const auto style = element.attributes.find("style");
           style != element.attributes.end() && style->second.find("transform") != std::string::npos)
-        elements.refuse_at(element.line,
-                           "moves a shape by its style, which is not read: flatten transforms before saving");
+        elements.refuse_at(
+            element.line,
+            "a style transforms a shape, which cannot be read: flatten transforms before saving");
       has_classes_ = has_classes_ || element.attributes.contains("class");
       const glm::dmat3 map = (open.empty() ? glm::dmat3(1.0) : open.back()) *
                              (open.empty() ? glm::dmat3(1.0) : transform_of(elements, element));
@@ -117,13 +121,14 @@ class Drawing {
   }
 
   double mm_per_unit() const { return mm_per_unit_; }
-  /// Whether the root has a width or height in a unit of length, which a pixel is not.
+  /// Whether the root states its width or height in a unit of length. A pixel does not count as one.
   bool has_length() const { return has_length_; }
   bool is_in_pixels() const { return is_in_pixels_; }
   const PixelLength& pixel() const { return pixel_; }
-  /// Whether elements have classes, whose style sheet may hide them.
+  /// Whether any element has a class; the style sheet, which is not read, may hide it.
   bool has_classes() const { return has_classes_; }
-  /// The clip paths and masks of the element that the walk is at and of the groups that hold it.
+  /// The clip paths and masks of the current element of walk() and of the groups around it, as cut_of()
+  /// describes them.
   std::vector<std::string> cuts() const {
     std::vector<std::string> stated;
     std::copy_if(cuts_.begin(), cuts_.end(), std::back_inserter(stated),
@@ -159,7 +164,7 @@ class Drawing {
       const bool is_bare = found->second.find_first_not_of("0123456789+-.eE ") == std::string::npos;
       const bool is_pixels = is_bare || found->second.find("px") != std::string::npos;
       (is_pixels ? is_in_pixels_ : has_length_) = true;
-      // A bare number has the scale 1.
+      // A number without a unit is multiplied by 1 here and converted below.
       const double value =
           length_of(elements, root, key, 0.0, is_pixels && !is_bare ? mm_per_css_pixel : 1.0);
       return is_pixels ? value * pixel_.mm() : value;
@@ -167,22 +172,23 @@ class Drawing {
     const std::optional<double> width_mm = length_mm("width"), height_mm = length_mm("height");
     const std::vector<double> box = numbers_of(elements, root, "viewBox");
     if (box.empty()) return;
-    if (box.size() != 4) elements.refuse_at(root.line, "viewBox must be four numbers");
+    if (box.size() != 4) elements.refuse_at(root.line, "viewBox must have four numbers");
     const glm::dvec2 size(box[2], box[3]);
     if (!(size.x > 0.0 && size.y > 0.0)) elements.refuse_at(root.line, "viewBox has no size");
     if (!width_mm && !height_mm) return;
     const double across = width_mm ? *width_mm / size.x : *height_mm / size.y;
     const double down = height_mm ? *height_mm / size.y : across;
     if (!(across > 0.0) || std::abs(down / across - 1.0) > 1e-3)
-      elements.refuse_at(
-          root.line, "width and height do not have the shape of viewBox: the length of a unit is unknown");
+      elements.refuse_at(root.line,
+                         "width and height differ from viewBox in their ratio, so the length of a unit is "
+                         "unknown: make the ratios equal");
     mm_per_unit_ = across;
   }
 
   PixelLength pixel_;
   XmlTags elements_;
   bool has_length_ = false, is_in_pixels_ = false, has_classes_ = false;
-  std::vector<std::string> cuts_;  ///< of each open element; empty where it has none
+  std::vector<std::string> cuts_;  ///< cut_of() of each open element
   double mm_per_unit_ = mm_per_css_pixel;
 };
 
@@ -198,11 +204,12 @@ SvgPicture picture_of(const XmlTags& elements, const XmlTag& element, const glm:
   picture.user_from_shown = map * affine(1, 0, 0, 1, length("x"), length("y"));
   picture.line = element.line;
   if (!(picture.shown_units.x > 0.0 && picture.shown_units.y > 0.0))
-    elements.refuse_at(element.line, "<image> has no width and height");
+    elements.refuse_at(element.line, "<image> has no positive width and height");
   return picture;
 }
 
-/// Adds a polygon without points that equal the point before them or the first point.
+/// Adds a polygon without repeated neighbouring points. If fewer than three points remain, adds a finding
+/// instead.
 void add_polygon(std::vector<glm::dvec2> polygon, std::size_t line, SvgOutlines& made) {
   polygon.erase(std::unique(polygon.begin(), polygon.end()), polygon.end());
   while (polygon.size() > 1 && glm::distance(polygon.front(), polygon.back()) < 1e-9) polygon.pop_back();
@@ -210,7 +217,7 @@ void add_polygon(std::vector<glm::dvec2> polygon, std::size_t line, SvgOutlines&
     made.polygons_mm.push_back(std::move(polygon));
   else
     made.findings.push_back("line " + std::to_string(line) +
-                            ": an outline of fewer than three points is left out");
+                            ": an outline with fewer than three points is left out");
 }
 
 }  // namespace
@@ -250,23 +257,24 @@ SvgOutlines read_svg_outlines(const std::filesystem::path& path, const SvgPlacem
   if (made.polygons_mm.empty())
     refuse(path.string(), "has no outline: draw a path, polygon, polyline, rect, circle or ellipse");
   for (const auto& [name, count] : left_out)
-    made.findings.push_back(std::to_string(count) + " <" + name + "> left out: it encloses nothing");
+    made.findings.push_back(std::to_string(count) + " <" + name +
+                            "> left out, because such elements enclose no area");
   constexpr std::size_t most_told = 8;
   for (std::size_t i = 0; i < std::min(cuts.size(), most_told); ++i)
     made.findings.push_back("WARN: " + cuts[i] +
-                            " is not read: the outlines there are taken whole, also where the drawing does "
-                            "not show them; cut the shapes themselves, or release the clip or mask");
+                            " is not applied: the outlines there are used whole, including parts that the "
+                            "drawing hides; cut the shapes, or release the clip or mask");
   if (cuts.size() > most_told)
     made.findings.push_back("WARN: " + std::to_string(cuts.size() - most_told) +
-                            " more clip paths and masks are not read");
+                            " more clip paths and masks are not applied");
   if (drawing.has_classes())
     made.findings.push_back(
-        "its style sheet is not read: outlines of classes that it hides, clips or masks are taken whole; "
+        "its style sheet is not applied: outlines of classes that it hides, clips or masks are used whole; "
         "delete hidden layers");
   if (!picture && !drawing.has_length())
     made.findings.push_back(
-        (drawing.is_in_pixels() ? "the drawing states its width in pixels, which are no length: a pixel"
-                                : "the drawing has no width in millimetres: a unit") +
+        (drawing.is_in_pixels() ? "the drawing states its width in pixels, whose length is assumed: a pixel"
+                                : "the drawing states no width in millimetres: a unit") +
         std::string(" is taken as 1/") + std::to_string(drawing.pixel().per_inch) + " inch, " +
         three_figures(drawing.pixel().mm()) + " mm, " +
         (drawing.pixel().program.empty() ? "as CSS has it" : "as " + drawing.pixel().program + " has it") +

@@ -13,10 +13,10 @@ namespace octotomy::planner {
 namespace {
 
 constexpr double mm_per_inch = 25.4;
-/// A curve that needs more lines than this has wrong numbers.
+/// A curve that would need more lines than this is refused, because its numbers must be wrong.
 constexpr double most_lines = 100000.0;
 
-/// Numbers and letters of a path, a list of points or a transform.
+/// Reads the numbers and letters of a path, a list of points or a transform.
 class Words {
  public:
   Words(const XmlTags& elements, const XmlTag& element, std::string attribute)
@@ -29,7 +29,7 @@ class Words {
     skip();
     return at_ >= text_.size();
   }
-  /// The next letter, or 0.
+  /// The next letter, or 0 if a number or the end comes next.
   char letter() {
     skip();
     return at_ < text_.size() && std::isalpha(static_cast<unsigned char>(text_[at_])) != 0 ? text_[at_]
@@ -43,7 +43,7 @@ class Words {
   }
   double number() {
     skip();
-    // std::strtod would also accept "inf", "nan" and hexadecimal numbers.
+    // std::strtod is not used, because it accepts "inf", "nan" and hexadecimal numbers.
     const std::size_t end = std::min(text_.find_first_not_of("0123456789+-.eE", at_), text_.size());
     const std::string digits = text_.substr(at_, end - at_);
     char* rest = nullptr;
@@ -52,7 +52,7 @@ class Words {
     at_ += static_cast<std::size_t>(rest - digits.c_str());
     return value;
   }
-  /// Reads 0 or 1, which need not be followed by a blank.
+  /// Reads 0 or 1; the next value may follow without a blank.
   bool flag() {
     skip();
     if (at_ >= text_.size() || (text_[at_] != '0' && text_[at_] != '1')) refuse_here("a flag, 0 or 1");
@@ -96,19 +96,20 @@ glm::dvec2 at(const glm::dmat3& map, const glm::dvec2& p) {
   return glm::dvec2(map * glm::dvec3(p, 1.0));
 }
 
-/// Draws outlines in user units as polygons in millimetres.
+/// Converts outlines in user units to polygons in millimetres.
 class Pencil {
  public:
   Pencil(const glm::dmat3& mm_from_user, double tolerance_mm) : map_(mm_from_user), tolerance_(tolerance_mm) {
     const glm::dmat2 linear(map_);
-    // The greatest stretch is at most the root of the squares' sum.
+    // The greatest stretch of a matrix is at most the root of the sum of its squared entries.
     stretch_ = std::sqrt(glm::dot(linear[0], linear[0]) + glm::dot(linear[1], linear[1]));
   }
 
   void begin(const glm::dvec2& p) { polygons_.emplace_back(1, at(map_, p)); }
   void line(const glm::dvec2& to) { polygons_.back().push_back(at(map_, to)); }
-  /// The chords of n even parts of a curve are within |second derivative| / (8 n^2) of it (Wang's bound for
-  /// Bezier curves, whose second derivative is at most degree * (degree - 1) times the second differences).
+  /// If a curve is divided into n equal parts, their chords deviate from it by at most |second derivative| /
+  /// (8 n^2) (Wang's bound). A Bezier curve's second derivative is at most degree * (degree - 1) times the
+  /// largest second difference of its control points.
   void bezier(const std::vector<glm::dvec2>& controls) {
     std::vector<glm::dvec2> p;
     p.reserve(controls.size());
@@ -127,7 +128,8 @@ class Pencil {
       polygons_.back().push_back(q[0]);
     }
   }
-  /// Draws an arc of an ellipse from one angle over `by`. The map takes the unit circle to the ellipse.
+  /// Adds an arc of an ellipse from the angle `from` over the angle `by`. `map` takes the unit circle to the
+  /// ellipse.
   void arc(const glm::dmat3& user_from_circle, double largest_radius, double from, double by) {
     const int parts = std::max(3, parts_of(by * by * largest_radius * stretch_));
     for (int part = 1; part <= parts; ++part) {
@@ -153,7 +155,7 @@ void draw_ellipse(Pencil& pencil, const glm::dvec2& centre, const glm::dvec2& ra
              2.0 * std::numbers::pi);
 }
 
-/// An elliptic arc by its ends: SVG 1.1, F.6.5.
+/// Adds an elliptic arc that is stated by its ends: SVG 1.1, F.6.5.
 void draw_arc(Pencil& pencil, const glm::dvec2& from, glm::dvec2 radii, double turn_deg, bool large,
               bool sweep, const glm::dvec2& to) {
   radii = glm::abs(radii);
@@ -195,7 +197,7 @@ void draw_path(Pencil& pencil, const XmlTags& elements, const XmlTag& element) {
       pencil.begin(here);
       drawing = true;
     }
-    // The last control point mirrored at the current point, if the last command was a curve of the same kind;
+    // The last control point mirrored at the current point if the last command was a curve of the same kind;
     // else the current point.
     const auto mirrored = [&](const char* kinds) {
       return std::string_view(kinds).find(before) != std::string_view::npos ? 2.0 * here - handle : here;
@@ -267,7 +269,7 @@ void draw_rectangle(Pencil& pencil, const glm::dvec2& corner, const glm::dvec2& 
   pencil.line({corner.x, corner.y + radii.y}), turn(corner + radii, 2.0);
 }
 
-/// Draws an element if it is an outline.
+/// Adds the polygons of an element that is an outline; ignores other elements.
 void draw(Pencil& pencil, const XmlTags& elements, const XmlTag& element) {
   const auto length = [&](const char* key, double otherwise = 0.0) {
     return length_of(elements, element, key, otherwise, mm_per_css_pixel);
@@ -320,7 +322,7 @@ glm::dmat3 transform_of(const XmlTags& elements, const XmlTag& element) {
       made *= affine(1, tangent, 0, 1, 0, 0);
     } else {
       elements.refuse_at(element.line, "<" + element.name + "> has a transform '" + kind + "' with " +
-                                           std::to_string(n.size()) + " numbers, which is none of SVG's");
+                                           std::to_string(n.size()) + " numbers, which SVG does not have");
     }
   }
   return made;
@@ -347,9 +349,8 @@ double length_of(const XmlTags& elements, const XmlTag& element, const std::stri
   const auto known = mm.find(unit);
   if (known == mm.end())
     elements.refuse_at(element.line, "<" + element.name + "> " + key + "='" + found->second +
-                                         "' is no length in px, mm, cm, "
-                                         "in, pt or pc");
-  // A length within the drawing has CSS's units, in which a pixel is a user unit.
+                                         "' is not a length in px, mm, cm, in, pt or pc");
+  // Units within the drawing are those of CSS, in which a pixel is one user unit.
   return value * known->second / mm_per_unit;
 }
 

@@ -12,7 +12,7 @@ namespace octotomy::planner {
 namespace {
 
 constexpr std::uint64_t no_address = ~std::uint64_t{0};
-/// The sizes of a symbol table and of a tree's node, in members. Readers take both from the superblock.
+/// The numbers of members in a symbol table and in a tree's node. The superblock states them for readers.
 constexpr std::uint64_t leaf_k = 4, internal_k = 16;
 constexpr std::size_t superblock_bytes = 96, texts_bytes = 4096;
 
@@ -37,14 +37,14 @@ std::string object_header(std::uint64_t count, const std::string& messages) {
 }
 
 std::string real_type() {
-  // Class 1, version 1: a little-endian number whose mantissa's first bit is implied and whose sign is bit
+  // Class 1, version 1: a little-endian number with an implied first bit of the mantissa and its sign in bit
   // 63.
   return coded(0x11, 1) + coded(0x3f20, 3) + coded(8, 4) + coded(0, 2) + coded(64, 2) + coded(52, 1) +
          coded(11, 1) + coded(0, 1) + coded(52, 1) + coded(1023, 4);
 }
 
 std::string text_type() {
-  // Class 9, version 1: a text of bytes, of variable length, which ends with a zero.
+  // Class 9, version 1: a byte text of variable length that ends with a zero byte.
   return coded(0x19, 1) + coded(1, 3) + coded(16, 4) + coded(0x10, 1) + coded(0, 3) + coded(1, 4) +
          coded(0, 2) + coded(8, 2);
 }
@@ -80,21 +80,21 @@ class Writer {
     return put(object_header(
         4, header_message(0x01, coded(1, 1) + coded(1, 1) + coded(0, 6) + coded(count, 8)) +
                header_message(0x03, type) +
-               // Storage is allocated when the data are written; there is no fill value (its size is 0).
+               // Storage is allocated when data are written. The fill value has the size 0, so there is none.
                header_message(0x05, coded(2, 1) + coded(2, 1) + coded(2, 1) + coded(1, 1) + coded(0, 4)) +
                header_message(0x08, coded(3, 1) + coded(1, 1) + coded(at, 8) + coded(size, 8))));
   }
 
   std::uint64_t value(const std::string& text) {
     if (texts_.size() + text.size() + 48 > texts_bytes - 16)
-      throw std::invalid_argument("the texts of an HDF5 file must take at most 3 kB");
+      throw std::invalid_argument("the texts of an HDF5 file must have at most 3 kB together");
     texts_ += coded(++text_count_, 2) + coded(1, 2) + coded(0, 4) + coded(text.size(), 8) + padded(text);
     const std::uint64_t at = put(coded(text.size(), 4) + coded(texts_at_, 8) + coded(text_count_, 4));
     return dataset(1, text_type(), at, 16);
   }
 
   std::uint64_t value(const std::vector<double>& numbers) {
-    if (numbers.empty()) throw std::invalid_argument("a row of an HDF5 file must have numbers");
+    if (numbers.empty()) throw std::invalid_argument("a row of an HDF5 file must have at least one number");
     std::string row;
     for (const double each : numbers) row += coded(std::bit_cast<std::uint64_t>(each), 8);
     const std::uint64_t at = put(row);
@@ -116,7 +116,7 @@ class Writer {
     }
     symbols.resize(2 * leaf_k * 40, '\0');
     const std::uint64_t names_at = put(names);
-    // A free list that begins at 1 means that no part of the names is free.
+    // A free list at offset 1 means that the list of names has no free part.
     const std::uint64_t heap =
         put("HEAP" + coded(0, 4) + coded(names.size(), 8) + coded(1, 8) + coded(names_at, 8));
     const std::uint64_t table = put("SNOD" + coded(1, 2) + coded(made.members.size(), 2) + symbols);
@@ -129,7 +129,7 @@ class Writer {
 
   void finish_texts() {
     std::string collection = "GCOL" + coded(1, 4) + coded(texts_bytes, 8) + texts_;
-    // Object 0 is the remaining free space, including its own header.
+    // Object 0 is the remaining free space, including the header of object 0.
     collection += coded(0, 8) + coded(texts_bytes - collection.size(), 8);
     collection.resize(texts_bytes, '\0');
     bytes_.replace(texts_at_, texts_bytes, collection);

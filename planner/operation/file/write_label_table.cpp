@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The names of a table; none where it cannot be read.
+/// The names in a table; empty if the file cannot be read as a table.
 std::map<int, std::string> names_in(const fs::path& table) {
   try {
     return read_label_table(table).names;
@@ -25,7 +25,7 @@ std::map<int, std::string> names_in(const fs::path& table) {
   }
 }
 
-/// The names as label_table_text() spells them.
+/// The names in the spelling of label_table_text().
 std::map<int, std::string> spelled(const std::map<int, std::string>& names) {
   std::map<std::string, int> count_of;
   std::map<int, std::string> made;
@@ -41,7 +41,7 @@ std::map<int, std::string> spelled(const std::map<int, std::string>& names) {
   return made;
 }
 
-/// Whether a file is byte for byte the text that label_table_text() makes of its names.
+/// Whether Octotomy wrote a file: it is byte for byte the text that label_table_text() makes of its names.
 bool is_written_here(const fs::path& table) {
   const std::map<int, std::string> names = names_in(table);
   if (names.empty() || !fs::is_regular_file(fs::symlink_status(table))) return false;
@@ -75,7 +75,7 @@ void need_label_table(const fs::path& label_map, const std::map<int, std::string
   if (!fs::exists(fs::symlink_status(table)) || holds_names(table, names)) return;
   if (fs::exists(label_map) && is_written_here(table)) return;
   throw std::runtime_error(table.string() +
-                           ": is there already and does not hold the names of this label map's labels: move "
+                           ": is there already with other names than those of this label map's labels: move "
                            "it away, or choose another name for the label map");
 }
 
@@ -85,16 +85,16 @@ std::vector<std::string> write_label_table(const fs::path& label_map,
   need_label_table(label_map, names);
   const fs::path table = label_table_path(label_map);
   if (!holds_names(table, names)) voxel::write_whole(table, label_table_text(names));
-  std::vector<std::string> findings{"the names of the labels stand in " + table.string() +
-                                    ", as the label map's own file has no place for them"};
+  std::vector<std::string> findings{"the names of the labels were written to " + table.string() +
+                                    ", because the format of the label map has no place for them"};
   if (spelled(names) != names)
     findings.push_back(table.string() +
-                       ": names of several labels got the number of each, and tabs and line "
-                       "breaks became blanks");
+                       ": some names were changed: the label's number was added to a name of several labels, "
+                       "and tabs and line breaks became blanks");
   if (label_table_of(label_map).names != spelled(names))
     findings.push_back(table.string() +
-                       ": names change when they are read back: compare them with the source, and "
-                       "name the labels by a table of your own (--names)");
+                       ": names change when they are read again: compare them with the source, and state the "
+                       "names in another table by --names");
   return findings;
 }
 

@@ -15,11 +15,11 @@
 namespace octotomy::planner {
 namespace {
 
-/// Drawings nest about ten deep.
+/// Elements may be nested this deep; drawings have about ten levels.
 constexpr std::size_t most_nested = 1000;
 
-/// Replaces by "&amp;" each '&' that begins neither one of XML's own entities nor a character's number.
-/// References to entities that a file declares then stay as written.
+/// Replaces '&' by "&amp;" unless an entity of XML or a character's number begins there. References to
+/// entities that a file declares thus remain as text.
 std::string without_entities(std::string_view text) {
   std::string made;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -37,7 +37,8 @@ std::string local_name(std::string_view name) {
   return std::string(name.find(':') == std::string_view::npos ? name : "foreign");
 }
 
-/// The state that the parser's callbacks write. Callbacks must not throw, because the parser is C.
+/// The state of a parse, which the parser's callbacks change. Callbacks must not throw, because the parser is
+/// C code.
 struct Reading {
   XML_Parser parser = nullptr;
   std::vector<XmlTag> tags;
@@ -75,7 +76,7 @@ void ended(void* reading, const XML_Char* name) {
   });
 }
 
-/// The reason for an error at the beginning of `rest`.
+/// The reason for a parser's error; `rest` is the text from the faulty place on.
 std::string reason(XML_Error error, std::string_view rest) {
   const auto name_at = [&](std::size_t from) {
     return std::string(rest.substr(from, rest.find_first_of(" />", from) - from));
@@ -83,16 +84,17 @@ std::string reason(XML_Error error, std::string_view rest) {
   switch (error) {
     case XML_ERROR_TAG_MISMATCH:
       return "</" + name_at(rest.starts_with("</") ? 2 : 0) +
-             "> does not match the element that is open there";
+             "> closes another element than the one that is open there";
     case XML_ERROR_UNCLOSED_TOKEN:
-      return std::string("what begins here is not closed by ") + (rest.starts_with("<!--")        ? "-->"
-                                                                  : rest.starts_with("<![CDATA[") ? "]]>"
-                                                                  : rest.starts_with("<?")        ? "?>"
-                                                                                                  : ">");
+      return std::string("the markup that begins here is not closed by ") + (rest.starts_with("<!--") ? "-->"
+                                                                             : rest.starts_with("<![CDATA[")
+                                                                                 ? "]]>"
+                                                                             : rest.starts_with("<?") ? "?>"
+                                                                                                      : ">");
     case XML_ERROR_NO_ELEMENTS:
-      return "is no SVG file: it has no element that is closed";
+      return "is not an SVG file: it has no closed element";
     case XML_ERROR_INVALID_TOKEN:
-      return "is no XML here: a '<' begins no element, or an attribute is not NAME=\"VALUE\"";
+      return "is not XML here: no element follows a '<', or an attribute is not NAME=\"VALUE\"";
     case XML_ERROR_ABORTED:
       return "elements are nested more than " + std::to_string(most_nested) + " deep";
     default:
@@ -111,8 +113,8 @@ XmlTags::XmlTags(std::string file, const std::string& text) : file_(std::move(fi
   reading.parser = parser.get();
   XML_SetUserData(parser.get(), &reading);
   XML_SetElementHandler(parser.get(), begun, ended);
-  // Without a handler for external entities the parser reads nothing outside the file. By default it reads
-  // no parameter entity either.
+  // Without a handler for external entities, the parser reads no other file. It also reads no parameter
+  // entities by default.
   const XML_Status status = XML_Parse(parser.get(), plain.data(), static_cast<int>(plain.size()), XML_TRUE);
   if (reading.thrown) std::rethrow_exception(reading.thrown);
   if (status != XML_STATUS_OK) {

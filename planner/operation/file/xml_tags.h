@@ -8,7 +8,7 @@
 
 namespace octotomy::planner {
 
-/// The begin or end tag of an element in an XML text.
+/// The begin or end tag of an element in an XML file.
 struct XmlTag {
   std::string name;  ///< without "svg:"; "foreign" for elements with the prefix of another namespace
   std::map<std::string, std::string> attributes;
@@ -16,11 +16,12 @@ struct XmlTag {
   std::size_t line = 1;
 };
 
-/// The tags of an XML file in their order; text between them is skipped. Only XML's own five entities are
-/// expanded, nothing outside the file is read, and elements nest at most 1000 deep.
+/// The tags of an XML file in their order, without the text between them. Only XML's five entities are
+/// expanded, no other file is read, and elements may be nested at most 1000 deep.
 class XmlTags {
  public:
-  /// Throws std::runtime_error with file, line and reason if the text is not well-formed.
+  /// Parses `text`. Throws std::runtime_error that names `file`, the line and the reason if the text is not
+  /// well-formed.
   XmlTags(std::string file, const std::string& text);
 
   auto begin() const { return tags_.begin(); }

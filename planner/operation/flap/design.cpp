@@ -23,7 +23,7 @@ std::string said(double mm) {
   return std::to_string(static_cast<long>(std::lround(mm)));
 }
 
-/// A cut's slope in its segment's frame: across, then the third direction.
+/// The slope of a cut along the axes of its segment's frame: along `across`, and along the third axis.
 glm::dvec2 slope_of(const FlapPlane& cut, const FlapSegment& segment) {
   const glm::dvec3 third = glm::cross(segment.along, segment.across);
   const double along = glm::dot(cut.normal, segment.along);
@@ -50,15 +50,16 @@ glm::dvec3 carried(const glm::dvec3& vector, const glm::dvec3& from, const glm::
 }
 
 void check(const FlapPlan& plan) {
-  if (plan.curve_mm.size() < 2) throw voxel::InvalidInput("the curve needs two corners or more");
+  if (plan.curve_mm.size() < 2) throw voxel::InvalidInput("the curve needs at least two corners: add one");
   if (!plan.stumps_mm.empty() && plan.stumps_mm.size() != 2)
-    throw voxel::InvalidInput("stumps are two points, behind the first and behind the last corner");
+    throw voxel::InvalidInput(
+        "'stumps' needs two points, one beyond the first corner and one beyond the last");
   for (std::size_t i = 0; i + 1 < plan.curve_mm.size(); ++i)
     if (!(glm::distance(plan.curve_mm[i], plan.curve_mm[i + 1]) > 1e-3))
       throw voxel::InvalidInput("corners " + std::to_string(i + 1) + " and " + std::to_string(i + 2) +
-                                " of the curve are one point");
+                                " of the curve coincide: move one of them");
   if (!(plan.kerf_mm >= 0.0 && plan.reach_mm > 0.0 && plan.start_mm >= 0.0))
-    throw voxel::InvalidInput("kerf and start must not be negative, and the reach must be above 0");
+    throw voxel::InvalidInput("kerf and start must be at least 0, and the reach must be above 0");
 }
 
 std::vector<glm::dvec3> directions_of(const FlapPlan& plan) {
@@ -68,7 +69,7 @@ std::vector<glm::dvec3> directions_of(const FlapPlan& plan) {
   return along;
 }
 
-/// Cuts at the corners, one more than there are segments.
+/// The planes of the cuts at the corners of the curve, one more than there are segments.
 std::vector<FlapPlane> cuts_of(const FlapPlan& plan, const std::vector<glm::dvec3>& along) {
   const std::size_t last = along.size();
   std::vector<FlapPlane> cuts;
@@ -78,7 +79,7 @@ std::vector<FlapPlane> cuts_of(const FlapPlan& plan, const std::vector<glm::dvec
       const glm::dvec3 stump =
           k == 0 ? plan.curve_mm[0] - plan.stumps_mm[0] : plan.stumps_mm[1] - plan.curve_mm[last];
       if (!(glm::length(stump) > 1e-3))
-        throw voxel::InvalidInput("a stump's point is the corner: give one behind it");
+        throw voxel::InvalidInput("a point of 'stumps' coincides with the corner: choose one beyond it");
       (k == 0 ? before : after) = glm::normalize(stump);
     }
     if (!(glm::dot(before, after) > -0.5))
@@ -106,8 +107,8 @@ FlapSegment segment_between(const FlapPlane& start, const FlapPlane& end, const 
   made.end_tilt_deg = tilt_deg(end_slope);
   if (!(made.shortest_mm > 0.0))
     throw voxel::InvalidInput("segment " + std::to_string(number) + " is " + said(made.length_mm) +
-                              " mm long, and its cuts cross within the bone: take corners further apart, "
-                              "fewer segments, or a smaller 'reach_mm'");
+                              " mm long, so its cuts cross within the bone: place corners farther apart, or "
+                              "state fewer segments or a smaller 'reach_mm'");
   return made;
 }
 
@@ -121,15 +122,17 @@ std::vector<FlapSegment> flap_segments(const FlapPlan& plan) {
   check(plan);
   const double corner_mm = flap_corner_mm(plan.reach_mm);
   const glm::dvec3 axis_mm = plan.donor_to_mm - plan.donor_from_mm;
-  if (!(glm::length(axis_mm) > 1e-3)) throw voxel::InvalidInput("the donor's two points coincide");
+  if (!(glm::length(axis_mm) > 1e-3))
+    throw voxel::InvalidInput("the donor's two points coincide: choose two along the bone's axis");
   const glm::dvec3 axis = glm::normalize(axis_mm);
-  const glm::dvec3 face = square_to(axis, plan.donor_face_mm - plan.donor_from_mm,
-                                    "the point on the donor's face lies on its axis");
+  const glm::dvec3 face =
+      square_to(axis, plan.donor_face_mm - plan.donor_from_mm,
+                "the point on the donor's face lies on the donor's axis: choose a point beside it");
   const std::vector<glm::dvec3> along = directions_of(plan);
   const std::vector<FlapPlane> cuts = cuts_of(plan, along);
 
   glm::dvec3 across = square_to(along[0], plan.facing,
-                                "'facing' is along the first segment: give a direction perpendicular to it");
+                                "'facing' is along the first segment: state a direction across the segment");
   across = glm::dvec3(glm::rotate(glm::dmat4(1.0), glm::radians(plan.roll_deg), along[0]) *
                       glm::dvec4(across, 0.0));
   std::vector<FlapSegment> segments;
@@ -160,8 +163,8 @@ std::vector<FlapSegment> flap_segments(const FlapPlan& plan) {
   const double missing_mm = segments.back().donor_end_mm - glm::length(axis_mm);
   if (missing_mm > 0.0)
     throw voxel::InvalidInput(
-        "the donor is " + said(glm::length(axis_mm)) + " mm long, and the flap takes " + said(missing_mm) +
-        " mm more: start nearer to its first point, or take donor points further apart");
+        "the donor is " + said(glm::length(axis_mm)) + " mm long, and the flap needs " + said(missing_mm) +
+        " mm more: start nearer to its first point, or choose donor points farther apart");
   return segments;
 }
 

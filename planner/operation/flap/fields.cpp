@@ -31,7 +31,8 @@ void check_flap(const FlapFields& fields, const FieldLocation& place) {
     for (const Mark& mark : marks)
       if (!mark.object.empty())
         place.at(name).refuse("'" + mark.landmark + "@" + mark.object +
-                              "' moves with an object: a flap is planned on points of the scan");
+                              "' is a landmark that moves with an object: name one of the scan, because a "
+                              "flap is planned in the scan");
   };
   need_still("curve", fields.curve);
   need_still("stumps", fields.stumps);

@@ -28,7 +28,7 @@ void check(const Flap& flap, const FieldLocation& place) {
     place.at("contacts")
         .refuse(
             "must name " + std::to_string(count + 1) +
-            " objects, one for each osteotomy; leave out the last one if the new bone has a free end there");
+            " objects, one for each osteotomy; if the new bone has a free end, leave out the last object");
 }
 
 std::optional<std::string> verdict_of(const Object& object) {
@@ -52,9 +52,9 @@ MeasuredSegment measured(const FlapSegment& segment, const Object& object, int n
           cut(segment.donor_end, segment.donor_end_mm, segment.end_tilt_deg)};
 }
 
-/// The largest error of a contact area that is due to the slab's thickness. Across the slab the bones diverge
-/// by the tangent of half their angle to either side. For equal convex sections, at most `reach_mm` wide to
-/// each side, the mean over the slab is too small by at most this much.
+/// The largest error of a contact area that the slab's thickness causes. Within the slab the bones diverge on
+/// either side by the tangent of half their angle. For equal convex sections that extend at most `reach_mm`
+/// to each side, the mean area over the slab is too small by at most this error.
 double drift_mm2(const Flap& flap, double turn_deg) {
   const double mean_shift_mm = 0.25 * flap.slab_mm * 2.0 * std::tan(glm::radians(0.5 * turn_deg));
   return mean_shift_mm * 2.0 * flap.reach_mm;
@@ -77,7 +77,7 @@ MeasuredOsteotomy measured(const Flap& flap, const Object& object, const std::ve
   const bool is_inner = cut > 0 && cut < segments.size();
   if (is_inner) made.slab_lacks_at_most_mm2 = drift_mm2(flap, segments[cut].turn_deg);
   if (object.voxel.octree.is_empty())
-    made.finding = "no bone meets here: move the corner, or the donor's start";
+    made.finding = "the two bones do not meet here: move the corner, or the donor's start";
   return made;
 }
 
@@ -90,24 +90,26 @@ Json measure(const Flap& flap, const AnswerBench& bench) {
   for (std::size_t cut = 0; cut < flap.contacts.size(); ++cut)
     made.osteotomies.push_back(measured(flap, bench.objects.at(flap.contacts[cut].name), segments, cut));
   made.donor_used_mm = segments.back().donor_end_mm - segments.front().donor_start_mm;
-  made.contact_estimator = "volume that both bones share within " + Json(flap.slab_mm).dump() +
-                           " mm about the cut, over that thickness";
+  made.contact_estimator = "contact area: the common volume of both bones within " +
+                           Json(flap.slab_mm).dump() + " mm about the cut, divided by this thickness";
   return print_record(made);
 }
 
 }  // namespace
 
 Operation flap_operation() {
-  Describe<Flap> entry("flap", "Reports a free flap's segments, their order, cuts and contacts.",
+  Describe<Flap> entry("flap", "Reports the segments of a free flap: their order, cuts and contact areas.",
                        Makes::Measurement);
   for (Field& each : flap_fields<Flap>()) std::move(entry).takes(std::move(each));
   return std::move(entry)
       .takes(field("segments", &Flap::segments, "The placed segments, in order along the curve.").required())
       .takes(field("contacts", &Flap::contacts,
-                   "The common volume of both bones in each osteotomy's slab, in order along the curve; "
-                   "without the last slab if the new bone has a free end there, as in a joint.")
+                   "The common volume of both bones in each osteotomy's slab, in order along the curve. If "
+                   "the new bone ends freely, as in a joint, leave out the last slab.")
                  .required())
-      .takes(field("slab_mm", &Flap::slab_mm, "The thickness of these slabs.").greater_than(0).to(10))
+      .takes(field("slab_mm", &Flap::slab_mm, "The thickness of the slabs in 'osteotomies'.")
+                 .greater_than(0)
+                 .to(10))
       .example(R"({"id": "flap", "do": "flap", "segments": ["skull"], "contacts": ["skull", "skull"],
         "curve": [[-30, -60, -80], [0, -80, -85]],
         "donor": [[30, 12, 90], [33, 15, -90]], "face": [45, 12, 90]})")

@@ -28,8 +28,9 @@ FlapMove settle(const FlapMove& asked, const SettleBench& bench) {
   const std::optional<glm::dmat4> uncut_from_placed =
       is_of_segment ? flap_place(maker, asked.segment.name, 0.0).uncut_from_placed : std::nullopt;
   if (!uncut_from_placed)
-    throw std::runtime_error("'" + asked.segment.name +
-                             "' is no space on the uncut donor bone: name a flap_space step with 'uncut_at'");
+    throw std::runtime_error(
+        "'" + asked.segment.name +
+        "' is not a segment's space on the uncut donor bone: name a flap_space step with 'uncut_at'");
   FlapMove settled = asked;
   settled.moved_from_still = glm::inverse(*uncut_from_placed);
   return settled;
@@ -49,12 +50,12 @@ void bound(const FlapMove& move, const BoundBench& bench, Object& made) {
 Operation flap_move_operation() {
   return Describe<FlapMove>(
              "flap_move",
-             "Moves an object from the uncut donor bone to where one segment of a free flap lies.",
+             "Moves an object from the uncut donor bone to the place of one segment in a free flap.",
              Makes::Object)
-      .takes(
-          field("object", &FlapMove::object, "What goes along with the segment, such as a screw.").required())
+      .takes(field("object", &FlapMove::object, "The object that moves with the segment, such as a screw.")
+                 .required())
       .takes(field("segment", &FlapMove::segment,
-                   "The flap_space step of the segment's cuts on the uncut bone, with 'uncut_at'.")
+                   "The flap_space step that made the segment's space on the uncut bone, with 'uncut_at'.")
                  .required())
       .example(R"({"id": "screw_moved", "do": "flap_move", "object": "left_1", "segment": "cut"})")
       .motion()

@@ -16,21 +16,22 @@ struct FlapScan : FlapFields {
   bool uncut = false;
 };
 
-/// Samples up to this distance beyond a segment's cuts are included, so that the bone continues through its
-/// osteotomies.
+/// The scan extends this far beyond a segment's cuts, so that the bone continues through its osteotomies.
 constexpr double beyond_cuts_mm = 10.0;
 
 void check(const FlapScan& step, const FieldLocation& place) {
   check_flap(step, place);
   const std::size_t count = step.curve.size() - 1;
   if (static_cast<std::size_t>(step.segment) > count)
-    place.at("segment").refuse("is beyond the curve, which has " + std::to_string(count) + " segments");
+    place.at("segment").refuse("must be a segment of the curve, which has " + std::to_string(count) +
+                               " segments");
 }
 
-/// Samples up to this distance beyond the outer cuts of the uncut bone are included, because a guide sits there.
+/// With 'uncut' the scan extends this far beyond the outer cuts, because a guide sits there.
 constexpr double beyond_uncut_mm = 25.0;
 
-/// The box, in the donor's scan, of the bone from one segment to another and its continuation.
+/// The box in the donor's scan around the bone from segment `first` to segment `last`, with `beyond_mm` of
+/// bone at either end.
 voxel::Box box_of(const FlapPlan& plan, const FlapSegment& first, const FlapSegment& last, double beyond_mm) {
   const glm::dvec3 along = glm::normalize(plan.donor_to_mm - plan.donor_from_mm);
   const auto over_mm = [&](const FlapSegment& segment) {
@@ -52,7 +53,7 @@ MadeScan made(const FlapScan& step, const ScanBench& bench) {
                                 : box_of(plan, segment, segment, beyond_cuts_mm));
   if (range.is_empty())
     throw std::runtime_error("segment " + std::to_string(step.segment) +
-                             " lies outside of the donor's scan: check the donor's points");
+                             " lies outside of the donor's scan: check the two points of the donor's axis");
   MadeScan placed{voxel::crop(scene, range), {{"segment", step.segment}}};
   const glm::dmat4& motion = segment.placed_from_donor;
   placed.scene.lattice.lps_from_voxel = motion * placed.scene.lattice.lps_from_voxel;
@@ -71,15 +72,15 @@ MadeScan made(const FlapScan& step, const ScanBench& bench) {
 }  // namespace
 
 Operation flap_scan_operation() {
-  Describe<FlapScan> entry("flap_scan", "Places a donor's scan where one segment of a free flap lies.",
+  Describe<FlapScan> entry("flap_scan", "Moves a donor's scan to the place of one segment in a free flap.",
                            Makes::Scan);
   for (Field& each : flap_fields<FlapScan>()) std::move(entry).takes(std::move(each));
   return std::move(entry)
       .takes(field("scan", &FlapScan::scan, "The donor's scan.").required())
       .takes(field("segment", &FlapScan::segment, "The number of the segment, from 1.").from(1).to(8))
       .takes(field("uncut", &FlapScan::uncut,
-                   "Moves all bone that the flap uses, as it is before the cuts, to where this segment lies, "
-                   "for a guide to sit on."))
+                   "Includes the whole uncut bone of the flap, placed by this segment's motion, so that a "
+                   "guide can be designed on it."))
       .example(R"({"id": "fibula_1", "do": "flap_scan", "scan": "ct", "segment": 1,
         "curve": [[-30, -60, -80], [0, -80, -85], [30, -60, -80]],
         "donor": [[30, 12, 90], [33, 15, -90]], "face": [45, 12, 90]})")

@@ -25,7 +25,7 @@ struct FlapSpace : FlapFields {
 
 constexpr int sides = 8;
 
-/// A part of a beam between two cuts.
+/// A part of a beam between two planes.
 struct BeamSegment {
   FlapPlane start, end;
   glm::dvec3 along, across;
@@ -35,19 +35,20 @@ struct Beam {
   double reach_mm = 0.0;  ///< from its axis to its sides
 };
 
-/// A direction perpendicular to a piece, at an angle from the direction of its face.
+/// The direction perpendicular to a piece that encloses the angle `radians` with the direction of its face.
 glm::dvec3 square_at(const BeamSegment& piece, double radians) {
   return std::cos(radians) * piece.across + std::sin(radians) * glm::cross(piece.along, piece.across);
 }
 
-/// The slab of the thickness `slab_mm` about a cut.
+/// The slab of thickness `slab_mm` whose middle plane is the cut.
 BeamSegment slab_about(const FlapPlane& cut, const glm::dvec3& across, double slab_mm) {
   const glm::dvec3 aside = glm::normalize(across - cut.normal * glm::dot(cut.normal, across));
   const glm::dvec3 half = 0.5 * slab_mm * cut.normal;
   return {{cut.point_mm - half, cut.normal}, {cut.point_mm + half, cut.normal}, cut.normal, aside};
 }
 
-/// The motion from where a segment is placed to where its uncut bone lies; none: the space is not on the uncut bone.
+/// The motion from a placed segment to its place on the uncut bone; none if the space is not on the uncut
+/// bone.
 std::optional<glm::dmat4> uncut_from_placed(const FlapSpace& space,
                                             const std::vector<FlapSegment>& segments) {
   if (!space.uncut_at) return std::nullopt;
@@ -78,7 +79,7 @@ Beam beam_of(const FlapSpace& space) {
     const auto cut = static_cast<std::size_t>(space.number - 1);
     const bool is_last = cut == segments.size();
     const FlapSegment& one = segments.at(is_last ? cut - 1 : cut);
-    // A tilted cut is longer than the bone is wide.
+    // The sides of a tilted cut extend farther along the axis than its centre.
     const double tilt = glm::radians(is_last ? one.end_tilt_deg : one.start_tilt_deg);
     return {{slab_about(is_last ? one.end : one.start, one.across, space.slab_mm)},
             space.reach_mm / std::cos(tilt) + space.slab_mm};
@@ -93,10 +94,11 @@ void check(const FlapSpace& space, const FieldLocation& place) {
   const std::size_t segments = space.curve.size() - 1;
   const std::size_t most = space.part == "osteotomy" ? segments + 1 : segments;
   if (space.part != "resection" && static_cast<std::size_t>(space.number) > most)
-    place.at("number").refuse("is beyond the curve, which has " + std::to_string(most) + " of part '" +
-                              space.part + "'");
+    place.at("number").refuse("must be at most the number of its kind: the curve has " +
+                              std::to_string(most) + " of part '" + space.part + "'");
   if (space.uncut_at && static_cast<std::size_t>(*space.uncut_at) > segments)
-    place.at("uncut_at").refuse("is beyond the curve, which has " + std::to_string(segments) + " segments");
+    place.at("uncut_at")
+        .refuse("must be a segment of the curve, which has " + std::to_string(segments) + " segments");
   if (space.part != "resection") return;
   FlapFields wide = space;
   wide.reach_mm = space.aside_mm;
@@ -105,7 +107,7 @@ void check(const FlapSpace& space, const FieldLocation& place) {
     segments_of(wide);
   } catch (const voxel::InvalidInput&) {
     place.at("aside_mm")
-        .refuse("is so wide that the sides of the resection cross: take less than " + plain(space.aside_mm) +
+        .refuse("is so wide that the sides of the resection cross: state less than " + plain(space.aside_mm) +
                 " mm");
   }
 }
@@ -139,7 +141,7 @@ void voxels(const FlapSpace& space, const VoxelBench& bench, VoxelSide& made) {
   made.octree = bench.combined(*made.symbol);
   made.lineage = "half-spaces at voxel centres";
   if (made.octree.is_empty())
-    throw std::runtime_error("it holds no voxel of the universe, which spans " + plain(bench.box_mm()) +
+    throw std::runtime_error("it contains no voxel of the universe, which spans " + plain(bench.box_mm()) +
                              ": check the curve");
 }
 
@@ -173,7 +175,7 @@ void triangles(const FlapSpace& space, const MeshBench&, MeshSide& made) {
   made.lineage = "beams between cut planes";
 }
 
-/// The points behind a plane as a box larger than any universe.
+/// The points behind a plane, as a box that is larger than any universe.
 verify::Witness behind(const glm::dvec3& normal, const glm::dvec3& point_mm) {
   constexpr double far_mm = 2000.0;
   const glm::dvec3 least = std::abs(normal.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
@@ -227,13 +229,13 @@ FlapPlace flap_place(const Action* maker, const std::string& name, double share)
   const FlapSpace* space = space_of(maker);
   if (space == nullptr)
     throw std::runtime_error("'" + name +
-                             "' is no space of a flap's segment or resection: name a flap_space step");
+                             "' is not the space of a flap's segment or resection: name a flap_space step");
   const FlapPlan plan = plan_of(*space);
   if (space->part == "segment") {
     if (share < 0.0 || share > 1.0)
       throw std::runtime_error("'share' is " + plain(share) + ", beside segment " +
                                std::to_string(space->number) +
-                               ": give 0 at its first cut to 1 at its second");
+                               ": state a number from 0, its first cut, to 1, its second cut");
     const std::vector<FlapSegment> segments = segments_of(*space);
     const FlapSegment& segment = segments.at(static_cast<std::size_t>(space->number - 1));
     return {glm::mix(segment.start.point_mm, segment.end.point_mm, share), segment.along, space->reach_mm,
@@ -241,11 +243,11 @@ FlapPlace flap_place(const Action* maker, const std::string& name, double share)
   }
   if (plan.stumps_mm.empty())
     throw std::runtime_error("'" + name +
-                             "' has no 'stumps', so no place in the bone that stays is known: add them");
+                             "' has no 'stumps', which define places in the bone that stays: add them");
   if (share < -1.0 || share > 2.0 || (share > 0.0 && share < 1.0))
     throw std::runtime_error("'share' is " + plain(share) +
-                             ", in the resected bone or behind the stumps' points: give -1 to 0 before the "
-                             "first cut, or 1 to 2 behind the last");
+                             ", in the resected bone or beyond the points of 'stumps': state -1 to 0 before "
+                             "the first cut, or 1 to 2 beyond the last");
   const bool is_first = share <= 0.0;
   const glm::dvec3 cut_mm = is_first ? plan.curve_mm.front() : plan.curve_mm.back(),
                    stump_mm = plan.stumps_mm[is_first ? 0 : 1];
@@ -254,15 +256,15 @@ FlapPlace flap_place(const Action* maker, const std::string& name, double share)
 }
 
 Operation flap_space_operation() {
-  Describe<FlapSpace> entry(
-      "flap_space",
-      "Makes the space of a free flap's segment, of an osteotomy, or of the resection that it fills.",
-      Makes::Object);
+  Describe<FlapSpace> entry("flap_space",
+                            "Makes the space of one segment of a free flap, of one osteotomy, or of the "
+                            "resection that the flap fills.",
+                            Makes::Object);
   for (Field& each : flap_fields<FlapSpace>()) std::move(entry).takes(std::move(each));
   return std::move(entry)
       .takes(field("part", &FlapSpace::part,
-                   "segment: between its two cuts; osteotomy: a slab about a cut; resection: along the whole "
-                   "curve.")
+                   "segment: the space between its two cuts; osteotomy: a slab around a cut; resection: the "
+                   "space along the whole curve.")
                  .one_of({"segment", "osteotomy", "resection"}))
       .takes(field("number", &FlapSpace::number, "The number of the segment or osteotomy along the curve.")
                  .from(1)
@@ -270,16 +272,18 @@ Operation flap_space_operation() {
       .takes(field("slab_mm", &FlapSpace::slab_mm, "The thickness of an osteotomy's slab.")
                  .greater_than(0)
                  .to(10))
-      .takes(field("aside_mm", &FlapSpace::aside_mm, "How far the resection reaches beside the curve.")
+      .takes(field("aside_mm", &FlapSpace::aside_mm,
+                   "The distance from the curve to the sides of the resection.")
                  .greater_than(0)
                  .to(80))
-      .takes(field("uncut_at", &FlapSpace::uncut_at,
-                   "For a segment: the space of its cuts on the uncut donor bone, which flap_scan places at "
-                   "this segment with 'uncut'. Default: where the segment itself is placed.")
-                 .from(1)
-                 .to(8)
-                 .read_if<FlapSpace>([](const FlapSpace& space) { return space.part == "segment"; },
-                                     "applies only to 'part': 'segment': leave it out"))
+      .takes(
+          field("uncut_at", &FlapSpace::uncut_at,
+                "For a segment: makes its space on the uncut donor bone, which flap_scan with 'uncut' places "
+                "by the segment of this number. Default: the space at the segment's place in the flap.")
+              .from(1)
+              .to(8)
+              .read_if<FlapSpace>([](const FlapSpace& space) { return space.part == "segment"; },
+                                  "applies only to 'part': 'segment': leave it out"))
       .example(R"({"id": "wedge_1", "do": "flap_space", "part": "segment", "number": 1,
         "curve": [[-30, -60, -80], [0, -80, -85], [30, -60, -80]],
         "donor": [[30, 12, 90], [33, 15, -90]], "face": [45, 12, 90]})")

@@ -8,12 +8,12 @@
 
 #include "planner/operation/table/record.h"
 
-// A free flap's segments and osteotomies, as in a result's `measurements`.
+// Segments and osteotomies of a free flap: records below `measurements` in a result.
 namespace octotomy::planner {
 
-/// A cut on the donor.
+/// A cut on the donor: its position, its angle from a square cut, and its plane in the donor's scan.
 struct DonorCut {
-  double at_mm = 0.0;  ///< along the donor's axis, from its first point
+  double at_mm = 0.0;  ///< along the donor's axis, from the axis's first point
   double tilt_deg = 0.0;
   glm::dvec3 donor_point_mm{0.0}, donor_normal{0.0, 0.0, 1.0};
 };
@@ -41,7 +41,7 @@ constexpr auto members_of(const MeasuredSegment&) {
                     member("first_cut", &S::first_cut), member("second_cut", &S::second_cut));
 }
 
-/// The bone contact at an osteotomy.
+/// The contact area of both bones at an osteotomy.
 struct MeasuredOsteotomy {
   int number = 1;
   std::string object;

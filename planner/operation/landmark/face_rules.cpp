@@ -8,38 +8,44 @@
 namespace octotomy::planner {
 namespace {
 
-/// Lengths of a face, in millimetres.
+/// Lengths in a face, in millimetres.
 constexpr double rim_step = 8.0;           ///< least depth of the step behind a rim
 constexpr double rim_reach = 3.0;          ///< least length of a rim
 constexpr double above_spine = 4.0;        ///< height above the nasal spine at which the piriform rim is
                                            ///< measured
 constexpr double below_rim = 8.0;          ///< height below the piriform rim at which the buttress is
                                            ///< measured
-constexpr double deepest_buttress = 42.0;  ///< behind the nasal spine; a surface behind this is the ramus
-constexpr double broken = 4.0;             ///< a surface falls back farther where it ends
-constexpr double most_hole = 9.0;          ///< of thin bone; the surface may continue beyond it
+constexpr double deepest_buttress = 42.0;  ///< from the nasal spine backward; a surface behind this is the
+                                           ///< ramus
+constexpr double broken = 4.0;             ///< a larger step backward ends a surface
+constexpr double most_hole = 9.0;          ///< largest width of a hole in thin bone across which the surface
+                                           ///< continues
 constexpr double small_hole = 1.1;         ///< of a voxel
-constexpr double blurred_step = 3.0;       ///< over which the slope of a step extends
-constexpr double two_ends = 3.0;           ///< largest distance between two results for its end
-constexpr double orbit_above_nose = 6.0;   ///< a height within the orbits, over the nose's opening
+constexpr double blurred_step = 3.0;       ///< width of the slope that blur makes of a step
+constexpr double two_ends = 3.0;           ///< largest distance between two results for the maxilla's outer
+                                           ///< end
+constexpr double orbit_above_nose = 6.0;   ///< a height within the orbits, above the top of the nose's
+                                           ///< opening
 constexpr double least_orbit = 18.0, most_orbit = 42.0;  ///< from the mid-plane
 constexpr double orbit_height = 32.0;
-constexpr double two_rims = 8.0;  ///< largest distance between two rules' results for a rim
-constexpr double crest = 6.0;     ///< no bone within this distance below a rim's crest stands in front of the
-                                  ///< crest
-/// Places within these distances of the outermost count as equally far out, because of noise, and as
-/// equally far down and back, because of pitch.
+constexpr double two_rims = 8.0;  ///< largest distance between the results of two rules for a rim
+constexpr double crest = 6.0;     ///< on a crest, no bone within this distance below stands in front of it
+/// Places within `as_far_out` of the outermost one count as equally far out, because of noise. Places within
+/// `as_far_down` count as equally far down and back, because of an uncertain pitch.
 constexpr double as_far_out = 0.25, as_far_down = 1.0;
 constexpr double arch_begin = 15.0, arch_end = 78.0;  ///< behind the nasal spine
-constexpr double arch_beyond = 16.0;                  ///< the arch of a large head may extend by this much
-constexpr double arch_end_dip = 0.6;                  ///< least inward step of the bone behind it
+constexpr double arch_beyond = 16.0;                  ///< the arch of a large head may extend this far beyond
+                                                      ///< arch_end
+constexpr double arch_end_dip = 0.6;                  ///< behind the arch's outermost place the bone must
+                                                      ///< step inward by this
 constexpr double least_half_face = 45.0, most_half_face = 80.0;
-constexpr double least_angle = 34.0, most_angle = 75.0;  ///< the mandible's, from the mid-plane
+constexpr double least_angle = 34.0, most_angle = 75.0;  ///< of the mandible's angle from the mid-plane
 constexpr double angle_begin = 40.0, angle_end = 88.0;   ///< behind the chin
-constexpr double angle_share = 0.6;  ///< an angle lies below this share of the height from chin to nasal
-                                     ///< spine
+constexpr double angle_share = 0.6;  ///< the mandible's angle lies below this share of the height from chin
+                                     ///< to nasal spine
 constexpr double nose_root = 12.0;   ///< over the nose's opening
-constexpr double nose_root_width = 2.0, nose_root_depth = 30.0;  ///< beside the mid-plane; behind the nose
+constexpr double nose_root_width = 2.0, nose_root_depth = 30.0;  ///< distance beside the mid-plane; largest
+                                                                 ///< depth behind the nose
 
 using Side = std::pair<const char*, double>;
 constexpr std::array<Side, 2> sides{{{"_left", 1.0}, {"_right", -1.0}}};
@@ -60,15 +66,15 @@ class Face {
   void place(const std::string& name, const glm::dvec3& at) { found_.places[name + side_.first] = at; }
   void doubt(const std::string& name, double mm) { found_.doubt_mm[name + side_.first] = mm; }
   void miss(const std::string& name, const std::string& why) { found_.missing[name + side_.first] = why; }
-  /// The backward coordinate where bone begins, at `out_mm` to this side.
+  /// The backward coordinate at which bone begins, at the distance `out_mm` from the mid-plane on this side.
   double front(double out_mm, int row) const {
     return maps_.front.at(maps_.front.column(side_.second * out_mm), row);
   }
   const HeadMap& from_side() const { return side_.second > 0.0 ? maps_.left : maps_.right; }
   double step() const { return maps_.front.step_mm(); }
 
-  /// Searches from the mid-line outwards for the first bone as far in front as the rim, and for the end of
-  /// its surface.
+  /// Finds the rim of the nose's opening: the first bone from the mid-line outwards that is about as far in
+  /// front as the foremost. Then finds the outer end of that surface, the buttress.
   void piriform_and_buttress() {
     const glm::dvec3* ans = found_.find("ans");
     if (ans == nullptr) {
@@ -89,10 +95,10 @@ class Face {
     const int row = maps_.front.row(ans->z + above_spine + higher_mm_);
     const double rim = rim_at(row);
     if (rim < 0.0) {
-      miss("piriform", "no rim projects in front of the inside of the nose");
-      return miss("buttress", "no rim projects in front of the inside of the nose");
+      miss("piriform", "no rim of the nose's opening stands in front of its inside");
+      return miss("buttress", "no rim of the nose's opening stands in front of its inside");
     }
-    // A second rule: the largest backward step of the surface within 1.5 mm.
+    // Second rule: the outer end of the largest forward rise of the surface over 1.5 mm.
     double step_back = rim, most = 0.0;
     for (double out = 4.0; out <= 24.0; out += step()) {
       const double deep = front(out, row),
@@ -101,13 +107,13 @@ class Face {
       if (std::isfinite(next) && rise > most) most = rise, step_back = out + 1.5;
     }
     if (std::abs(step_back - rim) > two_rims)
-      miss("piriform", "two rules for the rim of the nose's opening have results more than 8 mm apart");
+      miss("piriform", "two rules for the rim of the nose's opening gave results more than 8 mm apart");
     else {
       place("piriform", {side_.second * rim, front(rim, row), maps_.front.y_mm(row)});
       doubt("piriform", 0.7 * std::abs(step_back - rim));
     }
     const int lower = maps_.front.row(ans->z + above_spine - below_rim + higher_mm_);
-    // Goes outwards from the rim until the surface breaks off or a hole follows.
+    // Goes outwards from the rim until the surface steps back by `break_mm` or a hole of `hole_mm` follows.
     const double begin = std::max(rim_at(lower), rim) + 1.0;
     const auto end_at = [&](double hole_mm, double break_mm) {
       double out = begin;
@@ -116,19 +122,21 @@ class Face {
       return out;
     };
     const double out = end_at(most_hole, broken);
-    // Bone behind a hole or a smaller step may be another bone; blur turns a step into a slope.
+    // The end is unclear if a smaller step or hole gives another end, because the bone behind may be another
+    // bone. Blur makes a slope of a step.
     bool is_clear = out - end_at(small_hole, 0.6 * broken) <= two_ends;
     for (double at = begin; at < out - two_ends && is_clear; at += step())
       is_clear = !(front(at + blurred_step, lower) - front(at, lower) > 2.0 * broken);
     if (!is_clear)
-      return miss("buttress", "the maxilla has no clear outer end: steps or holes lie before it");
+      return miss("buttress", "the maxilla has no clear outer end, because its surface has steps or holes");
     if (out + step() >= most_half_face || !(out > rim + 10.0) ||
         front(out, lower) > ans->y + deepest_buttress)
-      return miss("buttress", "the maxilla's outer end is not seen from the front");
+      return miss("buttress", "the maxilla's outer end is not visible from the front");
     place("buttress", {side_.second * out, front(out, lower), maps_.front.y_mm(lower)});
   }
 
-  /// The orbit's rim in a column, the first crest on the way down from the orbit's depth; -1: none.
+  /// The row of the orbit's rim in a column: the first crest below the row `first` within the orbit; -1:
+  /// none.
   int rim_row(double out, int first) const {
     const double inside = front(out, first);
     const int rows = static_cast<int>(orbit_height / step()), below = static_cast<int>(crest / step());
@@ -143,8 +151,7 @@ class Face {
     return -1;
   }
 
-  /// Starts at the crest's row and returns the slightly higher row in which the rim faces as much up as
-  /// forward.
+  /// The row at or slightly above a crest's row in which the rim faces as much up as forward; -1 stays -1.
   int edge_row(double out, int crest_row) const {
     if (crest_row < 0) return crest_row;
     int best = crest_row;
@@ -167,7 +174,7 @@ class Face {
       std::sort(five.begin(), five.end());
       if (five[0] >= 0) rims.emplace_back(five[2], out - 2.0 * step());
     }
-    if (rims.empty()) return miss("orbitale", "no rim of an orbit is seen from the front");
+    if (rims.empty()) return miss("orbitale", "no rim of an orbit is visible from the front");
     const int lowest = std::min_element(rims.begin(), rims.end())->first;
     std::vector<double> across;
     for (const auto& [row, out] : rims)
@@ -180,11 +187,13 @@ class Face {
   using Reach = std::function<std::optional<double>(const glm::dvec3&)>;
   struct Window {
     glm::dvec2 low, high;    ///< back and up
-    double as_far = 0.0;     ///< within which places reach as far
-    double beyond_mm = 0.0;  ///< beyond the window, unless the bone ended there
+    double as_far = 0.0;     ///< places within this of the farthest count as equally far
+    double beyond_mm = 0.0;  ///< the search continues this far beyond the window if the bone has not ended
+                             ///< there
   };
 
-  /// The points of a column of the map seen from this side that lie at `least` or beyond.
+  /// The points in a column of this side's map, within the window's heights, whose measure is at least
+  /// `least`; each with its measure.
   std::vector<std::pair<double, glm::dvec3>> reaching(int column, const Window& window, const Reach& reach,
                                                       double least) const {
     const HeadMap& map = from_side();
@@ -198,8 +207,8 @@ class Face {
     return found;
   }
 
-  /// The mean of the places of the map from this side that reach farthest by a measure. Any of these places
-  /// may be the farthest.
+  /// The mean of the places in this side's map whose measure is largest or equally large; none if the window
+  /// cuts off the extremum. Sets the doubt to the distance from the mean to the farthest of these places.
   std::optional<glm::dvec3> farthest(const std::string& name, const Window& window, const Reach& reach) {
     const HeadMap& map = from_side();
     double most = -std::numeric_limits<double>::infinity(), end_mm = window.high.x;
@@ -221,7 +230,7 @@ class Face {
     if (near.empty()) return std::nullopt;
     glm::dvec3 mean(0.0);
     for (const auto& [value, at] : near) mean += at / static_cast<double>(near.size());
-    // At the window's end, the position is not an extremum of the bone.
+    // At the window's end, the largest measure is not an extremum of the bone.
     if (mean.y > end_mm - 1.0 || mean.y < window.low.x + 1.0 || mean.z > window.high.y - 1.0)
       return std::nullopt;
     double far_mm = 0.0;
@@ -234,13 +243,14 @@ class Face {
     const glm::dvec3* ans = found_.find("ans");
     const glm::dvec3* orbitale = found_.find(std::string("orbitale") + side_.first);
     if (ans == nullptr || orbitale == nullptr)
-      return miss("zygoma", "it is sought between the nasal spine and the orbit, which were not both found");
+      return miss("zygoma",
+                  "it is searched for between the nasal spine and the orbit, and one of them was not found");
     const auto outermost = farthest(
         "zygoma",
         {{ans->y + arch_begin, ans->z}, {ans->y + arch_end, orbitale->z + 5.0}, as_far_out, arch_beyond},
         [](const glm::dvec3& at) { return std::optional(at.x); });
     if (!outermost || std::abs(outermost->x) < least_half_face)
-      return miss("zygoma", "no arch is seen from the side");
+      return miss("zygoma", "no zygomatic arch is visible from the side");
     place("zygoma", *outermost);
   }
 
@@ -248,7 +258,7 @@ class Face {
     const glm::dvec3* menton = found_.find("menton");
     const glm::dvec3* ans = found_.find("ans");
     if (menton == nullptr || ans == nullptr)
-      return miss("gonion", "it is sought between chin and nasal spine, which were not both found");
+      return miss("gonion", "it is searched for between chin and nasal spine, and one of them was not found");
     const auto most = farthest("gonion",
                                {{menton->y + angle_begin, menton->z - 5.0},
                                 {menton->y + angle_end, menton->z + angle_share * (ans->z - menton->z)},
@@ -257,7 +267,7 @@ class Face {
                                  if (at.x < least_angle || at.x > most_angle) return std::nullopt;
                                  return (at.y - at.z) / std::sqrt(2.0);
                                });
-    if (!most) return miss("gonion", "no angle of a mandible is seen from the side");
+    if (!most) return miss("gonion", "no angle of a mandible is visible from the side");
     place("gonion", *most);
   }
 
@@ -284,7 +294,7 @@ void find_nose_root(const HeadMaps& maps, const NasalOpening& nose, FoundPlaces&
     found.places["midline_front"] = {profile.middle_mm[static_cast<std::size_t>(profile.row(root_mm))],
                                      back(root_mm), root_mm};
   else
-    found.missing["midline_front"] = "no bone is seen over the nose's opening";
+    found.missing["midline_front"] = "no bone is visible above the nose's opening";
 }
 
 }  // namespace octotomy::planner

@@ -18,7 +18,7 @@
 
 namespace octotomy::planner {
 
-/// Names and texts of the definitions in this folder; made when the program is configured.
+/// Names and texts of the definition files in this folder. CMake writes this table.
 const std::vector<std::pair<std::string, std::string>>& landmarks_files();
 
 namespace {
@@ -26,7 +26,7 @@ namespace {
 /// A landmark's entry in the definitions of this folder.
 struct Meaning {
   std::string name, says;
-  double least_mm = 0.0;  ///< the least error that any rule has against human observers
+  double least_mm = 0.0;  ///< the least error, due to differences between human observers
 };
 constexpr auto members_of(const Meaning&) {
   return std::tuple(member("name", &Meaning::name), member("says", &Meaning::says),
@@ -66,12 +66,14 @@ LandmarkGuesses guesses_of(const SkullGuess& guess) {
   return made;
 }
 
-/// The guesses, or the reason why there are none as their finding.
+/// The guesses for an object. If there are none, the finding states the reason.
 LandmarkGuesses guessed(const Object& object, const AnswerBench& bench) {
   const auto nothing = [](const std::string& why) { return LandmarkGuesses{{}, {}, {}, {why}}; };
-  if (object.voxel.octree.is_empty()) return nothing("'" + object.id + "' is empty: it has no landmarks");
+  if (object.voxel.octree.is_empty()) return nothing("'" + object.id + "' is empty, so it has no landmarks");
   if (!object.mesh.within || object.mesh.within->empty())
-    return nothing("it has no mesh, whose symmetry gives the mid-plane");
+    return nothing(
+        "it has no mesh, but the mid-plane is computed from the symmetry of the mesh: see the object's "
+        "findings");
   try {
     return guesses_of(
         guess_landmarks(drawn(object, glm::vec3(1.0f)), *object.mesh.within, bench.progress("landmarks")));
@@ -89,14 +91,14 @@ Json measure(const FindLandmarks& asked, const AnswerBench& bench) {
   return json;
 }
 
-/// The bone's surface, for the fit of the mid-plane.
+/// The bone's surface, to which the mid-plane is fitted: the mesh file, or the isosurface of the samples.
 brep::Mesh surface_of(const std::filesystem::path& file, const voxel::DrawnObject& bone,
                       const FileBench& bench) {
   if (is_mesh(file)) return read_surface(file, bench.timings);
   if (!bone.grey)
     throw std::runtime_error(
         file.string() +
-        ": has no samples, and the mid-plane is fitted to their surface: give the scan or a mesh");
+        ": has no samples from which a surface could be made for the mid-plane: name the scan or a mesh");
   const Stopwatch watch(bench.timings, "surface");
   return brep::mesh_of(convert::isosurface(
       *bone.grey, bone.threshold, std::numeric_limits<double>::infinity(), bench.progress("surface")));
@@ -106,13 +108,14 @@ FileAnswer on_files(const FindLandmarks& asked, const FileBench& bench) {
   if (!asked.out.empty()) {
     need_folder_of(asked.out);
     if (asked.out.extension() != ".json")
-      throw std::runtime_error(asked.out.string() + ": landmarks are written as .json");
+      throw std::runtime_error(asked.out.string() +
+                               ": landmarks can only be written as .json: choose that extension");
   }
   const std::filesystem::path file = asked.object.name;
   if (asked.window.high && !is_mesh(file))
     throw std::runtime_error(
         "--window " + to_string(asked.window) +
-        ": landmarks are found on bone without an upper limit, for example --window 300:");
+        ": bone for landmarks must have no upper limit: write for example --window 300:");
   Render render;
   render.window = asked.window;
   const voxel::DrawnObject bone = drawn_of_files(render, {asked.object}, bench).front();
@@ -140,22 +143,19 @@ FileAnswer on_files(const FindLandmarks& asked, const FileBench& bench) {
 }  // namespace
 
 Operation find_landmarks_operation() {
-  return Describe<FindLandmarks>(
-             "find_landmarks",
-             "Guesses the positions of a skull's landmarks from its symmetry and its foremost, "
-             "lowest and outermost "
-             "points; each is to be confirmed.",
-             Makes::Measurement)
+  return Describe<FindLandmarks>("find_landmarks",
+                                 "Guesses the positions of a skull's landmarks from its symmetry and its "
+                                 "foremost, lowest and outermost points. A person must confirm each of them.",
+                                 Makes::Measurement)
       .takes(field("object", &FindLandmarks::object,
                    "The skull: an object; on the command line a scan or a mesh.")
                  .required()
                  .positional("file"))
-      .verb_takes(field("window", &FindLandmarks::window,
-                        "For a scan: LOW:HIGH or LOW: in sample units, or a tissue."))
       .verb_takes(
-          field("out", &FindLandmarks::out,
-                "The .json of the guesses. Look at each, correct it, and set its 'confirmed' to true: "
-                "procedures and plans refuse it until then."))
+          field("window", &FindLandmarks::window, "The bone in a scan: LOW: in sample units, or a tissue."))
+      .verb_takes(field("out", &FindLandmarks::out,
+                        "A .json file for the guesses. Check and correct each of them and set its "
+                        "'confirmed' to true; until then, procedures and plans refuse the file."))
       .reads_scans()
       .example(R"({"id": "guess", "do": "find_landmarks", "object": "rest"})")
       .on_files("octotomy find_landmarks head.nrrd -o marks.json", on_files)

@@ -27,30 +27,32 @@ namespace octotomy::planner {
 namespace {
 
 constexpr double unbounded = std::numeric_limits<double>::infinity();
-constexpr double least_left = 0.86;  ///< of the mid-plane's normal: turned and rolled by 20 degrees
-/// Shares of the surface that have a counterpart, for the fit and for its doubt.
+constexpr double least_left = 0.86;  ///< least component along LPS left of the mid-plane's normal, for a head
+                                     ///< turned and rolled by 20 degrees
+/// Shares of the surface that are assumed to have a mirrored counterpart: for the fit, and for the other fits
+/// that show its error.
 constexpr double usual_overlap = 0.7;
 constexpr std::array<double, 2> other_overlaps{0.55, 0.85};
-constexpr double plane_rest_mm =
-    0.02;                          ///< a fit ends with a round that moves the surface less than this, which
-                                   ///< does not change results
-constexpr double coarse_mm = 1.0;  ///< step of the maps of other trials
-/// Pitches in degrees at which a face is searched for, nearest first; and the number of corrections of its pitch.
+constexpr double plane_rest_mm = 0.02;  ///< a fit ends with a round that moves the surface by less than this,
+                                        ///< which changes no result
+constexpr double coarse_mm = 1.0;       ///< cell size of the maps in the other trials
+/// Pitches in degrees at which a face is searched for, nearest first; then the number of times that the pitch
+/// is corrected.
 constexpr std::array<double, 5> first_pitches{0.0, 12.0, -12.0, 24.0, -24.0};
 constexpr int corrections = 2;
-/// Angles in a head that is level by its Frankfurt plane: by `nose_lean_deg` the line from spine to nasion
-/// leans back from upright; by `arch_fall_deg` the line from the orbit's rim back to the arch's outermost
-/// point falls, about 4 mm over 45. No face leans by more than `most_lean_deg`.
+/// Angles in a head whose Frankfurt plane is level. The line from spine to nasion leans back from upright by
+/// `nose_lean_deg`. The line from the orbit's rim back to the arch's outermost point falls by
+/// `arch_fall_deg`, about 4 mm over 45 mm. Lines that lean by more than `most_lean_deg` are not a face's.
 constexpr double nose_lean_deg = 1.0, arch_fall_deg = 5.0, most_lean_deg = 35.0;
-/// Changes of the other trials: of the head's pitch in degrees, of the profile's half width and of the
-/// rules' heights in mm.
+/// The changes of each other trial: the head's pitch in degrees, the half width of the profile in mm, and the
+/// shift of the rules' heights in mm.
 constexpr std::array<std::array<double, 3>, 4> other_ways{
     {{6.0, 1.0, 1.5}, {3.0, 3.0, -1.0}, {-3.0, 1.0, 1.0}, {-6.0, 3.0, -1.5}}};
-constexpr double threshold_share = 1.25;  ///< a higher threshold over the usual one, from -150 on
-/// Factors of the error interval: on the scatter of the trials, and on the edge of the coarsest voxel.
+constexpr double threshold_share = 1.25;  ///< ratio of a higher threshold to the usual one, both counted from
+                                          ///< -150 HU
+/// Factors in a landmark's error: of the scatter of the trials, and of the edge of the coarsest voxel.
 constexpr double of_scatter = 1.3, of_voxel = 0.7;
-constexpr double scan_end_mm = 2.0;      ///< more than a voxel; as the constant of this meaning in
-                                         ///< skull_profile.cpp
+constexpr double scan_end_mm = 2.0;      ///< more than a voxel; equal to scan_end in skull_profile.cpp
 constexpr double most_within_mm = 15.0;  ///< a landmark with a larger error is not reported
 constexpr double least_plane_deg = 0.5;
 
@@ -64,7 +66,7 @@ brep::MirrorFit mid_plane_of(const brep::Mesh& surface, double overlap,
   return brep::fit_mirror_plane(surface, options);
 }
 
-/// One application of the rules, with all that a guess depends on.
+/// One trial: the rules applied with one set of assumptions, on which every guess depends.
 struct Trial {
   const voxel::DrawnObject* bone = nullptr;
   brep::MirrorPlane plane;
@@ -74,8 +76,8 @@ struct Trial {
   double higher_mm = 0.0;
 };
 
-/// The outer surface of the skull's wall in the mid-plane, on the way from the cavity; none where the scan
-/// ends before.
+/// The outer surface of the skull's wall in the mid-plane, searched from the brain's cavity along a
+/// direction; none if the scan ends before it.
 std::optional<glm::dvec3> outer_wall(const voxel::Octree& bone, const glm::dvec3& from_mm,
                                      const glm::dvec3& way) {
   constexpr double step_mm = 0.5, far_mm = 160.0, least_wall_mm = 1.5, most_gap_mm = 6.0;
@@ -94,7 +96,7 @@ std::optional<glm::dvec3> outer_wall(const voxel::Octree& bone, const glm::dvec3
   return std::nullopt;
 }
 
-/// Landmarks of one trial in the head's frame; none where there is no face.
+/// The landmarks of one trial in the head's frame; none if it finds no face.
 FoundPlaces apply(const Trial& trial, const HeadFrame& frame) {
   const HeadMaps maps = map_head(*trial.bone, frame, trial.step_mm);
   Profile profile = profile_of(maps.front, trial.half_width_mm);
@@ -104,7 +106,7 @@ FoundPlaces apply(const Trial& trial, const HeadFrame& frame) {
   profile.chin_notch_mm = chin_notch(maps.front, profile, *nose);
   FoundPlaces found = places_of_profile(profile, *nose);
   find_face_places(maps, *nose, trial.higher_mm, found);
-  // A neck under an occiput may look like the maxilla under a nose, but has no orbits.
+  // An occiput over a neck may look like a nose over a maxilla, but it has no orbits.
   if (found.find("orbitale_left") == nullptr && found.find("orbitale_right") == nullptr) return {};
   find_nose_root(maps, *nose, found);
   return found;
@@ -137,7 +139,7 @@ std::optional<double> to_raise_deg(const FoundPlaces& found) {
   return count > 0.0 ? std::optional(sum / count) : std::nullopt;
 }
 
-/// The pitch at which the Frankfurt plane is horizontal; none: no face.
+/// The pitch at which the Frankfurt plane is horizontal; none if no face is found.
 std::optional<double> held_pitch(const voxel::DrawnObject& bone, const brep::MirrorPlane& plane,
                                  const voxel::Progress& progress) {
   std::optional<double> of_face_alone;
@@ -159,12 +161,12 @@ std::optional<double> held_pitch(const voxel::DrawnObject& bone, const brep::Mir
   return of_face_alone;
 }
 
-/// The largest distance of the trials' results from the first one's. One trial may have no result, or one so
-/// far away that it belongs to another structure, as where a higher threshold opens thin bone; with two such
-/// trials the scatter is unbounded.
+/// The largest distance of the trials' results from the first trial's result. One trial may have no result or
+/// one that is far away and thus on another structure, for example if a higher threshold opens thin bone.
+/// With two such trials the scatter is infinite.
 double scatter(const std::string& name, const glm::dvec3& first_mm, const std::vector<FoundPlaces>& others,
                const glm::dvec3& across) {
-  // Any point of the mid-line is valid; only its sideways distance counts.
+  // Any point of the mid-line is valid, so only the distance across the mid-plane counts.
   const bool is_of_midline = name.starts_with("midline_");
   double most = 0.0;
   int without = 0;
@@ -180,7 +182,7 @@ double scatter(const std::string& name, const glm::dvec3& first_mm, const std::v
   return most;
 }
 
-/// The bone from a higher threshold on; none if the object has no samples.
+/// The bone above a higher threshold; none if the object has no samples.
 std::optional<voxel::DrawnObject> with_higher_threshold(const voxel::DrawnObject& bone) {
   if (!bone.grey) return std::nullopt;
   constexpr double zero = -150.0;
@@ -192,7 +194,7 @@ std::optional<voxel::DrawnObject> with_higher_threshold(const voxel::DrawnObject
   return other;
 }
 
-/// Whether the samples end within scan_end_mm of a point, so that the bone may go on beyond.
+/// Whether the samples end within scan_end_mm of a point, so that the bone may continue beyond.
 bool is_at_scan_end(const voxel::DrawnObject& bone, const glm::dvec3& p_mm) {
   if (!bone.grey) return false;
   const voxel::Lattice lattice = bone.octree.universe().lattice();
@@ -211,12 +213,12 @@ double angle_deg(const glm::dvec3& a, const glm::dvec3& b) {
   return glm::degrees(std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)));
 }
 
-/// Adds the points of the brain case, which are found from inside. Their rule is the same in all trials
-/// except for the mid-plane.
+/// Adds the points of the brain case, which are searched for from inside. Their rule is the same in all
+/// trials except for the mid-plane.
 void add_brain_case(const HeadPart& head, const HeadFrame& frame, FoundPlaces& found) {
   const auto reach = [&](const char* name, const glm::dvec3& way, const char* missing) {
     if (!head.cavity_mm) {
-      found.missing[name] = "the bone surrounds no brain case in this scan";
+      found.missing[name] = "the bone in this scan surrounds no brain case";
       return;
     }
     const double aside = glm::dot(*head.cavity_mm, frame.left) - frame.mid_mm;
@@ -230,8 +232,8 @@ void add_brain_case(const HeadPart& head, const HeadFrame& frame, FoundPlaces& f
   reach("midline_top", frame.up, "the scan ends below the top of the skull");
 }
 
-/// A point was searched for from other points. Removes it if one of those is missing in the end, and so is
-/// the point's counterpart on the other side: then nothing confirms it.
+/// Some landmarks are searched for from other landmarks. Removes such a landmark if one of those was not
+/// found and its counterpart on the other side was not found either, because then nothing confirms it.
 void take_out_unfounded(std::vector<LandmarkGuess>& found, std::map<std::string, std::string>& missing) {
   const auto take_out = [&](const std::string& name, const std::string& opposite,
                             const std::vector<std::string>& sources) {
@@ -239,8 +241,8 @@ void take_out_unfounded(std::vector<LandmarkGuess>& found, std::map<std::string,
     for (const std::string& source : sources)
       if (missing.contains(source) &&
           std::erase_if(found, [&](const LandmarkGuess& at) { return at.name == name; }) > 0)
-        missing[name] =
-            "it is sought from " + source + ", which was not found, and it is missing on the other side, too";
+        missing[name] = "it is sought from " + source +
+                        ", which was not found, and the landmark is missing on the other side, too";
   };
   for (const auto& [side, opposite] :
        {std::pair<std::string, std::string>("_left", "_right"), {"_right", "_left"}}) {
@@ -263,17 +265,18 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
   const brep::MirrorPlane plane = guess.mid_plane.plane;
   if (plane.normal.x < least_left)
     throw std::runtime_error(
-        "the bone's symmetry does not part left from right: is it a skull, turned by at most 20 degrees?");
+        "the bone's plane of symmetry does not separate left from right: check that the object is a skull "
+        "that is turned by at most 20 degrees");
   const std::optional<double> pitch = held_pitch(bone, plane, progress);
   const Trial usual{&bone, plane, pitch.value_or(0.0), head_map_step_mm};
   const HeadFrame frame = frame_of(usual);
   FoundPlaces first = pitch ? apply(usual, frame) : FoundPlaces();
   if (first.places.empty())
     throw std::runtime_error(
-        "no nasal opening beside an orbit is visible from the front, but all rules start there: check that "
-        "the object is a skull with its face in the scan, and that the window selects bone");
+        "no nasal opening next to an orbit is visible from the front, and all rules start from these: check "
+        "that the object is a skull with its face in the scan, and that the window selects bone");
 
-  // The trials: other pitches, widths, heights, thresholds and mid-planes.
+  // The other trials, with changed pitches, widths, heights, thresholds and mid-planes.
   std::vector<Trial> trials;
   for (const auto& [pitch_deg, width_mm, higher_mm] : other_ways)
     trials.push_back({&bone, plane, *pitch + pitch_deg, coarse_mm, width_mm, higher_mm});
@@ -286,8 +289,8 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
   }
   guess.mid_plane_within_deg = least_plane_deg + of_scatter * plane_deg;
   add_brain_case(head, frame, first);
-  // The middle of unlike halves is uncertain by about their distance. A rotation of the plane about its own
-  // point displaces it in proportion to the distance from that point.
+  // If the two halves differ, the position of the mid-plane is uncertain by about their distance. A rotation
+  // of the plane about its fitted point displaces it in proportion to the distance from that point.
   for (const auto& [name, place] : first.places)
     if (name.starts_with("midline_"))
       first.doubt_mm[name] +=
@@ -302,8 +305,8 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
     const bool has_face = !found.places.empty();
     add_brain_case(head, other, found);
     for (auto& [name, place] : found.places) place = other.lps_mm(place);
-    // A trial that did not find this face is ignored: a higher threshold may open the orbits' floors, or
-    // another edge may be mistaken for the spine, from which other rules start. Any other trial counts.
+    // A trial that did not find this face is ignored: a higher threshold may open the floors of the orbits,
+    // or the rules may start from another edge than the spine. Every other trial counts.
     const glm::dvec3 *spine = first.find("ans"), *its = found.find("ans");
     const bool is_this_face = has_face && (spine == nullptr || its == nullptr ||
                                            glm::distance(frame.lps_mm(*spine), *its) <= most_within_mm);
@@ -318,8 +321,8 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
   for (const auto& [name, place] : first.places) {
     const glm::dvec3 p_mm = frame.lps_mm(place);
     const double moved = scatter(name, p_mm, others, plane.normal);
-    // A middle beside the mid-plane is a separate finding: the face is crooked, or there is bone on one
-    // side only.
+    // A finding of its own reports that the face's middle lies beside the mid-plane: the face is crooked, or
+    // bone is missing on one side.
     const bool is_of_middle =
         name.find("_left") == std::string::npos && name.find("_right") == std::string::npos;
     const double aside = is_of_middle ? 0.5 * std::abs(place.x) : 0.0;
@@ -328,26 +331,27 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& all_bone, const brep::Mesh&
     if (is_at_scan_end(bone, p_mm))
       missing[name] = "the scan ends there";
     else if (first.doubt_mm[name] > most_within_mm)
-      missing[name] = "the bone is so flat there that its extremal point is uncertain by more than 15 mm";
+      missing[name] =
+          "the bone is so flat there that the position of its extremal point is uncertain by more than 15 mm";
     else if (!(within_mm <= most_within_mm))
-      missing[name] = "a slightly different position of the head moves it far or loses it";
+      missing[name] = "under a slightly different position of the head it is not found, or lies far away";
     else
       guess.found.push_back({name, p_mm, within_mm});
   }
-  // As in keep_plausible(): a buttress is removed if the other side's buttress is missing.
+  // As in keep_plausible(), a buttress is removed if the buttress on the other side is missing.
   for (const auto& [one, other] :
        {std::pair("buttress_left", "buttress_right"), {"buttress_right", "buttress_left"}})
     if (missing.contains(other) &&
         std::erase_if(guess.found,
                       [name = std::string(one)](const LandmarkGuess& at) { return at.name == name; }) > 0)
-      missing[one] = "the other side's landmark was not found, which it must match";
+      missing[one] = "the landmark on the other side was not found, so this one cannot be checked";
   take_out_unfounded(guess.found, missing);
   guess.missing.assign(missing.begin(), missing.end());
   guess.findings = guess.mid_plane.findings;
   if (head.removed_count > 0)
     guess.findings.push_back(
         std::to_string(head.removed_count) +
-        " other dense parts lie beside the skull and were left out, such as a couch or a marker");
+        " other dense parts beside the skull, such as a couch or a marker, were left out");
   return guess;
 }
 

@@ -12,9 +12,9 @@ namespace {
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr int most_px = 1024;
 
-/// A view's picture: the depth along `look` at every pixel, over (right, up).
+/// A depth picture of a view: the depth along `look` at each pixel, over the axes (right, up).
 HeadMap depths(const voxel::DrawnObject& bone, const voxel::View& view, double step_mm) {
-  // A frame around the bone, of any size, gives its extent; the picture itself has pixels of a stated width.
+  // The extent comes from a frame around the bone. The picture is then drawn with pixels of the stated width.
   const voxel::Frame about = voxel::frame_about({bone}, view, {256, 256});
   voxel::RenderOptions options;
   options.view = view;
@@ -38,7 +38,7 @@ HeadMap depths(const voxel::DrawnObject& bone, const voxel::View& view, double s
   return map;
 }
 
-/// A map of the size and rows of another one.
+/// An empty map with the size and rows of another map.
 template <typename Value>
 HeadMap filled(const HeadMap& like, double first_x_mm, const Value& value) {
   HeadMap map(like.size(), {first_x_mm, like.y_mm(0)}, like.step_mm());
@@ -84,8 +84,8 @@ HeadMaps map_head(const voxel::DrawnObject& bone, const HeadFrame& frame, double
   const HeadMap front = depths(bone, {frame.back, frame.up, frame.left}, step_mm);
   const HeadMap from_left = depths(bone, {-frame.left, frame.up, frame.back}, step_mm);
   const HeadMap from_right = depths(bone, {frame.left, frame.up, -frame.back}, step_mm);
-  // Depths grow away from the observer: in the view from the left towards the patient's right, and in the
-  // view from the right towards the left. The view from the right has the back on its left.
+  // Depths increase away from the observer: from the left view towards the patient's right, from the right
+  // view towards the left. In the view from the right, back is on the left of the picture.
   const int last = from_right.size().x - 1;
   return {
       frame, filled(front, front.x_mm(0) - frame.mid_mm, [&](int i, int j) { return front.at(i, j); }),

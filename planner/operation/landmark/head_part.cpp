@@ -21,12 +21,12 @@ namespace {
 
 constexpr double cell_mm = 2.0;
 constexpr std::size_t most_parts = 8;       ///< a bit each
-constexpr double least_part_mm3 = 300.0;    ///< a tooth's; smaller parts hold no landmark
-constexpr double least_cavity_mm3 = 2.0e5;  ///< of a brain case, or of the part of it in the scan
+constexpr double least_part_mm3 = 300.0;    ///< about a tooth; smaller parts contain no landmark
+constexpr double least_cavity_mm3 = 2.0e5;  ///< least space of a brain case, or of its part in the scan
 constexpr double tissue_hu = -300.0;        ///< between air and soft tissue
-constexpr double least_cover = 0.7;         ///< of a part's surface, by soft tissue
-constexpr double least_skull_cover = 0.6;   ///< below which the skull is dry
-constexpr double least_within = 0.6;        ///< of a part's cells in the skull's surroundings
+constexpr double least_cover = 0.7;         ///< least share of a part's surface that tissue covers
+constexpr double least_skull_cover = 0.6;   ///< if tissue covers less of the skull, the skull is dry
+constexpr double least_within = 0.6;        ///< least share of a part's cells in the skull's surroundings
 constexpr double aside_mm = 12.0, before_mm = 25.0, behind_mm = 3.0;  ///< the surroundings
 
 class Cells {
@@ -44,7 +44,7 @@ class Cells {
   const glm::ivec3& step() const { return step_; }
   double cell_mm3() const { return size_mm_.x * size_mm_.y * size_mm_.z; }
 
-  /// The cells that each part surrounds: their number and centre.
+  /// For each part, the number and the centre of the cells that it surrounds.
   struct Surrounded {
     double cells = 0.0;
     glm::dvec3 sum_voxel{0.0};
@@ -66,7 +66,7 @@ class Cells {
     return all;
   }
 
-  /// The share of a part's surface beyond which samples are tissue; none without samples.
+  /// The share of a part's surface next to which samples are tissue; none if there are no samples.
   std::optional<double> cover(std::size_t part) const {
     if (!bone_.grey) return std::nullopt;
     const std::optional<glm::dmat4> still = bone_.still_from_voxel();
@@ -80,7 +80,7 @@ class Cells {
         if (at_cell(at + off) != 0 || at_cell(at + 2 * off) != 0) continue;
         const glm::dvec3 voxel = voxel_of(at + 2 * off);
         const glm::dvec3 sample = still ? glm::dvec3(*still * glm::dvec4(voxel, 1.0)) : voxel;
-        // The scan's end is not a surface of the part.
+        // Where the scan ends, the part has no surface.
         if (!bone_.grey->scan().contains(glm::ivec3(glm::round(sample)))) continue;
         outside += 1.0;
         if (bone_.grey->step() * voxel::interpolate(*bone_.grey, sample, voxel::Interpolation::Nearest) >=
@@ -91,9 +91,9 @@ class Cells {
     return outside > 0.0 ? covered / outside : 1.0;
   }
 
-  /// The share of a part's cells that lie in the surroundings of the skull and below it.
+  /// The share of a part's cells that lie in the skull's surroundings or below the skull.
   double within_surroundings(std::size_t part, std::size_t skull) const {
-    // The skull's extent without the outermost thousandth of its cells on each side.
+    // The skull's extent. On each side the outermost thousandth of its cells is ignored.
     std::array<std::vector<double>, 3> along;
     for (std::size_t i = 0; i < of_.size(); ++i)
       if (of_[i] >> skull & 1)
@@ -120,7 +120,7 @@ class Cells {
     return all > 0.0 ? within / all : 0.0;
   }
 
-  /// Cells that hold one of the parts, and their neighbours.
+  /// Cells that contain voxels of one of the parts, and their neighbours.
   std::vector<bool> near(std::uint8_t kept) const {
     std::vector<bool> is_near(of_.size(), false);
     for (std::size_t i = 0; i < of_.size(); ++i) {
@@ -169,7 +169,7 @@ class Cells {
       });
   }
 
-  /// The parts that were met on the way along an axis to each cell, from its low or its high end.
+  /// For each cell, the parts met along an axis from its low or its high end up to the cell.
   std::vector<std::uint8_t> swept(int axis, bool from_high) const {
     std::vector<std::uint8_t> met(of_.size(), 0);
     const int a = (axis + 1) % 3, b = (axis + 2) % 3;
@@ -191,10 +191,10 @@ class Cells {
   voxel::Universe universe_;
   glm::ivec3 step_{1}, dims_{0};
   glm::dvec3 size_mm_{1.0};
-  std::vector<std::uint8_t> of_;  ///< a bit for each part in the cell
+  std::vector<std::uint8_t> of_;  ///< for each cell, one bit for each part in it
 };
 
-/// The largest components, and how many others there are.
+/// The largest components, and the number of the other components.
 std::vector<voxel::Octree> largest_parts(const voxel::Octree& bone, const voxel::Progress& progress) {
   const double voxel_mm3 = bone.universe().lattice().voxel_mm3();
   voxel::Octree rest =

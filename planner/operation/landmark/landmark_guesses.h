@@ -7,7 +7,7 @@
 
 #include "planner/operation/table/record.h"
 
-// A first guess of a skull's landmarks, as in a result's `measurements`.
+// A first guess of a skull's landmarks: a record below `measurements` in a result.
 namespace octotomy::planner {
 
 struct GuessedLandmark {
@@ -41,7 +41,7 @@ constexpr auto members_of(const MidPlaneGuess&) {
 }
 
 struct LandmarkGuesses {
-  std::optional<MidPlaneGuess> mid_plane;  ///< none where nothing could be found
+  std::optional<MidPlaneGuess> mid_plane;  ///< none if no mid-plane was found
   std::vector<GuessedLandmark> landmarks;
   std::vector<MissingLandmark> missing;
   std::vector<std::string> findings;

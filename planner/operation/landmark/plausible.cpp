@@ -10,8 +10,8 @@
 namespace octotomy::planner {
 namespace {
 
-/// The position of the second relative to the first: height or depth in millimetres, or a share of the nose's
-/// height.
+/// The allowed range of a landmark's position relative to another landmark: height or depth in millimetres,
+/// or as a share of the nose's height.
 struct Relation {
   const char *first, *second;
   enum Of { Below, Behind } of;
@@ -35,12 +35,12 @@ constexpr std::array<Relation, 14> relations{{
     {"nasion", "midline_front", Relation::Behind, false, -14.0, 14.0},
 }};
 
-/// The allowed distances of both sides from the middle, and the allowed differences between the sides:
-/// across, and in the plane along and up.
+/// The allowed distances of a pair of landmarks from the mid-plane, and the allowed differences between its
+/// sides: across the mid-plane, and parallel to it.
 struct Pair {
   const char* name;
   double least_out, most_out, most_across, most_along;
-  bool is_known_by_both = false;  ///< missing where the other side is missing
+  bool is_known_by_both = false;  ///< the landmark is removed if its counterpart is missing
 };
 constexpr std::array<Pair, 5> pairs{{{"piriform", 6.5, 19.0, 5.0, 8.0},
                                      {"orbitale", 18.0, 48.0, 14.0, 9.0},
@@ -67,9 +67,10 @@ void keep_related(FoundPlaces& found) {
       const double value = relation.is_share ? apart / nose_mm : apart;
       if (value >= relation.low && value <= relation.high) continue;
       const std::string where = relation.of == Relation::Below ? "below" : "behind";
-      wrong[second] = "it would lie farther or nearer " + where + " " + relation.first + " than in any face";
-      // It is not known which of the two is wrong.
-      wrong[relation.first] = "it and " + second + " would lie as they do in no face";
+      wrong[second] = "its position is implausible: it would lie farther or nearer " + where + " " +
+                      relation.first + " than in any face";
+      // Either of the two may be wrong.
+      wrong[relation.first] = "it and " + second + " lie at a distance that no face has";
     }
   }
   for (const auto& [name, why] : wrong) take_out(found, name, why);
@@ -81,25 +82,28 @@ void keep_alike(FoundPlaces& found) {
     for (const std::string& name : {left, right})
       if (const glm::dvec3* at = found.find(name))
         if (std::abs(at->x) < pair.least_out || std::abs(at->x) > pair.most_out)
-          take_out(found, name, "it would lie farther from or nearer to the middle than in any face");
+          take_out(found, name,
+                   "its position is implausible: it would lie farther from the middle or nearer to it than "
+                   "in any face");
     const glm::dvec3 *a = found.find(left), *b = found.find(right);
     if (a == nullptr || b == nullptr) {
-      // A single side cannot be compared. The maxilla's outer end, which the rule places at the first wide
-      // hole, is not known without the other side.
+      // A single side cannot be compared. The maxilla's outer end is uncertain without the other side,
+      // because its rule ends at the first wide hole.
       for (const std::string& name : {left, right}) {
         if (found.find(name) != nullptr) found.doubt_mm[name] += 2.0;
         if (pair.is_known_by_both)
-          take_out(found, name, "the other side's landmark was not found, which it must match");
+          take_out(found, name,
+                   "the landmark on the other side was not found, so this one cannot be checked");
       }
       continue;
     }
     const double across = std::abs(a->x + b->x), along = std::hypot(a->y - b->y, a->z - b->z);
     if (across > pair.most_across || along > pair.most_along) {
       for (const std::string& name : {left, right})
-        take_out(found, name, "left and right would differ more than the sides of a face");
+        take_out(found, name, "the positions on the left and right differ by more than in any face");
       continue;
     }
-    // It is not known which of them is wrong, so each has the whole doubt.
+    // Either side may be wrong, so the whole difference is added to the doubt of each.
     for (const std::string& name : {left, right}) found.doubt_mm[name] += std::hypot(across, along);
   }
 }

@@ -11,41 +11,43 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 /// Lengths in an adult's or a child's face, in millimetres, that distinguish its parts.
 constexpr double least_opening = 14.0, most_opening = 50.0;  ///< height of the nose's opening
 constexpr double edge = 5.0;          ///< least step from bone to the surface behind it
-constexpr double spine_reach = 10.0;  ///< of the nasal spine below the opening's floor
+constexpr double spine_reach = 10.0;  ///< the nasal spine lies within this distance below the opening's floor
 constexpr double least_alveolar = 10.0, most_alveolar = 45.0;  ///< from the spine to the upper incisors' edge
-constexpr double tooth_step = 1.5;                             ///< least backward step of an edge, within
-                                                               ///< tooth_step_over
+constexpr double tooth_step = 1.5;                             ///< least backward step at a tooth's edge,
+                                                               ///< within tooth_step_over
 constexpr double tooth_step_over = 2.0;
 constexpr double crown = 9.0;             ///< height of an incisor
-constexpr double receding = 28.0;         ///< the largest distance of a chin behind the nasal spine
-constexpr double least_mandible = 20.0;   ///< its height in the mid-line
+constexpr double receding = 28.0;         ///< largest distance of the chin behind the nasal spine
+constexpr double least_mandible = 20.0;   ///< least height of the mandible in the mid-line
 constexpr double chin = 22.0;             ///< its height
-constexpr double between_chins = 3.0;     ///< half the distance between a chin's foremost point and the point
-                                          ///< farthest before its chord
+constexpr double between_chins = 3.0;     ///< half the allowed distance between the foremost point of a chin
+                                          ///< and the point farthest in front of its chord
 constexpr double hollow = 1.0;            ///< least depth of a concavity between its neighbours
 constexpr double most_nasal_bone = 25.0;  ///< above the opening
 constexpr double widest_end = 25.0;  ///< largest width, from front to back, of the lowest row of bone that
                                      ///< ends naturally
-constexpr double scan_end = 2.0;     ///< within this distance of the scan's end, an end of bone is the scan's
+constexpr double scan_end = 2.0;     ///< bone that ends within this distance of the scan's end is cut off by
+                                     ///< it
 constexpr double least_brow = 12.0, most_brow = 45.0;  ///< above the nose's tip
 constexpr double stands_out = 0.7;  ///< least distance of a spine's tip in front of the bone below it
-constexpr double spine_end = 1.1;   ///< largest distance of its upper end behind its foremost point
+constexpr double spine_end = 1.1;   ///< largest distance of the spine's upper end behind its foremost point
 constexpr double spine_line =
-    12.0;  ///< below the opening's floor, the end of the line before which the spine stands
-constexpr double flat = 0.4;  ///< positions of an extremum within this depth cannot be distinguished
+    12.0;  ///< the line before which the spine stands ends at this distance below the opening's floor
+constexpr double flat = 0.4;  ///< rows whose depths differ by less than this cannot be ranked
 /// Shares of the height from nasion to spine: the least distance of an upper incisor's edge from the spine,
-/// and of a lower one's from the chin. Without teeth the ridges lie at 0.33 and 0.6.
+/// and of a lower incisor's edge from the chin. Without teeth, the ridges lie at 0.33 and 0.6.
 constexpr double most_upper_tooth = 0.85;
 constexpr double least_upper_tooth = 0.38, least_lower_tooth = 0.7;
-/// An edge beyond this share is certainly a tooth's. Between the shares, it is a tooth's if it lies below the
-/// upper incisors as in a closed bite.
+/// Beyond the share sure_lower_tooth an edge is certainly a tooth's. Between this and least_lower_tooth it is
+/// a tooth's if it lies at most closed_bite below the upper incisors.
 constexpr double sure_lower_tooth = 0.92, closed_bite = 6.0;
-constexpr double notch = 5.0;  ///< largest rise of an intact chin's lower border in the middle
-/// The region in which both sides are compared: rows around a row, distances from the middle; and the largest
-/// distance at which the middle is searched for.
+constexpr double notch = 5.0;  ///< largest rise of the middle of an intact chin's lower border
+/// The region in which the two sides are compared: like_height above and below a row, and like_begin to
+/// like_end from the middle. The middle is searched for within most_aside of the mid-plane.
 constexpr double like_height = 8.0, like_begin = 3.0, like_end = 24.0, most_aside = 9.0;
 
-/// The foremost row of first..last; of rows that are equal to a third of a millimetre, the middle one.
+/// The foremost row of first..last. Rows within a third of a millimetre count as equal; of these, returns the
+/// middle one.
 int foremost(const Profile& profile, int first, int last) {
   double best = infinite;
   for (int k = first; k <= last; ++k) best = std::min(best, profile.back_mm[static_cast<std::size_t>(k)]);
@@ -75,7 +77,7 @@ class Reader {
   }
   int rows_of(double length_mm) const { return static_cast<int>(std::lround(length_mm / profile_.step_mm)); }
   int within(int k) const { return std::clamp(k, 0, profile_.rows() - 1); }
-  /// Places the point at row k, the last above an edge. Reports it as missing if the scan ends there.
+  /// Places a landmark at row k, the last row above an edge. Reports it as missing if the scan ends there.
   void place_end(const char* name, int k) {
     if (profile_.up_mm(k) < profile_.cut_mm + scan_end) return miss(name, "the scan ends there");
     place(name, k);
@@ -84,8 +86,8 @@ class Reader {
     found_.places[name] = {profile_.middle_mm[static_cast<std::size_t>(k)], back(k), profile_.up_mm(k)};
   }
   /// Adds to the doubt the distance to the farthest row that is equally far in front, in the profile rotated
-  /// so that the extremum is foremost. Noise and the samples' distance may shift the extremum to that row,
-  /// even across rows between.
+  /// so that the extremum is foremost. Noise and the samples' spacing may shift the extremum to that row,
+  /// even across rows that are less far in front.
   template <typename Depth>
   void add_flat(const char* name, int k, int first, int last, const Depth& depth) {
     int low = k, high = k;
@@ -112,7 +114,7 @@ class Reader {
   void below_nose() {
     const int floor = profile_.row(nose_.floor_mm);
     const int ans = foremost(profile_, floor, within(floor + rows_of(spine_reach)));
-    // The spine's tip is the highest of the rows that are equally far in front.
+    // The spine's tip is the highest row of those that are equally far in front.
     int tip = ans;
     while (tip > floor && back(tip - 1) <= back(ans) + 0.5) --tip;
     place_spine(floor, tip);
@@ -122,12 +124,12 @@ class Reader {
     const int incisor = incisor_below(tip, last);
     if (incisor < 0) {
       for (const char* name : {"incisor", "a_point", "lower_incisor"})
-        miss(name, "no edge of upper incisors is seen below the nasal spine");
+        miss(name, "no edge of the upper incisors is visible below the nasal spine");
     } else if ((incisor - tip) * profile_.step_mm < least_upper_tooth * nose_height_) {
       for (const char* name : {"incisor", "a_point", "lower_incisor"})
-        miss(
-            name,
-            "the bone's edge lies too near to the nasal spine for a tooth's: the upper incisors are missing");
+        miss(name,
+             "the bone ends too near to the nasal spine for the edge of a tooth: the upper incisors are "
+             "missing");
     } else {
       place_end("incisor", incisor);
       place_hollow("a_point", tip, incisor - rows_of(crown));
@@ -135,8 +137,9 @@ class Reader {
     mandible(incisor < 0 ? tip : incisor, last);
   }
 
-  /// The tip is the first row in front of the rows that follow. A second rule, which does not depend on the
-  /// head's pitch, is the row farthest in front of the line from the opening's floor to the bone below.
+  /// The tip is the first row that stands in front of the rows below it. A second rule, which does not depend
+  /// on the head's pitch, selects the row farthest in front of the line from the opening's floor to the bone
+  /// below.
   void place_spine(int floor, int foremost_row) {
     const int end = within(floor + rows_of(spine_line));
     int first = -1;
@@ -154,7 +157,7 @@ class Reader {
     const bool is_prominent = before(second) >= 1.0;
     if (first < 0 && !is_prominent)
       return miss("ans", "no spine projects in front of the bone below the nose's opening");
-    // The tip of a spine that continues into the bone below it is its upper end.
+    // If a spine continues into the bone below it, its upper end is the tip.
     const int lies = first < 0 ? foremost_row : first;
     int tip = lies;
     while (tip > floor && back(tip - 1) <= back(lies) + spine_end) --tip;
@@ -163,7 +166,8 @@ class Reader {
     found_.doubt_mm["ans"] = 0.5 * std::min(apart, 6.0);
   }
 
-  /// The last row of the face: below, all bone lies far behind, and for as long as a mouth opens.
+  /// The last row of the face: below it all bone lies far behind, over a height greater than that of an open
+  /// mouth.
   int end_of_front(int tip) const {
     int last = tip, gap = 0;
     for (int k = tip; k < profile_.rows() && gap < rows_of(most_alveolar); ++k) {
@@ -174,26 +178,26 @@ class Reader {
     return last;
   }
 
-  /// The last row before the first step backwards that is about as large as the largest one; -1: none.
+  /// The last row before the first backward step that is about as large as the largest one; -1: none.
   int incisor_below(int tip, int last) const {
     const int over = rows_of(tooth_step_over);
     const int first = tip + rows_of(least_alveolar), lowest = std::min(last, tip + rows_of(most_alveolar));
-    // In an open mouth the profile falls back as far as the cervical spine; so a deeper fall is no stronger
-    // sign of an edge.
+    // In an open mouth the profile falls back to the cervical spine, so a deeper fall is not a stronger sign
+    // of an edge.
     const auto fall = [&](int k) { return std::min(back(k + over) - back(k), edge); };
     double most = 0.0;
     for (int k = first; k <= lowest; ++k) most = std::max(most, fall(k));
     if (most < tooth_step) return -1;
     int k = first;
     while (fall(k) < 0.6 * most) ++k;
-    // The profile may step back at the ridge's edge as far as at the edge of the teeth. The teeth's edge is
-    // the lower one.
+    // The profile may step back at the edge of the ridge as far as at the edge of the teeth. The lower edge
+    // is that of the teeth.
     const int near = tip + static_cast<int>(least_upper_tooth * nose_height_ / profile_.step_mm) + 1;
     const int far =
         std::min(lowest, tip + static_cast<int>(most_upper_tooth * nose_height_ / profile_.step_mm));
     for (int lower = near; lower <= far && k < near; ++lower)
       if (fall(lower) >= std::max(0.6 * most, tooth_step)) k = lower;
-    // The step's own row: the greatest fall from one row to the next.
+    // The row of the step: the greatest fall from one row to the next.
     int at = k;
     for (int i = k; i < k + over; ++i)
       if (back(i + 1) - back(i) > back(at + 1) - back(at)) at = i;
@@ -209,8 +213,8 @@ class Reader {
     if (is_notched_)
       for (const char* name : {"menton", "pogonion"})
         miss(name,
-             "the chin's lower border rises in the middle: bone is missing, or was not separated from its "
-             "surroundings");
+             "the chin's lower border rises in the middle: bone is missing there, or other material adjoins "
+             "it");
     else
       place_end("menton", last);
     int first = above + 1;
@@ -220,29 +224,30 @@ class Reader {
     const bool is_closed = (first - above) * profile_.step_mm <= closed_bite;
     if (is_seen && over_chin < least_lower_tooth * nose_height_)
       miss("lower_incisor",
-           "the bone's edge lies too near to the chin for a tooth's: the lower incisors are missing");
+           "the bone ends too near to the chin for the edge of a tooth: the lower incisors are missing");
     else if (is_seen && !is_closed && over_chin < sure_lower_tooth * nose_height_)
-      miss("lower_incisor", "the bone's edge below the open bite may not be a tooth's");
+      miss("lower_incisor", "the bite is open, and the bone's edge below it may not be that of a tooth");
     else if (is_seen)
       place("lower_incisor", first);
     else
-      miss("lower_incisor", "it stands behind the upper incisors as seen from the front");
+      miss("lower_incisor", "seen from the front it is hidden behind the upper incisors");
     const int high = std::max(first + rows_of(crown), last - rows_of(chin));
     const int foremost_chin = pogonion_between(high, last);
     if (foremost_chin < 0) {
-      miss("pogonion", "the chin has no point before the bone above it");
-      return miss("b_point", "the chin has no point before the bone above it");
+      miss("pogonion", "no point of the chin stands in front of the bone above it");
+      return miss("b_point", "no point of the chin stands in front of the bone above it");
     }
     if (!is_notched_) place("pogonion", foremost_chin);
     if (found_.find("lower_incisor") == nullptr)
-      return miss("b_point",
-                  "it is sought between the lower incisors and the chin, which were not both found");
+      return miss(
+          "b_point",
+          "it is searched for between the lower incisors and the chin, and one of them was not found");
     place_hollow("b_point", first + rows_of(crown), foremost_chin);
   }
 
-  /// The foremost row, if the bone above lies behind it by at least `hollow`. Otherwise, for a flat or
-  /// receding chin or an open jaw, the row farthest in front of the line between both ends, which hardly
-  /// depends on the head's pitch; -1 if no row lies in front of that line by at least `hollow`.
+  /// The foremost row, if the bone above it lies behind it by at least `hollow`. For a flat or receding chin
+  /// or an open jaw there is no such row: then the row farthest in front of the line between both ends, which
+  /// hardly depends on the head's pitch. -1 if no row lies in front of that line by at least `hollow`.
   int pogonion_between(int high, int last) {
     const int row = foremost(profile_, high, last);
     double above = back(row);
@@ -263,11 +268,11 @@ class Reader {
     return best;
   }
 
-  /// The row farthest behind the line between two rows.
+  /// The row farthest behind the line between two rows; missing if none lies behind it by at least `hollow`.
   void place_hollow(const char* name, int first, int last,
                     const char* why = "the profile has no hollow there") {
     const double run = last - first, rise = back(last) - back(first);
-    // Perpendicular to the line, in millimetres.
+    // The distance perpendicular to the line, in millimetres.
     const auto depth = [&](int k) {
       return (back(k) - back(first) - rise * (k - first) / run) /
              std::hypot(1.0, rise / (run * profile_.step_mm));
@@ -283,12 +288,12 @@ class Reader {
   const Profile& profile_;
   NasalOpening nose_;
   bool is_notched_;
-  double nose_height_ = 0.0;  ///< from the spine to the nasion; 0: not known
+  double nose_height_ = 0.0;  ///< the height from spine to nasion; 0: unknown
   FoundPlaces found_;
 };
 
-/// The position, left of the mid-plane, about which both sides of the front are most alike near a row: the
-/// mid-plane itself, unless another position is clearly better.
+/// The position, left of the mid-plane, about which the two sides of the face are most alike near a row. It
+/// is 0, the mid-plane, unless another position is clearly better.
 double middle_at(const HeadMap& front, int row) {
   const int high = static_cast<int>(like_height / front.step_mm()),
             step = std::max(1, static_cast<int>(1.0 / front.step_mm()));
@@ -304,7 +309,8 @@ double middle_at(const HeadMap& front, int row) {
           off.push_back(15.0);
       }
     if (off.size() < 20) return infinite;
-    // The mean of the better two thirds: streaks and holes are on one side only.
+    // The mean of the two thirds with the smaller differences, because streaks and holes are on one side
+    // only.
     const auto kept = static_cast<std::ptrdiff_t>(off.size() * 2 / 3);
     std::nth_element(off.begin(), off.begin() + kept, off.end());
     double sum = 0.0;
@@ -317,7 +323,8 @@ double middle_at(const HeadMap& front, int row) {
   return at;
 }
 
-/// Whether bone on both sides of the mid-line lies in front of the surface in the mid-line at this height.
+/// Whether the bone on both sides of the mid-line stands in front of the surface in the mid-line at this
+/// height.
 bool is_between_rims(const HeadMap& front, int row, double back_mm) {
   for (const double side : {-1.0, 1.0}) {
     bool is_rim = false;
@@ -338,7 +345,7 @@ Profile profile_of(const HeadMap& front, double within_mm) {
   Profile profile;
   profile.step_mm = front.step_mm();
   profile.top_mm = front.y_mm(front.size().y - 1);
-  // Takes the middle of a row every 4 mm, then the median of five of these.
+  // Computes the middle of a row every 4 mm, then the median of five of these.
   const int apart = std::max(1, static_cast<int>(std::lround(4.0 / front.step_mm())));
   std::vector<double> middles;
   for (int j = front.size().y - 1; j >= 0; j -= apart) middles.push_back(middle_at(front, j));
@@ -362,7 +369,7 @@ Profile profile_of(const HeadMap& front, double within_mm) {
 }
 
 double chin_notch(const HeadMap& front, const Profile& profile, const NasalOpening& nose) {
-  // Only bone of the front: a neck lies far behind.
+  // Only bone of the face counts, because a neck lies far behind.
   const double floor_mm = profile.back_mm[static_cast<std::size_t>(profile.row(nose.floor_mm))];
   int lowest = profile.rows() - 1;
   while (lowest > 0 && !(profile.back_mm[static_cast<std::size_t>(lowest)] < floor_mm + receding)) --lowest;
@@ -395,13 +402,13 @@ std::optional<NasalOpening> find_nasal_opening(const Profile& profile, const Hea
   const auto back = [&](int k) { return profile.back_mm[static_cast<std::size_t>(k)]; };
   const int over = static_cast<int>(std::lround(tooth_step_over / profile.step_mm));
   for (int k = 0; k + over < profile.rows(); ++k) {
-    // The nasal bones' lower end, where the profile falls back abruptly.
+    // The lower end of the nasal bones, where the profile falls back abruptly.
     if (!(back(k) < infinite) || back(k + over) - back(k) < edge) continue;
     int top = k;
     for (int i = k; i < k + over; ++i)
       if (back(i + 1) - back(i) > back(top + 1) - back(top)) top = i;
-    // The opening ends where bone lies in front of all its rows except the last ones, because its floor
-    // slopes.
+    // The opening ends where bone stands in front of all its rows except the last ones; these are excluded
+    // because the floor slopes.
     int floor = top + static_cast<int>(least_opening / profile.step_mm);
     double nearest = infinite;
     for (int seen = top + over; floor < profile.rows(); ++floor) {

@@ -45,11 +45,15 @@ Json measure(const Airway& asked, const AnswerBench& bench) {
   airway.narrowest = measured(least, digitised);
   airway.narrowest.half_width_terms = section_half_width(least, digitised).terms;
   for (const AirwaySection& section : found.sections) airway.sections.push_back(measured(section, digitised));
-  if (!object.mesh.within) made.findings.push_back("there is no mesh: voxels alone answer");
+  if (!object.mesh.within)
+    made.findings.push_back(
+        "there is no mesh, so all areas and volumes are counted in voxels: see the object's findings");
   if (const auto finding = too_coarse_finding(object, of_volume)) made.findings.push_back(*finding);
   const double differ = least.mesh_mm2 ? std::abs(*least.mesh_mm2 - least.voxel_mm2) : 0.0;
   if (differ > airway.narrowest.half_width_mm2)
-    made.findings.push_back("the kernels' areas of the narrowest section differ by more than the half-width");
+    made.findings.push_back(
+        "the two kernels' areas of the narrowest section differ by more than the half-width: measure again "
+        "with smaller voxels");
   return print_record(made);
 }
 
@@ -57,15 +61,15 @@ Json measure(const Airway& asked, const AnswerBench& bench) {
 
 Operation airway_operation() {
   return Describe<Airway>("airway",
-                          "Measures an airway: its volume, its sections perpendicular to its centre line, "
-                          "and where it is narrowest.",
+                          "Measures an airway: its volume, the areas of its sections across its centre line, "
+                          "and its narrowest section.",
                           Makes::Measurement)
       .takes(field("object", &Airway::object,
-                   "The air in the airway: usually a window on air, cut at the airway's limits, of which one "
-                   "part is kept.")
+                   "The object of the air in the airway: usually one part of a window on air, cut at the "
+                   "airway's ends.")
                  .required())
-      .takes(
-          field("begin", &Airway::begin, "The airway's beginning: a point or a landmark in it.").required())
+      .takes(field("begin", &Airway::begin, "The beginning of the airway: a point or a landmark in its air.")
+                 .required())
       .takes(field("end", &Airway::end, "The airway's end.").required())
       .takes(field("step_mm", &Airway::step_mm, "The distance between sections.").from(0.1).to(20.0))
       .example(

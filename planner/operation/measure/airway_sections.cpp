@@ -23,7 +23,7 @@ namespace {
 
 constexpr double nearest_end_mm = 5.0;
 
-/// The voxels of a passage in a box of their own.
+/// Path lengths from one voxel through a passage to its other voxels.
 class Ways {
  public:
   explicit Ways(const voxel::Octree& octree)
@@ -34,7 +34,7 @@ class Ways {
                     infinite);
   }
 
-  /// The voxel of the passage that is nearest to a point.
+  /// The voxel of the passage that is nearest to a point. Throws if it is farther than nearest_end_mm.
   glm::ivec3 nearest(const glm::dvec3& p_mm) const {
     const voxel::Lattice lattice = octree_.universe().lattice();
     glm::ivec3 best(0);
@@ -44,11 +44,13 @@ class Ways {
         least = distance, best = v;
     });
     if (least > nearest_end_mm)
-      throw std::runtime_error("the passage is farther than 5 mm from an end: give points within it");
+      throw std::runtime_error(
+          "the passage is farther than 5 mm from one of its two end points: choose points within the "
+          "passage");
     return best;
   }
 
-  /// Computes the path length from a voxel to every other one.
+  /// Computes the path length from a voxel to every other voxel of the passage.
   void walk_from(const glm::ivec3& start) {
     const glm::dmat3 axes(octree_.universe().lps_from_voxel);
     using Entry = std::pair<double, std::size_t>;
@@ -105,7 +107,7 @@ class Ways {
   std::vector<double> ways_mm_;
 };
 
-/// Centres of shells of equal path length, and the passage's mean width along them.
+/// The centres of shells of equal path length, their distance along the path, and the passage's mean width.
 struct RawLine {
   std::vector<glm::dvec3> points_mm;
   double apart_mm = 1.0, width_mm = 1.0;
@@ -118,7 +120,9 @@ RawLine raw_line(const voxel::Octree& octree, const glm::dvec3& from_mm, const g
   ways.walk_from(ways.nearest(from_mm));
   const double length_mm = ways.way_mm(end);
   if (!std::isfinite(length_mm))
-    throw std::runtime_error("no path through the passage leads from one end to the other");
+    throw std::runtime_error(
+        "no path through the passage connects its two ends: check that the object contains the whole "
+        "passage");
   RawLine line;
   const glm::dvec3 spacing_mm = lattice.spacing_mm();
   line.apart_mm = 1.5 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
@@ -136,12 +140,13 @@ RawLine raw_line(const voxel::Octree& octree, const glm::dvec3& from_mm, const g
     if (voxels[i] > 0.0) line.points_mm.push_back(sums[i] / voxels[i]), all += voxels[i];
   line.width_mm = 2.0 * std::sqrt(all * lattice.voxel_mm3() / (std::numbers::pi * std::max(length_mm, 1e-9)));
   if (line.points_mm.size() < 4 || length_mm < line.width_mm)
-    throw std::runtime_error("the path between the ends is shorter than the passage is wide");
+    throw std::runtime_error(
+        "the path between the ends is shorter than the passage is wide: choose end points farther apart");
   return line;
 }
 
-/// The line of best fit around each point, weighted by a Gaussian: point and direction. Unlike plain means,
-/// it is not shifted inwards at the ends.
+/// The line of best fit to the points around a place, with Gaussian weights: its point and its direction
+/// there. Unlike a mean of the points, it is not shifted inward at the ends.
 struct Station {
   glm::dvec3 at_mm{0.0}, direction{0.0};
 };
@@ -158,7 +163,8 @@ Station fitted(const RawLine& line, double place) {
   return {(w2 * p0 - w1 * p1) / determinant, glm::normalize((w0 * p1 - w1 * p0) / determinant)};
 }
 
-/// Adds the connected part of a voxel section that contains its middle.
+/// Sets the area and perimeter of the connected part of the octree's section that contains the plane's origin
+/// or is nearest to it.
 void cut_voxels(const voxel::Octree& octree, const brep::Plane& plane, double reach_mm, AirwaySection& made) {
   const glm::dvec3 spacing_mm = octree.universe().lattice().spacing_mm();
   voxel::Sheet sheet;
@@ -174,7 +180,7 @@ void cut_voxels(const voxel::Octree& octree, const brep::Plane& plane, double re
   const auto at = [&](int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x);
   };
-  // Starts from the nearest pixel inside, because the line may miss a thin or bent section.
+  // The nearest pixel inside is used, because the line may miss a thin or bent section.
   std::optional<glm::ivec2> seed;
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x)
@@ -201,12 +207,12 @@ void cut_voxels(const voxel::Octree& octree, const brep::Plane& plane, double re
     }
   }
   made.voxel_mm2 = static_cast<double>(pixels) * sheet.pixel_mm * sheet.pixel_mm;
-  // Pixels' edges overestimate a round outline by 4 / pi.
+  // The edges of pixels overestimate a round outline by 4 / pi.
   made.perimeter_mm = static_cast<double>(edges) * sheet.pixel_mm * std::numbers::pi / 4.0;
 }
 
-/// The area of a mesh's section: of the contour around the middle, or else of the nearest one, minus its
-/// holes.
+/// The area of the mesh's section in mm2: of the contour around the plane's origin, or else of the nearest
+/// one, minus its holes. None without a closed contour.
 std::optional<double> cut_mesh(const brep::Solid& solid, const brep::Plane& plane) {
   const brep::CrossSection section = brep::cross_section(solid, plane);
   const brep::Contour* about = nullptr;
@@ -261,14 +267,15 @@ AirwaySections airway_sections(const voxel::Octree& octree, const std::optional<
     if (section.area_mm2() < least) least = section.area_mm2(), made.narrowest = i;
   }
   if (!std::isfinite(least))
-    throw std::runtime_error("the path between the ends is shorter than the passage is wide");
+    throw std::runtime_error(
+        "the path between the ends is shorter than the passage is wide: choose end points farther apart");
   return made;
 }
 
 HalfWidth section_half_width(const AirwaySection& section, const Digitised& digitised) {
   HalfWidth width;
-  // 99 % of a normal distribution are within 2.576 deviations; a uniform position within a step has a twelfth
-  // of the step's square as variance.
+  // 99 % of normally distributed errors are within 2.576 standard deviations. A uniformly distributed
+  // position within a step has a twelfth of the step's square as variance.
   const auto add_steps = [&](const char* name, const glm::dvec3& step_mm) {
     const double h = std::max({step_mm.x, step_mm.y, step_mm.z});
     width.terms.push_back(

@@ -6,7 +6,7 @@
 #include "planner/operation/table/record.h"
 #include "verify/certificate/certificate.h"
 
-// Certificates in the form of results, in which an infinite number has no value.
+// The records of certificates in results. They have no value where a certificate has an infinite number.
 namespace octotomy::planner {
 
 /// One kernel's answer.
@@ -52,7 +52,7 @@ constexpr auto members_of(const CertificateTime&) {
 }
 
 struct CertificateRecord {
-  std::string object;  ///< empty outside of a plan's result
+  std::string object;  ///< the object's name; empty outside of a plan's result
   std::string operation, tier, verdict;
   bool resolved = true;
   std::optional<double> smallest_extent_voxels;
@@ -67,7 +67,7 @@ struct CertificateRecord {
   std::optional<double> symmetric_difference_mm3, symmetric_difference_tolerance_mm3, centroid_distance_mm,
       centroid_tolerance_mm, hausdorff_mm, hausdorff95_mm;
   Json worst;
-  Json detection_limit;  ///< null if none was determined
+  Json detection_limit;  ///< null if no detection limit was determined
   Json bridges, third_reading;
   std::vector<ComparedQuantity> comparisons;
   CertificateTime timings_ms;
@@ -94,7 +94,7 @@ constexpr auto members_of(const CertificateRecord&) {
       member("timings_ms", &C::timings_ms), member_if_any("findings", &C::findings));
 }
 
-/// The certificate without an object and its findings.
+/// The record of a certificate, without its object and findings.
 CertificateRecord record_of_certificate(const verify::Certificate& certificate);
 
 }  // namespace octotomy::planner

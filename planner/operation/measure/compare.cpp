@@ -23,7 +23,7 @@ struct Compare {
   std::optional<double> spacing_mm;
   int bins = static_cast<int>(brep::DifferenceOptions{}.bins);
   bool no_dice = false;
-  // Options of the verb only.
+  // Only the verb has the following options.
   std::filesystem::path out, picture;
   std::optional<double> range_mm;
   bool other_identity = false;
@@ -41,18 +41,19 @@ Json one_way_json(const brep::OneWay& way, const std::vector<double>& tolerances
           {"bands", bands}};
 }
 
-/// Twice the common volume, divided by the sum of both volumes.
+/// The Dice coefficient: twice the common volume divided by the sum of both volumes.
 struct Dice {
   double value = 0.0, half_width = 0.0;
   std::size_t lines = 0;
 };
 
-/// Lines through holes are left out. If their share exceeds this, the surface has no meaningful inside.
+/// Lines through holes of a surface are left out. If they are more than this share, the surface has no
+/// defined inside.
 constexpr double most_open_lines() {
   return 0.01;
 }
 
-/// None, with a finding, if the surfaces have no inside.
+/// The Dice coefficient of two surfaces. None, with a finding, if they have no defined inside.
 std::optional<Dice> dice(const brep::Triangles& a, const brep::Triangles& b,
                          std::vector<std::string>& findings) {
   const brep::LineVolumes volumes = brep::line_volumes(a, b);
@@ -62,20 +63,21 @@ std::optional<Dice> dice(const brep::Triangles& a, const brep::Triangles& b,
   const auto& [even, odd] = volumes.halves;
   if (open > most_open_lines() || !(even.a_mm3 + even.b_mm3 > 0.0) || !(odd.a_mm3 + odd.b_mm3 > 0.0)) {
     findings.push_back("no Dice: " + three_figures(100.0 * open) +
-                       " % of the lines through the surfaces pass holes or contrary triangles, or nothing is "
-                       "enclosed");
+                       " % of the lines through the surfaces pass holes or triangles that face the wrong "
+                       "way, or the surfaces enclose nothing: mend them by octotomy repair");
     return std::nullopt;
   }
   if (volumes.open_lines > 0)
     findings.push_back("Dice leaves out " + three_figures(100.0 * open) +
-                       " % of the lines, which pass holes or contrary triangles");
+                       " % of the lines, because these pass holes or triangles that face the wrong way");
   return Dice{of(volumes.all), std::abs(of(even) - of(odd)), volumes.lines};
 }
 
 Json definitions(const brep::Difference& difference, const std::optional<Dice>& dice) {
   return {
-      {"hausdorff_mm", "largest distance of a point of either surface to the other's nearest triangle, at " +
-                           std::to_string(difference.sample_count) + " samples and all vertices"},
+      {"hausdorff_mm",
+       "largest distance from a point of either surface to the nearest triangle of the other surface, at " +
+           std::to_string(difference.sample_count) + " samples and all vertices"},
       {"hausdorff95_mm", "larger of the two directed, area-weighted 95th percentiles, point to triangle"},
       {"mean_mm", "area-weighted mean of absolute distances, point to triangle, over both surfaces"},
       {"signed", "positive where A lies outside B (a_to_b), or B outside A (b_to_a)"},
@@ -83,7 +85,7 @@ Json definitions(const brep::Difference& difference, const std::optional<Dice>& 
                    std::to_string(dice ? dice->lines : 0) + " parallel lines"}};
 }
 
-/// The results of comparing both surfaces.
+/// The results of comparing two surfaces.
 struct Compared {
   brep::Difference difference;
   std::optional<Dice> dice;
@@ -106,8 +108,9 @@ Compared compared(const Compare& asked, const brep::Linked& a, const brep::Linke
   }
   if (made.difference.on_border_count > 0)
     made.findings.push_back(
-        "nearest to a border, where the sign is a guess: " + std::to_string(made.difference.on_border_count) +
-        " of " + std::to_string(made.difference.sample_count) + " samples");
+        "the sign of the distance is a guess at samples that are nearest to a border of the other surface: " +
+        std::to_string(made.difference.on_border_count) + " of " +
+        std::to_string(made.difference.sample_count) + " samples");
   return made;
 }
 
@@ -130,7 +133,8 @@ Json comparison_json(const Compare& asked, const Compared& made) {
             {"shares", difference.histogram.shares}}}};
 }
 
-/// The distances between the mesh kernel's answers; null, with a finding, if an object has none.
+/// The distances between the meshes of two objects as JSON. Null, with a finding, if one of them has no mesh
+/// or is empty.
 Json measure(const Compare& asked, const AnswerBench& bench) {
   Json json{{"a", asked.a.name}, {"b", asked.b.name}};
   for (const ObjectName& name : {asked.a, asked.b}) {
@@ -182,13 +186,12 @@ void write_pictures(const Compare& asked, const brep::Triangles& a, const brep::
 
 FileAnswer on_files(const Compare& asked, const FileBench& bench) {
   if (is_label_map(asked.a.name) != is_label_map(asked.b.name))
-    throw std::runtime_error(
-        "one of " + asked.a.name + " and " + asked.b.name +
-        " is a label map and the other a surface: make surfaces of the labels by octotomy surfaces");
+    throw std::runtime_error("one of " + asked.a.name + " and " + asked.b.name +
+                             " is a label map and the other file a surface: make surfaces of the labels "
+                             "first, by octotomy surfaces");
   if (is_label_map(asked.a.name)) {
     if (!asked.out.empty() || !asked.picture.empty())
-      throw std::runtime_error(
-          "--out and --picture are for surfaces: leave them out where two label maps are compared");
+      throw std::runtime_error("--out and --picture apply only to surfaces: leave them out for label maps");
     return compare_label_maps(asked.a.name, asked.b.name, asked.other_identity, bench);
   }
   if (!asked.out.empty()) need_extension(asked.out, {".ply", ".vtp", ".glb"}, "the coloured mesh is");
@@ -217,27 +220,34 @@ FileAnswer on_files(const Compare& asked, const FileBench& bench) {
 }  // namespace
 
 Operation compare_operation() {
-  return Describe<Compare>("compare", "Measures how far two surfaces lie apart, both ways.",
+  return Describe<Compare>("compare",
+                           "Measures the distances between two surfaces, from each one to the other.",
                            Makes::Measurement)
       .takes(field("a", &Compare::a, "An object.").required().positional("a"))
-      .takes(field("b", &Compare::b, "Another one in the same frame.").required().positional("b"))
-      .takes(field("tolerances_mm", &Compare::tolerances_mm,
-                   "Distances; for each, the share of the area within it is reported."))
+      .takes(field("b", &Compare::b, "Another object or file in the same frame.").required().positional("b"))
+      .takes(field(
+          "tolerances_mm", &Compare::tolerances_mm,
+          "Distances in mm. For each, the share of the area that lies within this distance is reported."))
       .takes(field("spacing_mm", &Compare::spacing_mm,
-                   "Distance of the samples. Default: 200 000 samples a surface.")
+                   "Distance between samples on the surfaces. Default: so that each surface has about 200 "
+                   "000 samples.")
                  .greater_than(0.0))
-      .takes(field("bins", &Compare::bins, "Number of bins of the histogram.").from(1).to(10000))
-      .takes(field("no_dice", &Compare::no_dice, "Leaves out the common volume."))
-      .verb_takes(field("out", &Compare::out,
-                        "A coloured by its distance to B, red outside, blue inside: .ply, .vtp or .glb."))
-      .verb_takes(
-          field("picture", &Compare::picture, "The histogram of distances in those colours: a .png file."))
-      .verb_takes(field("range_mm", &Compare::range_mm, "Distance of full colour. Default: the Hausdorff 95.")
+      .takes(field("bins", &Compare::bins, "Number of bins in the histogram of signed distances.")
+                 .from(1)
+                 .to(10000))
+      .takes(
+          field("no_dice", &Compare::no_dice, "Omits the Dice coefficient, which needs the common volume."))
+      .verb_takes(field(
+          "out", &Compare::out,
+          "A file of A coloured by its distance to B, red outside and blue inside: .ply, .vtp or .glb."))
+      .verb_takes(field("picture", &Compare::picture,
+                        "A .png file of the histogram of signed distances, in the same colours."))
+      .verb_takes(field("range_mm", &Compare::range_mm,
+                        "Distance from which on the colour is saturated. Default: the Hausdorff 95.")
                       .greater_than(0.0))
-      .verb_takes(
-          field("other_identity", &Compare::other_identity,
-                "Compares segmentations that state different patients, studies or frames of reference, "
-                "and reports a FAIL."))
+      .verb_takes(field("other_identity", &Compare::other_identity,
+                        "Compares segmentations even if they state different patients, studies or frames of "
+                        "reference; a finding then begins with FAIL."))
       .example(
           R"({"id": "apart", "do": "compare", "a": "maxilla", "b": "advanced", "tolerances_mm": [1, 2]})")
       .on_files(

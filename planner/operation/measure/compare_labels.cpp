@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A label map, with data for each of its labels.
+/// One of the two label maps: its samples, and the number of samples and the surface of each label.
 struct Side {
   fs::path path;
   voxel::Scene scene;
@@ -50,8 +50,8 @@ bool is_stored_otherwise(const voxel::Lattice& a, const voxel::Lattice& b) {
   return true;
 }
 
-/// Reads a label map. `onto` determines the storage order of samples: it changes no object, but the triangles of an
-/// octree follow the order of the axes.
+/// Reads a label map. If it covers the same field as `onto` in another order of axes, its samples are stored
+/// in the order of `onto`. The objects stay the same, but an octree's triangles follow the order of the axes.
 Side side_of(const fs::path& path, const FileBench& bench, std::vector<std::string>& findings,
              const voxel::Lattice* onto = nullptr) {
   Side side{path, bench.read_scan(path), {}};
@@ -63,16 +63,16 @@ Side side_of(const fs::path& path, const FileBench& bench, std::vector<std::stri
     for (const std::string& finding : findings_of_labels(labels))
       findings.push_back(path.string() + ": " + finding);
   } catch (const voxel::InvalidInput& error) {
-    throw std::runtime_error(path.string() + ": is no label map: " + error.what());
+    throw std::runtime_error(path.string() + ": is not a label map: " + error.what());
   }
   if (side.samples.empty())
-    throw std::runtime_error(path.string() + ": every sample is 0, so there are no labels");
+    throw std::runtime_error(path.string() + ": contains no labels, because every sample is 0");
   const Stopwatch watch(bench.timings, "surfaces");
   side.surfaces = convert::label_surfaces(side.scene, {{}, 0, {bench.stop, {}}});
   return side;
 }
 
-/// The first lattice, continued until it covers the second one's samples.
+/// The first lattice, extended by whole samples until it covers the samples of the second.
 voxel::Lattice covering(const voxel::Lattice& a, const voxel::Lattice& b) {
   glm::dvec3 low(0.0), high = glm::dvec3(a.dims) - 1.0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -81,7 +81,7 @@ voxel::Lattice covering(const voxel::Lattice& a, const voxel::Lattice& b) {
     low = glm::min(low, a.voxel(b.lps_mm(p_voxel)));
     high = glm::max(high, a.voxel(b.lps_mm(p_voxel)));
   }
-  // A tolerance, so that rounding of coordinates adds no row.
+  // With this tolerance, rounding of coordinates adds no row of samples.
   constexpr double rounding = 1e-6;
   low = glm::floor(low + rounding);
   high = glm::ceil(high - rounding);
@@ -90,14 +90,14 @@ voxel::Lattice covering(const voxel::Lattice& a, const voxel::Lattice& b) {
   return whole;
 }
 
-/// Sums over all labels that both maps have.
+/// Sums over the labels of two maps.
 struct Totals {
-  double common_mm3 = 0.0, both_mm3 = 0.0;  ///< both_mm3 sums all labels of both maps
+  double common_mm3 = 0.0, both_mm3 = 0.0;  ///< sum of the volumes of all labels in both maps
   double hausdorff_mm = 0.0, hausdorff95_mm = 0.0, mean_mm = 0.0;
   std::size_t compared = 0;
 };
 
-/// A label of both maps, or of one; each has its own number.
+/// A label that both maps or only one of them contain, with its number in each.
 struct Pair {
   std::optional<int> a, b;
   std::string name;
@@ -109,7 +109,7 @@ voxel::Octree object_of(const voxel::Universe& universe, const Side& side, const
   return label ? voxel::octree_of_label(universe, side.scene, *label) : voxel::Octree::empty(universe);
 }
 
-/// How well a label of both maps agrees; distances are none if only one map has it.
+/// The agreement of two maps on a label. Distances are none if only one map contains it.
 struct LabelComparison {
   int label = 0;
   std::string name;
@@ -126,7 +126,7 @@ constexpr auto members_of(const LabelComparison&) {
 
 struct MapComparison {
   std::vector<LabelComparison> labels;
-  std::optional<double> hausdorff_mm, hausdorff95_mm, mean_mm, dice;  ///< over all labels of both maps
+  std::optional<double> hausdorff_mm, hausdorff95_mm, mean_mm, dice;  ///< over all labels in both maps
   Json definition;
   std::vector<std::string> findings;
 };
@@ -170,8 +170,8 @@ LabelComparison compared(const Pair& pair, const Side& a, const Side& b, const v
 
 Json definitions() {
   return {{"hausdorff_mm",
-           "of a label: largest distance of a point of either surface, half-way between samples, to the "
-           "other's nearest triangle; of all: the largest"},
+           "of a label: largest distance from a point of either surface, which lies half-way between "
+           "samples, to the nearest triangle of the other surface; of all: the largest"},
           {"hausdorff95_mm",
            "of a label: larger of the two directed, area-weighted 95th percentiles, point to triangle; of "
            "all: the largest"},
@@ -189,7 +189,7 @@ std::string name_of(const Names& names, int label) {
   return name == names.end() ? "label " + std::to_string(label) : name->second;
 }
 
-/// The names of the labels that occur.
+/// The names of the labels that occur in a map; appends findings on its table.
 Names names_of(const Side& side, std::vector<std::string>& findings) {
   std::set<int> occurring;
   for (const auto& [label, samples] : side.samples) occurring.insert(label);
@@ -199,25 +199,26 @@ Names names_of(const Side& side, std::vector<std::string>& findings) {
   return std::move(table.names);
 }
 
-/// The numbers of a map's labels by name, or by "label 5" if there is none; refuses a name that two labels
-/// have.
+/// The numbers of a map's labels by name; a label without a name has one such as "label 5". Throws if two
+/// labels have the same name.
 std::map<std::string, int> numbers_of(const Side& side, const Names& names) {
   std::map<std::string, int> numbers;
   for (const auto& [label, samples] : side.samples)
     if (const auto [known, is_new] = numbers.try_emplace(name_of(names, label), label); !is_new)
       throw std::runtime_error(side.path.string() + ": the labels " + std::to_string(known->second) +
                                " and " + std::to_string(label) + " are both named '" + known->first +
-                               "', so that labels cannot be paired by name: give each a name of its own");
+                               "', so labels cannot be paired by name: rename one of them");
   return numbers;
 }
 
-/// Pairs labels by name if both maps have names, else by number; reports contradictions.
+/// Pairs labels by name if both maps have names, else by number. Adds findings where names and numbers
+/// contradict each other.
 std::vector<Pair> pairs_of(const Side& a, const Side& b, std::vector<std::string>& findings) {
   const Names names_a = names_of(a, findings), names_b = names_of(b, findings);
   const bool by_name = !names_a.empty() && !names_b.empty();
   if (names_a.empty() != names_b.empty())
-    findings.push_back("labels are paired by number, as only " + (names_b.empty() ? a : b).path.string() +
-                       " has names");
+    findings.push_back("labels are paired by number, because only " +
+                       (names_b.empty() ? a : b).path.string() + " has names");
   for (const auto& [label, samples] : a.samples)
     if (by_name && b.samples.contains(label) && name_of(names_a, label) != name_of(names_b, label))
       findings.push_back("number " + std::to_string(label) + " is '" + name_of(names_a, label) + "' in " +
@@ -259,7 +260,7 @@ FileAnswer compare_label_maps(const fs::path& path_a, const fs::path& path_b, bo
       lattice.dims == a.scene.lattice.dims && lattice.dims == b.scene.lattice.dims &&
       glm::distance(lattice.lps_mm(lattice.dims - 1), b.scene.lattice.lps_mm(lattice.dims - 1)) < 1e-3;
   if (!is_one_lattice)
-    answer.findings.emplace_back("the maps have different lattices: Dice is taken at the samples of " +
+    answer.findings.emplace_back("the maps have different lattices: Dice is computed at the samples of " +
                                  path_a.string());
   const voxel::Universe universe = voxel::universe_on(lattice);
   const Stopwatch watch(bench.timings, "compare");
@@ -276,7 +277,7 @@ FileAnswer compare_label_maps(const fs::path& path_a, const fs::path& path_b, bo
     if (!label.mean_mm)
       answer.findings.push_back("'" + pair.name + "'" + " (" + std::to_string(pair.number()) +
                                 ") is only in " + (pair.a ? path_a : path_b).string() +
-                                ": it has no distances");
+                                ", so distances cannot be computed");
   }
   if (totals.compared > 0) {
     made.hausdorff_mm = totals.hausdorff_mm;

@@ -7,15 +7,15 @@
 
 namespace octotomy::planner {
 
-/// Whether a file contains samples, by its extension: a label map or segmentation, not a surface.
+/// Whether a file has the extension of a volume, such as a label map or segmentation, and not of a surface.
 bool is_label_map(const std::filesystem::path& path);
 
-/// Compares the labels of two label maps, paired by name if both maps have names, else by number
-/// (contradictions are findings): volumes, Dice, and distances, point to triangle, between surfaces half way
-/// between samples. Maps of different lattices are compared at the first one's samples, extended over both.
-/// Refuses maps that state different patients, studies or frames of reference unless `other_identity`. Throws
-/// std::runtime_error if a scene is not a label map or two labels share a name. Cost: that of
-/// brep::difference() per label.
+/// Compares the labels of two label maps: volumes, Dice, and distances, point to triangle, between surfaces
+/// half-way between samples. Labels are paired by name if both maps have names, else by number;
+/// contradictions are findings. Maps with different lattices are compared at the samples of the first,
+/// extended over both. Throws std::runtime_error if a file is not a label map, if two labels of a map have
+/// the same name, or if the maps state different patients, studies or frames of reference and
+/// `other_identity` is false. Cost: that of brep::difference() for each label.
 FileAnswer compare_label_maps(const std::filesystem::path& a, const std::filesystem::path& b,
                               bool other_identity, const FileBench& bench);
 

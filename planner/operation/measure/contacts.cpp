@@ -56,9 +56,12 @@ MeasuredContacts measured(const ContactMap& asked, const AnswerBench& bench) {
           voxel::combine(bench.universe, voxel::Expression(object.voxel.octree) & other.voxel.octree)
               .voxel_count()) *
       bench.universe.lattice().voxel_mm3();
-  made.estimator = found.by_mesh ? "vertices of the first mesh to the second's nearest triangle"
-                                 : "voxels of the first's boundary to the second's nearest voxel";
-  if (!found.by_mesh) made.findings.push_back("at least one object has no mesh: areas are not reported");
+  made.estimator =
+      found.by_mesh
+          ? "distance from points of the first mesh to the nearest triangle of the second"
+          : "distance from voxels on the first object's boundary to the nearest voxel of the second";
+  if (!found.by_mesh)
+    made.findings.push_back("at least one object has no mesh, so areas are not reported: see its findings");
   return made;
 }
 
@@ -72,17 +75,17 @@ Operation contacts_operation() {
   return Describe<ContactMap>("contacts",
                               "Reports where two objects touch, as articulating paper does between teeth.",
                               Makes::Measurement)
-      .takes(
-          field("object", &ContactMap::object, "The object whose surface is marked, such as the lower teeth.")
-              .required())
+      .takes(field("object", &ContactMap::object,
+                   "The object on whose surface contacts are reported, such as the lower teeth.")
+                 .required())
       .takes(field("against", &ContactMap::against, "What it touches.").required())
-      .takes(field("within_mm", &ContactMap::within_mm, "Surfaces nearer than this are in contact.")
+      .takes(field("within_mm", &ContactMap::within_mm, "Surfaces count as touching up to this distance.")
                  .greater_than(0.0)
                  .to(20.0))
-      .takes(
-          field("apart_mm", &ContactMap::apart_mm, "Places nearer to each other than this are one contact.")
-              .greater_than(0.0)
-              .to(50.0))
+      .takes(field("apart_mm", &ContactMap::apart_mm,
+                   "Contacts nearer to each other than this are reported as one.")
+                 .greater_than(0.0)
+                 .to(50.0))
       .example(R"({"id": "bite", "do": "contacts", "object": "rest", "against": "advanced",
         "within_mm": 0.5})")
       .check(check)

@@ -19,7 +19,7 @@ std::size_t plane_of(const glm::ivec3& dims) {
   return static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y);
 }
 
-/// Averages pairs of samples along one axis.
+/// Averages neighbouring pairs of samples along one axis.
 template <typename Sample>
 voxel::Samples<Sample> averaged(const voxel::Samples<Sample>& samples, glm::ivec3& dims, int axis,
                                 const std::optional<double>& padding) {
@@ -48,7 +48,7 @@ voxel::Samples<Sample> averaged(const voxel::Samples<Sample>& samples, glm::ivec
   return made;
 }
 
-/// The number of a window's samples in the outermost planes across each axis.
+/// For each axis, the number of samples in the window in the first and last plane across this axis.
 glm::dvec3 outermost(const voxel::Scene& scan, double low, double high) {
   low = voxel::above_padding(scan, low);
   const glm::ivec3 dims = scan.lattice.dims;
@@ -74,7 +74,7 @@ glm::dvec3 outermost(const voxel::Scene& scan, double low, double high) {
   return counts;
 }
 
-/// The number of faces across each axis between samples in a window and neighbours out of it.
+/// For each axis, the number of faces across it between a sample in the window and a neighbour outside of it.
 glm::dvec3 faces_of(const voxel::Scene& scan, double low, double high) {
   low = voxel::above_padding(scan, low);
   const glm::ivec3 dims = scan.lattice.dims;
@@ -106,7 +106,7 @@ glm::dvec3 faces_of(const voxel::Scene& scan, double low, double high) {
   return all;
 }
 
-/// The number of samples in a window in each plane across each axis.
+/// For each axis, the number of samples in the window in each plane across this axis.
 std::array<std::vector<double>, 3> sections_of(const voxel::Scene& scan, double low, double high) {
   low = voxel::above_padding(scan, low);
   const glm::ivec3 dims = scan.lattice.dims;
@@ -229,8 +229,8 @@ double cut_mm2(const voxel::Scene& scan, double low, double high) {
 
 std::optional<std::string> cut_finding(double cut_mm2, double area_mm2) {
   if (!(cut_mm2 > 0.001 * area_mm2)) return std::nullopt;
-  return "the scan's border cuts the object off in an area of " + three_figures(cut_mm2) +
-         " mm²: no number includes the part beyond";
+  return "the scan's border cuts off the object over an area of " + three_figures(cut_mm2) +
+         " mm²: the reported numbers do not include the part beyond";
 }
 
 std::optional<Thickness> thickness_of(const voxel::Scene& scan, double low, double high) {

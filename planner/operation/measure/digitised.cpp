@@ -13,7 +13,7 @@
 namespace octotomy::planner {
 namespace {
 
-constexpr const char* smaller_voxels = "take smaller ones, 'voxel_mm' of the universe";
+constexpr const char* smaller_voxels = "choose smaller voxels by 'voxel_mm' of the universe";
 
 }  // namespace
 
@@ -31,7 +31,7 @@ Digitised digitised_of(const AnswerBench& bench, const Object& object) {
   for (const Shown& window : object.bound.windows) {
     const double stretch = stretch_of(window.moved_from_still);
     if (!known.emplace(window.scan, window.threshold, stretch).second) continue;
-    // Uses the surface of the whole window, of which a part's surface is a piece.
+    // The surface of the whole window is used, because the surface of a part is a piece of it.
     const std::optional<double> shift_mm =
         window.samples ? window_shift_mm(*window.samples, window.threshold, window.high)
                        : window_shift_mm(voxel::window_of(window.grey, window.threshold));
@@ -58,7 +58,8 @@ std::optional<std::string> too_coarse_finding(const Object& object, const HalfWi
   const double seen_mm3 = object.mesh.within->size().volume_mm3;
   if (object.certificate && object.certificate->verdict == verify::Verdict::Fail)
     return "volume_mm3: the mesh encloses " + grouped(seen_mm3, 1) +
-           " mm\u00b3, more than three half-widths off: its certificate shows where the kernels disagree";
+           " mm\u00b3, which differs by more than three half-widths: the object's certificate shows where "
+           "the kernels disagree";
   return too_coarse_finding(object.voxel.octree.universe().lattice().spacing_mm(), "the mesh encloses",
                             seen_mm3, smaller_voxels);
 }

@@ -9,18 +9,19 @@
 
 namespace octotomy::planner {
 
-/// The resolution of the plan's universe and scans.
+/// The resolution of a plan: its voxels and its coarsest scan.
 Digitised digitised_of(const AnswerBench& bench);
 
-/// The resolution and uncertainties of an object by its scans, windows and flat parts. A part has at least
-/// the uncertainty of the windows of its whole.
+/// The resolution of an object, with the uncertainties from its windows and flat parts. A part of an object
+/// has at least the uncertainty of the whole object's windows.
 Digitised digitised_of(const AnswerBench& bench, const Object& object);
 
-/// The mesh kernel's size of an object, with which the voxel count is compared; none without a mesh.
+/// The size of an object by its mesh, with which the count of its voxels is compared; none without a mesh.
 std::optional<SeenSize> seen_size_of(const Object& object);
-/// The reason why an object has no voxels: "'plate' is empty", or that they are too coarse for its mesh.
+/// The reason why an object has no voxels: the object is empty, such as "'plate' is empty", or the voxels are
+/// too coarse for its mesh.
 std::string why_no_voxels(const Object& object);
-/// The finding on an object's counted volume if it is_too_coarse; else none.
+/// A finding on the counted volume of an object if the half-width is_too_coarse; else none.
 std::optional<std::string> too_coarse_finding(const Object& object, const HalfWidth& width);
 
 }  // namespace octotomy::planner

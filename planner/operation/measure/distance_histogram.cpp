@@ -13,11 +13,11 @@ namespace octotomy::planner {
 namespace {
 
 constexpr glm::ivec2 size_px(900, 480);
-/// Corners of the field with the bars.
+/// Corners of the picture's field with the bars, in pixels.
 constexpr glm::dvec2 field_low(70.0, 60.0), field_high(870.0, 410.0);
 constexpr double cap_px = 11.0;
 
-/// 1, 2 or 5 times a power of ten, such that about five steps make up the extent.
+/// The step of a scale: 1, 2 or 5 times a power of ten, so that the extent has about five steps.
 double tick_step(double extent) {
   const double rough = extent / 5.0, power = std::pow(10.0, std::floor(std::log10(rough)));
   const double share = rough / power;
@@ -39,7 +39,7 @@ class Sheet {
   HistogramPicture run() {
     draw_bars();
     draw_scales();
-    write("signed distance of A's surface to B's, mm: blue inside, red outside; share of area", {70, 30});
+    write("signed distance of A's surface to B, mm: blue inside, red outside; share of area", {70, 30});
     write("mean " + ascii(difference_.mean_mm, 3) + "  rms " + ascii(difference_.rms_mm, 3) +
               "  Hausdorff 95 " + ascii(difference_.hausdorff95_mm, 3) + "  Hausdorff " +
               ascii(difference_.hausdorff_mm, 3) + " mm",
@@ -71,7 +71,7 @@ class Sheet {
           std::max(low.x + 1, static_cast<int>(std::lround(x_of(from + histogram.width_mm)))),
           std::lround(field_high.y));
       if (low.y >= high.y) continue;
-      // Draws a rim, because bars near zero are white.
+      // A rim is drawn, because bars near zero are white.
       voxel::fill_rectangle(canvas_, low, high, glm::vec3(0.45f));
       if (high.x - low.x > 2 && high.y - low.y > 1)
         voxel::fill_rectangle(canvas_, low + glm::ivec2(1), high - glm::ivec2(1, 0),
@@ -122,7 +122,7 @@ glm::u8vec3 distance_colour(double distance_mm, double range_mm) {
 
 HistogramPicture draw_histogram(const brep::Difference& difference, double range_mm) {
   if (difference.histogram.shares.empty())
-    throw std::invalid_argument("draw_histogram: the histogram has no bins");
+    throw std::invalid_argument("draw_histogram: the histogram has no bins: request at least one");
   return Sheet(difference, range_mm).run();
 }
 

@@ -17,7 +17,8 @@ namespace octotomy::planner {
 namespace {
 
 constexpr double square_mm = 1.0;
-constexpr double behind_mm = 3.0;  // a surface at 70 degrees to the view drops by this over a square
+constexpr double behind_mm = 3.0;  // depth by which a surface at 70 degrees to the view may drop within one
+                                   // square
 
 using Face = std::array<std::uint32_t, 3>;
 
@@ -51,12 +52,13 @@ class DepthMap {
   std::map<std::pair<long, long>, double> foremost_mm_;
 };
 
-/// The skin before the operation, and both predictions of it.
+/// The skin before the operation, and two predictions of it afterwards.
 struct Predictions {
   const Object* skin = nullptr;
   const brep::Triangles *still = nullptr, *a = nullptr, *b = nullptr;
 
-  /// The displacements by both of the mean of a face's corners with these weights.
+  /// The displacements by prediction a and by prediction b of a point in a face, stated by the weights of the
+  /// face's corners.
   std::pair<glm::dvec3, glm::dvec3> moved_mm(const Face& face, const glm::dvec3& weights) const {
     glm::dvec3 by_a(0.0), by_b(0.0);
     for (int corner = 0; corner < 3; ++corner) {
@@ -68,7 +70,7 @@ struct Predictions {
   }
 };
 
-/// None if the objects do not displace the points of one and the same object.
+/// The two predictions; none if the objects are not displaced points of the same object.
 std::optional<Predictions> predictions_of(const Object& a, const Object& b, const Objects& objects) {
   if (!a.mesh.whole || !b.mesh.whole) return std::nullopt;
   for (const Object* of : {&a, &b}) {
@@ -82,7 +84,7 @@ std::optional<Predictions> predictions_of(const Object& a, const Object& b, cons
   return std::nullopt;
 }
 
-/// The landmarks of both with the distance over which their displacement fades.
+/// The landmarks of both predictions, each with the distance over which its displacement fades.
 std::vector<std::pair<RatioLandmark, double>> landmarks_of(const Object& a, const Object& b) {
   std::vector<std::pair<RatioLandmark, double>> all;
   for (const Object* object : {&a, &b}) {
@@ -145,9 +147,8 @@ std::optional<FaceDifference> face_difference(const Object& a, const Object& b, 
   double reach_mm = 0.0;
   for (const auto& [landmark, fade_mm] : landmarks) reach_mm = std::max(reach_mm, fade_mm);
   made.definition =
-      "length of the difference of both displacements of a point of the skin; mean by area over the skin "
-      "that is seen "
-      "from the front within " +
+      "length of the difference between the two displacements of a point of the skin; area-weighted mean "
+      "over the skin that is visible from the front within " +
       plain(reach_mm) + " mm of a landmark";
   return made;
 }

@@ -8,10 +8,10 @@
 
 namespace octotomy::planner {
 
-/// Two predictions of the same skin, compared point by point: at the landmarks of those that moved by ratios, and over
-/// the skin that nothing hides from the front, within their reach. A landmark has the displacement of the nearest point
-/// of the skin. None unless both objects displace the points of one object and at least one has landmarks with ratios.
-/// Cost: triangles of the skin times its landmarks.
+/// Compares two predictions of the same skin point by point: at the landmarks of predictions by ratios, and
+/// over the skin that is visible from the front within the landmarks' reach. A landmark has the displacement
+/// of the skin's nearest point. None unless both objects displace the points of the same object and at least
+/// one has landmarks with ratios. Cost: triangles of the skin times its landmarks.
 std::optional<FaceDifference> face_difference(const Object& a, const Object& b, const Objects& objects);
 
 }  // namespace octotomy::planner

@@ -13,7 +13,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// The two voxels, one of each object, whose centres are nearest.
+/// The nearest two voxel centres, one in each object.
 struct NearestVoxels {
   glm::ivec3 a{0}, b{0};
 };
@@ -39,13 +39,13 @@ NearestVoxels nearest_voxels(const voxel::Octree& a, const voxel::Octree& b) {
   return nearest;
 }
 
-/// Whether a point of one surface is inside the other. If the surfaces do not meet, one point decides for
-/// all.
+/// Whether one solid lies inside the other, tested at one point of its surface. Precondition: the surfaces do
+/// not meet, so one point decides.
 bool is_within(const brep::Triangles& one, const brep::Triangles& other) {
   return brep::is_inside(one.points_mm[one.faces.front()[0]], other);
 }
 
-/// The mesh kernel's gap; 0 if one solid contains a part of the other.
+/// The least distance between two solids in mm; 0 if one contains a part of the other.
 double mesh_gap_mm(const brep::Solid& a, const brep::Solid& b) {
   if (is_within(a.triangles(), b.triangles()) || is_within(b.triangles(), a.triangles())) return 0.0;
   return brep::gap(a.triangles(), b.triangles()).distance_mm;

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double window_units = 10.0;
 
-/// Three standard deviations of a count in cells of these edges. Exposed faces overestimate an isotropic
-/// boundary by 3/2 in each direction, for any cells.
+/// Three standard deviations of a volume that is counted in cells of these edges. Exposed faces overestimate
+/// an isotropic boundary by 3/2 along each axis, for cells of any shape.
 double count_mm3(const voxel::Measures& measures, const glm::dvec3& cell_mm) {
   const double cell_mm3 = cell_mm.x * cell_mm.y * cell_mm.z;
   const double faces = glm::dot(measures.exposed_mm2, cell_mm / cell_mm3) / 1.5;
@@ -30,16 +30,16 @@ HalfWidth sum_of(std::vector<Doubt> terms) {
   return found;
 }
 
-/// 99 of 100 normally distributed errors are within this many standard deviations; a sum of a few uniform
-/// errors is within fewer.
+/// 99 of 100 normally distributed errors are within this multiple of their standard deviation. A sum of a few
+/// uniform errors stays within a smaller multiple.
 constexpr double confidence = 2.576;
 
-/// The distance between positions at which a point can be picked.
+/// The spacing of the positions at which a point can be picked.
 glm::dvec3 step_mm(const Digitised& digitised) {
   return glm::max(digitised.voxel_mm, digitised.sample_mm);
 }
 
-/// The variance of a picked point along a direction of any length.
+/// The variance of a picked point's position along `along`, times the square of that vector's length.
 double picked_variance(const glm::dvec3& along, const glm::dvec3& step_mm) {
   const glm::dvec3 part = along * step_mm;
   return glm::dot(part, part) / 12.0;
@@ -61,7 +61,7 @@ HalfWidth volume_half_width(const voxel::Measures& measures, const Digitised& di
   if (digitised.sample_mm != glm::dvec3(0.0))
     terms.push_back(
         {"samples", "3 * 0.26 v sqrt(F) of the scan's samples", count_mm3(measures, digitised.sample_mm)});
-  // Errors of parts of one solid may have the same sign, so they are added linearly.
+  // Errors of the flat parts of one solid may have the same sign, so they are added linearly.
   if (digitised.flat_mm2 != glm::dvec3(0.0))
     terms.push_back({"flat", "h/2 * area of flat parts along the lattice",
                      glm::dot(digitised.flat_mm2, 0.5 * digitised.voxel_mm)});
@@ -98,7 +98,7 @@ HalfWidth area_half_width(const SurfaceSize& surface, const Digitised& digitised
 HalfWidth distance_half_width(const std::array<glm::dvec3, 2>& points_mm, const Digitised& digitised) {
   const glm::dvec3 between = points_mm[1] - points_mm[0];
   const double length = glm::length(between);
-  // For coincident points the direction is arbitrary.
+  // If the points coincide, every direction is possible.
   const glm::dvec3 along = length > 0.0 ? between / length : glm::dvec3(1.0);
   return sum_of({{"places", "2.58 sqrt(2 sum of (u s)^2 / 12)",
                   confidence * std::sqrt(2.0 * picked_variance(along, step_mm(digitised)))}});
@@ -108,13 +108,13 @@ HalfWidth angle_half_width(const std::array<glm::dvec3, 3>& points_mm, const Dig
   const glm::dvec3 first = points_mm[0] - points_mm[1], last = points_mm[2] - points_mm[1];
   const double first_mm = glm::length(first), last_mm = glm::length(last);
   const double cosine = std::clamp(glm::dot(first, last) / (first_mm * last_mm), -1.0, 1.0);
-  // The angle's gradient with respect to an end is perpendicular to the end's leg, and its size is one over the leg's
-  // length. With respect to the vertex it is minus the sum of both gradients.
+  // The gradient of the angle with respect to an end is perpendicular to the end's leg, and has one over the
+  // leg's length as size. With respect to the vertex the gradient is minus the sum of the other two.
   const auto across = [&](const glm::dvec3& leg, double leg_mm, const glm::dvec3& other, double other_mm) {
     const glm::dvec3 side = leg / leg_mm * cosine - other / other_mm;
     const double size = glm::length(side);
-    // For collinear legs every perpendicular direction is possible: chooses the one nearest to the coarsest
-    // step.
+    // If the legs are collinear, every perpendicular direction is possible, and the one nearest to the
+    // coarsest step is used.
     const glm::dvec3 step = step_mm(digitised);
     const double longest = std::max({step.x, step.y, step.z});
     return size > 1e-9 ? side / (size * leg_mm) : glm::dvec3(longest) / (step * leg_mm * std::sqrt(3.0));

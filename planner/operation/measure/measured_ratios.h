@@ -7,21 +7,22 @@
 
 #include "planner/operation/table/record.h"
 
-// What a landmark_ratios step reports, as in the `details` of its object.
+// The report of a landmark_ratios step: records in the `details` of its object.
 namespace octotomy::planner {
 
-/// A landmark of the skin and its displacement by a ratio.
+/// A landmark of the skin, and its displacement by the ratio of a bone landmark's motion.
 struct RatioLandmark {
   std::string name;          ///< empty: a typed point
-  std::string follows;       ///< the bone's landmark; empty: it stays where it is
+  std::string follows;       ///< the bone's landmark; empty: the landmark of the skin stays where it is
   glm::dvec3 at_mm{0.0};     ///< before the operation, LPS
-  double off_skin_mm = 0.0;  ///< its distance from the object's surface
+  double off_skin_mm = 0.0;  ///< distance of the landmark from the object's surface
   std::optional<double> ratio, ratio_up, deviation;
   std::string source;                            ///< of the ratio
   glm::dvec3 bone_moved_mm{0.0}, moved_mm{0.0};  ///< LPS
   double forward_mm = 0.0, left_mm = 0.0, up_mm = 0.0;
   std::string words;
-  /// Contains 99 of 100 displacements' lengths if ratios among people have this deviation; none: no deviation.
+  /// In 99 of 100 patients the displacement's length differs by at most this, if ratios have the stated
+  /// deviation; none without a deviation.
   std::optional<double> half_width_mm;
 };
 constexpr auto members_of(const RatioLandmark&) {
@@ -46,12 +47,12 @@ constexpr auto members_of(const MeasuredRatios&) {
                     member("landmarks", &M::landmarks));
 }
 
-/// A landmark in two predictions of the same skin.
+/// A landmark in two predictions of the same skin, a and b.
 struct LandmarkDifference {
   std::string name;
   glm::dvec3 at_mm{0.0};                        ///< before the operation, LPS
   glm::dvec3 a_moved_mm{0.0}, b_moved_mm{0.0};  ///< LPS
-  double difference_mm = 0.0;                   ///< length of the difference of both
+  double difference_mm = 0.0;                   ///< length of the difference of both displacements
 };
 constexpr auto members_of(const LandmarkDifference&) {
   using L = LandmarkDifference;
@@ -60,9 +61,9 @@ constexpr auto members_of(const LandmarkDifference&) {
                     member("difference_mm", &L::difference_mm));
 }
 
-/// Two predictions of the same skin, point by point.
+/// The difference of two predictions of the same skin, point by point.
 struct FaceDifference {
-  std::string skin;  ///< the object before the operation
+  std::string skin;  ///< the object of the skin before the operation
   double mean_mm = 0.0, largest_mm = 0.0;
   glm::dvec3 largest_at_mm{0.0};  ///< before the operation, LPS
   double area_mm2 = 0.0;

@@ -9,7 +9,7 @@
 #include "planner/operation/measure/half_width.h"
 #include "planner/operation/table/record.h"
 
-// The measured size of an object, as in a result's `measurements`. Keys end in their unit.
+// The measured size of an object: records below `measurements` in a result. Keys end in their unit.
 namespace octotomy::planner {
 
 constexpr auto members_of(const Doubt&) {
@@ -17,7 +17,7 @@ constexpr auto members_of(const Doubt&) {
                     member("half_width", &Doubt::half_width));
 }
 
-/// A recommended number with its interval and the sources of its half-width.
+/// A recommended number with its half-width, and the sources of the half-width.
 struct MeasuredInterval {
   double value = 0.0;
   std::string unit;
@@ -72,7 +72,7 @@ constexpr auto members_of(const MeshSize&) {
                     member("extents_mm", &S::extents_mm));
 }
 
-/// An object's size by both kernels, and the recommended one.
+/// An object's size by each kernel, and the recommended size.
 struct MeasuredSize {
   std::string object;
   double volume_mm3 = 0.0;

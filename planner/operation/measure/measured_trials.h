@@ -7,10 +7,10 @@
 #include "planner/operation/measure/trials.h"
 #include "planner/operation/table/record.h"
 
-// The effect of errors on a plan's numbers, as in a result's `measurements`.
+// The effect of errors on a plan's numbers: records below `measurements` in a result.
 namespace octotomy::planner {
 
-/// The half-width that one source of error alone gives a number.
+/// The half-width of a number that one source of error alone would cause.
 struct TrialSource {
   std::string name;
   double half_width = 0.0;
@@ -19,7 +19,7 @@ constexpr auto members_of(const TrialSource&) {
   return std::tuple(member("name", &TrialSource::name), member("half_width", &TrialSource::half_width));
 }
 
-/// A number of the plan with the half-width of all errors together.
+/// A number of the plan, with the half-width that all errors together cause.
 struct DoubtfulNumber {
   std::string what, of;
   double value = 0.0;
@@ -34,7 +34,7 @@ constexpr auto members_of(const DoubtfulNumber&) {
                     member("coverage", &N::coverage), member("sources", &N::sources));
 }
 
-/// The standard deviations, without the count of trials and the seed.
+/// The standard deviations of the errors; the number of trials and the seed are printed elsewhere.
 constexpr auto members_of(const Trials&) {
   return std::tuple(member("landmark_mm", &Trials::landmark_mm), member("kerf_mm", &Trials::kerf_mm),
                     member("segmentation_mm", &Trials::segmentation_mm),

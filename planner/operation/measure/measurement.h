@@ -5,11 +5,12 @@
 
 #include "planner/operation/measure/measured_size.h"
 
-// The measurements of a plan, as in a result's `measurements`. Operations print them, tables and pages read
-// them. `key` is a key that only this kind of measurement has.
+// The measurements of a plan: records below `measurements` in a result. Operations print them; tables and
+// pages read them. `key` is the JSON key by which a kind of measurement is recognised, because no other kind
+// has it.
 namespace octotomy::planner {
 
-/// The gap between two objects; empty numbers where one of them is empty.
+/// The gap between two objects. Its numbers are missing if one of them is empty.
 struct MeasuredGap {
   std::string object, to;
   std::optional<double> gap_mm, gap_mesh_mm, gap_half_width_mm, overlap_mm3;
@@ -30,7 +31,7 @@ constexpr auto members_of(const MeasuredGap&) {
                     member_if_any("from_mm", &G::from_mm), member_if_any("to_mm", &G::to_mm));
 }
 
-/// The distance of two points.
+/// The distance between two points.
 struct MeasuredDistance {
   std::vector<glm::dvec3> points_mm;
   double distance_mm = 0.0;
@@ -62,7 +63,7 @@ constexpr auto members_of(const MeasuredAngle&) {
                     member("angle_half_width_terms", &A::angle_half_width_terms));
 }
 
-/// A place where one object touches another one.
+/// A place at which one object touches another.
 struct MeasuredContact {
   glm::dvec3 at_mm{0.0}, normal{0.0, 0.0, 1.0};
   double nearest_mm = 0.0;  ///< negative if they overlap
@@ -78,7 +79,7 @@ constexpr auto members_of(const MeasuredContact&) {
                     member("depth_mm", &C::depth_mm), member("area_mm2", &C::area_mm2),
                     member("half_width_mm", &C::half_width_mm));
 }
-/// The contacts of two objects; empty numbers where one of them is empty.
+/// The contacts of two objects. Their numbers are missing if one of them is empty.
 struct MeasuredContacts {
   std::string object, against;
   double within_mm = 0.0;
@@ -103,14 +104,14 @@ constexpr auto members_of(const MeasuredContacts&) {
                     member_if_any("overlap_mm3", &C::overlap_mm3), member_if_any("estimator", &C::estimator));
 }
 
-/// A section of an airway, square to its centre line.
+/// A section of an airway, perpendicular to its centre line.
 struct MeasuredSection {
   double along_mm = 0.0;  ///< along the centre line, from its beginning
   glm::dvec3 at_mm{0.0}, direction{0.0, 0.0, 1.0};
   double area_mm2 = 0.0, half_width_mm2 = 0.0;
   double voxel_mm2 = 0.0;
   std::optional<double> mesh_mm2;
-  std::optional<std::vector<Doubt>> half_width_terms;  ///< of the narrowest section only
+  std::optional<std::vector<Doubt>> half_width_terms;  ///< only for the narrowest section
 };
 constexpr auto members_of(const MeasuredSection&) {
   using S = MeasuredSection;

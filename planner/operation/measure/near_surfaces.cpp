@@ -25,9 +25,9 @@ struct Points {
   std::vector<std::array<std::uint32_t, 3>> faces = {};
 };
 
-/// Halves triangles at their longest edges until the wanted ones are no longer than the spacing. New points
-/// are not shared between triangles, but the surface is unchanged. Calls `wanted` with a triangle's corners
-/// and its longest edge, and `add` with the new points of each round.
+/// Halves triangles at their longest edges until those that `wanted` selects have no edge longer than the
+/// spacing. `wanted` gets a triangle's corners and its longest edge; `add` gets the new points of each round.
+/// New points are not shared between triangles, but the surface stays the same.
 template <typename Wanted, typename Add>
 void refine(std::vector<glm::dvec3>& points, std::vector<std::array<std::uint32_t, 3>>& faces,
             double spacing_mm, const Wanted& wanted, const Add& add) {
@@ -74,13 +74,13 @@ Points voxel_points(const voxel::Octree& one, const voxel::Octree& other) {
                                             static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(v.z));
     points.p_mm.push_back(lattice.lps_mm(face.voxel));
     points.normals.push_back(glm::normalize(axes[face.axis]) * static_cast<double>(face.side));
-    // The first surface is half a voxel outside the voxels' centres.
+    // The object's surface lies half a voxel outside the centres of its voxels.
     points.distances_mm.push_back(static_cast<double>(distances[index]) - 0.5 * glm::length(axes[face.axis]));
   }
   return points;
 }
 
-/// Points of the mesh, dense where the distance may be at most `within_mm` or the least of all.
+/// Points of the mesh. They are dense where the distance may be at most `within_mm` or the least distance.
 Points mesh_points(const brep::Solid& one, const brep::Solid& other, double within_mm, double spacing_mm) {
   const brep::Triangles& triangles = one.triangles();
   Points points{triangles.points_mm, {}, signed_distances_mm(other, triangles.points_mm), triangles.faces};
@@ -89,7 +89,7 @@ Points mesh_points(const brep::Solid& one, const brep::Solid& other, double with
       points.p_mm, points.faces, spacing_mm,
       [&](const std::array<std::uint32_t, 3>& face, double longest) {
         const std::vector<double>& d = points.distances_mm;
-        // A distance changes at most as much as the position.
+        // If a point moves, its distance changes by at most the same length.
         return std::min({d[face[0]], d[face[1]], d[face[2]]}) - longest <= std::max(within_mm, least);
       },
       [&] {
@@ -109,7 +109,7 @@ Points mesh_points(const brep::Solid& one, const brep::Solid& other, double with
   return points;
 }
 
-/// The number of the place of each point within the distance, from 0; -1 for all others.
+/// For each point within the distance, the number of its place, from 0; -1 for all other points.
 std::vector<int> places_of(const Points& points, double within_mm, double apart_mm, int& count) {
   std::map<std::array<int, 3>, std::vector<std::size_t>> cells;
   std::vector<std::size_t> near, root(points.p_mm.size());
@@ -144,7 +144,8 @@ std::vector<int> places_of(const Points& points, double within_mm, double apart_
   return places;
 }
 
-/// The share of a triangle in which a value that is linear between its corners is at most `most`.
+/// The share of a triangle's area in which a value is at most `most`. The value is linear between the
+/// corners.
 double share_below(std::array<double, 3> corners, double most) {
   std::sort(corners.begin(), corners.end());
   const auto [low, middle, high] = corners;
@@ -186,8 +187,8 @@ double least_distance_mm(const brep::Solid& one, const brep::Solid& other, doubl
 }
 
 std::vector<NearPoint> near_points(const brep::Solid& one, const brep::Solid& other, double spacing_mm) {
-  // Planning errors move pieces by a few millimetres, so points farther away than this do not become the
-  // nearest.
+  // Errors in a plan move pieces by a few millimetres, so points farther from the other surface than this
+  // cannot become the nearest.
   constexpr double reach_mm = 5.0;
   constexpr std::size_t most_points = 400;
   const double least_mm = least_distance_mm(one, other, spacing_mm);
@@ -208,8 +209,8 @@ std::vector<NearPoint> near_points(const brep::Solid& one, const brep::Solid& ot
     places.push_back(points.p_mm[i]);
   }
   const std::vector<brep::Foot> feet = other.tree().feet(places);
-  // At smaller distances the direction to the nearest point is only rounding; there the surfaces face each
-  // other.
+  // For smaller distances, the direction to the nearest point is only rounding; the other surface's normal is
+  // used instead.
   constexpr double touching_mm = 1e-6;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!(feet[i].distance_mm > touching_mm)) continue;
@@ -261,7 +262,7 @@ Contacts contacts_between(const voxel::Octree& one, const voxel::Octree& other,
   const double half_voxel_mm = 0.5 * std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   const Points points =
       made.by_mesh ? mesh_points(*solid_one, *solid_other, options.within_mm, half_voxel_mm) : voxels;
-  // Neighbouring points always belong to one place, for any `apart_mm`.
+  // Neighbouring points always belong to the same place, even if `apart_mm` is smaller than their distance.
   const double between_points_mm =
       made.by_mesh ? half_voxel_mm : std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   int count = 0;
@@ -286,7 +287,7 @@ Contacts contacts_between(const voxel::Octree& one, const voxel::Octree& other,
   }
   if (made.by_mesh) add_areas(points, places, options.within_mm, made.contacts);
   made.voxel_nearest_mm = *std::min_element(voxels.distances_mm.begin(), voxels.distances_mm.end());
-  // Beyond two voxels, the voxel kernel's distance belongs to another place.
+  // Farther than two voxels, the voxel kernel's distance belongs to another place.
   const double about_mm = 2.0 * glm::length(spacing_mm);
   for (Contact& contact : made.contacts)
     for (std::size_t i = 0; i < voxels.p_mm.size(); ++i)

@@ -22,7 +22,7 @@ constexpr auto members_of(const LevelRecord&) {
                     member("empty", &L::empty));
 }
 
-/// The members of an octree's answer that follow the program's version and the times.
+/// The members of an octree's answer that follow `octotomy` and `timings_ms`.
 struct OctreeRecord {
   std::string kind = "octree", name;
   int depth = 0;
@@ -38,7 +38,7 @@ struct OctreeRecord {
   std::optional<std::uint64_t> bytes_file;
   glm::dvec3 spacing_mm{1.0};
   Json lps_from_voxel;
-  Json metadata;  ///< of any form, because the file may be from another program
+  Json metadata;  ///< Any JSON is possible here, because another program may have written the file.
   std::vector<std::string> findings;
 };
 constexpr auto members_of(const OctreeRecord&) {
@@ -54,7 +54,7 @@ constexpr auto members_of(const OctreeRecord&) {
                     member("findings", &O::findings));
 }
 
-/// A line of a scan's audit in an octree's metadata.
+/// One line of a scan's audit in the metadata of an octree.
 struct DoubtLine {
   std::string check, verdict, detail;
 };
@@ -77,8 +77,8 @@ std::vector<LevelRecord> levels_of(const std::vector<voxel::LevelCount>& counts)
   return levels;
 }
 
-/// The voxels of Full nodes on all levels. If no level has nodes, the root itself is Full, which no level
-/// counts.
+/// The voxels of the Full nodes of all levels. If no level has nodes, the root is Full, and levels do not
+/// count the root.
 std::uint64_t voxels_of(const std::vector<voxel::LevelCount>& counts, int depth) {
   std::uint64_t voxels = 0;
   for (const voxel::LevelCount& count : counts) voxels += count.full << (3 * (depth - count.level));
@@ -138,8 +138,8 @@ Json octree_answer(const voxel::OctreeFile& file, std::optional<std::uint64_t> b
   made.spacing_mm = universe.lattice().spacing_mm();
   made.lps_from_voxel = to_json(universe.lps_from_voxel);
   made.metadata = metadata_of(file);
-  if (!bytes_file) made.findings.emplace_back("bytes_file: no octree file was read or written");
-  if (file.metadata.empty()) made.findings.emplace_back("metadata: the file holds none");
+  if (!bytes_file) made.findings.emplace_back("bytes_file: null, because no octree file was read or written");
+  if (file.metadata.empty()) made.findings.emplace_back("metadata: null, because the file contains none");
   Json json = answer(timings);
   json.update(print_record(made));
   return json;
@@ -150,9 +150,9 @@ Json doubts_of(const std::vector<voxel::Finding>& audit) {
   std::vector<voxel::Finding> doubts;
   for (const voxel::Finding& finding : audit)
     if (finding.verdict != voxel::Verdict::Pass && doubts.size() < most)
-      doubts.push_back({finding.check, finding.verdict,
-                        quotes_identity(finding.check) ? "its files' statements about the patient differ"
-                                                       : finding.detail});
+      doubts.push_back(
+          {finding.check, finding.verdict,
+           quotes_identity(finding.check) ? "its files state different patients" : finding.detail});
   return to_json(doubts);
 }
 

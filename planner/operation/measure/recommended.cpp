@@ -12,7 +12,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// Interpolates the scan's own samples at a point of the object's frame.
+/// A function that interpolates the scan's own samples at a point in the frame of the moved object.
 std::function<double(const glm::dvec3&)> sampler_of(const voxel::Scene& scan,
                                                     const glm::dmat4& moved_from_still) {
   return [&scan, still_from_moved = glm::inverse(moved_from_still)](const glm::dvec3& p_mm) {
@@ -20,7 +20,7 @@ std::function<double(const glm::dvec3&)> sampler_of(const voxel::Scene& scan,
   };
 }
 
-/// Interpolates the octree's samples at a point of the object's frame.
+/// A function that interpolates the octree's samples at a point in the frame of the moved object.
 std::function<double(const glm::dvec3&)> sampler_of(const voxel::GreyOctree& grey,
                                                     const glm::dmat4& moved_from_still) {
   return [&grey, voxel_from_lps = glm::inverse(grey.universe().lps_from_voxel) *
@@ -44,8 +44,8 @@ verify::SizeIntervals intervals_of_one(const brep::Solid& solid, const SurfaceSa
   from.sample_at_mm = glm::dvec3(lps_from_scan[3]);
   from.window_shift_mm = samples.window_shift_mm;
   from.along_lps_mm = samples.along_lps_mm;
-  // In a window with two bounds samples rise and fall again, so the blur cannot be measured; assumes the
-  // usual 0.7 samples.
+  // In a window with two bounds, samples rise and fall again, so the blur cannot be measured. The usual value
+  // of 0.7 samples is assumed.
   constexpr double usual_blur2 = 0.5;
   if (samples.has_upper()) {
     from.blur_samples2 = usual_blur2;
@@ -57,7 +57,7 @@ verify::SizeIntervals intervals_of_one(const brep::Solid& solid, const SurfaceSa
     double coarsest = 0.0;
     for (int axis = 0; axis < 3; ++axis)
       coarsest = std::max(coarsest, voxel_mm[axis] / glm::length(from.sample_edges[axis]));
-    // Voxels between samples were already interpolated once.
+    // Voxels that are no samples were already interpolated once, which adds blur.
     const double interpolation = samples.voxels_are_samples ? 1.0 / 6.0 : (1.0 + coarsest * coarsest) / 6.0;
     from.blur_samples2 = verify::blur_of(solid, from.sample_edges,
                                          sampler_of(*samples.grey, samples.moved_from_still), interpolation);
@@ -65,9 +65,9 @@ verify::SizeIntervals intervals_of_one(const brep::Solid& solid, const SurfaceSa
   return verify::size_intervals(solid, from);
 }
 
-/// The shares of the surface that belong to each source. Each of a few thousand faces is assigned to the
-/// source in whose samples it is nearest to a bound of the window, if within a sample. Other faces are cuts.
-/// If all are cuts, shares are equal.
+/// For each source, its share of the surface. Each of a few thousand faces is assigned to the source in whose
+/// samples it is nearest to a bound of the window, if within one sample. Other faces are cuts. If all faces
+/// are cuts, the shares are equal.
 std::vector<double> shares_of(const brep::Solid& solid, const std::vector<SurfaceSamples>& sources) {
   constexpr std::size_t most_faces = 2000;
   std::vector<double> shares(sources.size(), 0.0);
@@ -164,7 +164,7 @@ void add_counting(double doubt_mm3, verify::SizeIntervals& found) {
   volume.sources.push_back(
       {"samples", "2.8 of Gundersen and Jensen's deviation, 3 * 0.26 v sqrt(F)", doubt_mm3});
   if (!(volume.value > 0.0)) return;
-  // Sections that miss part of an object's volume also miss its surface.
+  // Planes of samples that miss part of an object's volume also miss part of its surface.
   const double missed_mm2 = area.value * doubt_mm3 / volume.value;
   area.half_width += missed_mm2;
   area.sources.push_back({"samples", "S times the doubtful share of the volume", missed_mm2, true});
@@ -177,7 +177,7 @@ verify::SizeIntervals intervals_of_labels(const voxel::Scene& scan, double low, 
   by_surface.volume_mm3 = {counted_mm3, 0.0, {}};
   add_counting(counting_doubt_mm3(scan, low, high), by_surface);
   if (!(counted_mm3 > 0.0)) return by_surface;
-  // Triangles that lose part of the counted volume also lose its surface.
+  // If the triangles lose part of the counted volume, they also lose part of the surface.
   const double lost_mm2 = by_surface.area_mm2.value * lost_mm3 / counted_mm3;
   by_surface.area_mm2.half_width += lost_mm2;
   by_surface.area_mm2.sources.push_back(
@@ -206,8 +206,8 @@ void add_thickness(const Thickness& thickness, double share, verify::SizeInterva
   add(found.volume_mm3, "thickness", "|V - V of samples twice as thick|",
       share * std::abs(thickness.volume_change_mm3));
   add(found.volume_mm3, "border", "half a sample beyond the scan's border", share * thickness.border_mm3);
-  // If each doubling of the thickness leaves this share, the original was larger by its inverse. Below a
-  // quarter the estimate is meaningless.
+  // If doubling the thickness leaves this share of the area, the true area is assumed to be larger by the
+  // inverse share. Below a quarter the estimate is meaningless.
   const double kept = std::max(1.0 + thickness.area_change_share, 0.25);
   add(found.area_mm2, "thickness", "|S / S of samples twice as thick - 1| S",
       std::max(kept, 1.0 / kept) * found.area_mm2.value - found.area_mm2.value);
@@ -227,11 +227,11 @@ std::vector<std::string> findings_of(const verify::SizeIntervals& found, bool is
         "WARN volume: the recommended " + grouped(value, 1) +
         " mm\u00b3 lies outside of both kernels' answers (voxels " + grouped(*voxels_mm3, 1) + ", mesh " +
         grouped(*mesh_mm3, 1) + " mm\u00b3): " +
-        (!is_of_phases ? "labels are counted in the scan's own samples"
+        (!is_of_phases ? "labels are counted in the scan's own samples, which differ from the plan's voxels"
          : has_core ? "the threshold's surface loses parts that are thin or sharp compared with the scan's "
                       "blur, but the sum of the samples does not"
-                    : "no part is thicker than the scan's blur; the sum of the samples is taken, with the "
-                      "window's bound as the half level"));
+                    : "no part is thicker than the scan's blur, so the volume is the sum of the samples, "
+                      "with the window's bound as the half level"));
   constexpr double far_off = 0.1;
   const double area = found.area_mm2.value;
   if (const auto& [voxels_mm2, mesh_mm2] = kernels_mm2;
@@ -241,7 +241,7 @@ std::vector<std::string> findings_of(const verify::SizeIntervals& found, bool is
     findings.push_back("WARN area: the recommended " + grouped(area, 1) +
                        " mm\u00b2 differs from both kernels' answers by more than a tenth (voxels " +
                        grouped(*voxels_mm2, 1) + ", mesh " + grouped(*mesh_mm2, 1) +
-                       " mm\u00b2): it allows for edges that the scan's blur rounds off");
+                       " mm\u00b2), because it corrects for edges that the scan's blur rounds off");
   for (const auto& [name, interval] :
        {std::pair("volume", &found.volume_mm3), std::pair("area", &found.area_mm2)}) {
     if (interval->half_width <= interval->value || interval->sources.empty()) continue;
@@ -252,7 +252,7 @@ std::vector<std::string> findings_of(const verify::SizeIntervals& found, bool is
                           });
     findings.push_back(std::string("WARN ") + name + ": its interval is wider than its value (" +
                        three_figures(interval->value) + " \u00b1 " + three_figures(interval->half_width) +
-                       "): the scan does not resolve this object; the largest term is '" + largest.name +
+                       "): the scan does not resolve this object, and the largest term is '" + largest.name +
                        "': " + largest.formula);
   }
   return findings;
@@ -265,8 +265,8 @@ verify::SizeIntervals intervals_of_count(const voxel::Measures& measures, const 
   const double area_mm2 = measures.area_crofton13_mm2 + glm::dot(digitised.flat_mm2, 1.0 - shares);
   const double oblique_mm2 =
       (1.0 - std::min({shares.x, shares.y, shares.z})) * std::max(area_mm2 - flat_mm2, 0.0);
-  // If a flat part is displaced by half an edge, the walls around it grow or shrink by half an edge; parts are
-  // assumed to be two squares.
+  // If a flat part is displaced by half an edge, the walls around it grow or shrink by half an edge. The flat
+  // parts are assumed to be two squares for each axis.
   const double rims_mm2 = 4.0 * glm::dot(glm::sqrt(0.5 * digitised.flat_mm2), digitised.voxel_mm);
   HalfWidth area{std::hypot(oblique_mm2, rims_mm2),
                  {{"directions", "(1 - least share of a plane seen) (S - flats)", oblique_mm2},

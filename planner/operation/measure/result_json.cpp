@@ -8,7 +8,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// JSON has no infinity and no NaN; these become null.
+/// Infinity and NaN become null, because JSON has neither.
 Json finite(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
@@ -245,7 +245,7 @@ Json to_json(const Object& object) {
 
 namespace {
 
-/// The identity as in DICOM; null for values that the file does not state.
+/// The identity in DICOM's terms; null for values that the file does not state.
 Json identity_json(const voxel::Identity& identity) {
   const auto or_null = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
   const auto first = [](const std::vector<std::string>& uids) {

@@ -11,19 +11,19 @@
 #include "voxel/measure/measure.h"
 #include "voxel/space/scene.h"
 
-// The program's answers as JSON. Keys end in their unit; a missing number is null.
+// Parts of the program's answers as JSON. Keys end in their unit; a missing number is null.
 namespace octotomy::planner {
 
-/// {"octotomy": version, "timings_ms": {...}}: the beginning of every answer.
+/// The first members of every answer: {"octotomy": version, "timings_ms": {...}}.
 Json answer(const Timings& timings);
 
 Json to_json(const glm::dvec3& value);
 Json to_json(const std::optional<glm::dvec3>& value);
-/// A matrix row by row.
+/// A matrix as a list of its rows.
 Json to_json(const glm::dmat3& matrix);
 Json to_json(const glm::dmat4& matrix);
 Json to_json(const std::vector<voxel::Finding>& audit);
-/// The parts of a scan that are interpolated between images, with the slices of the lattice inside each.
+/// The gaps of a scan that are interpolated between images, each with the lattice's slices inside it.
 Json to_json(const std::vector<voxel::Hole>& holes, const voxel::Lattice& lattice);
 VoxelSize size_of(const voxel::Measures& measures);
 MeshSize size_of(const brep::Measures& measures);
@@ -38,7 +38,7 @@ Json to_json(const Object& object);
 /// A scan's geometry, range and audit, as printed by `info`.
 Json scan_answer(const voxel::Scene& scene, const Timings& timings);
 
-/// The verdict of an audit's line: "PASS", "WARN" or "FAIL".
+/// The text of a verdict in an audit: "PASS", "WARN" or "FAIL".
 using verify::to_string;
 
 inline constexpr const char* voxel_area_estimator = "Crofton formula, 13 directions";

@@ -56,7 +56,7 @@ Json curvature_json(const brep::Mesh& mesh, AtVertices& shown) {
     total += found.gaussian_per_mm2[v] * found.areas_mm2[v];
   }
   shown = {"mean_curvature_per_mm", std::move(found.mean_per_mm)};
-  return {{"estimator", "cotangents and angle defects over mixed Voronoi areas, at vertices"},
+  return {{"estimator", "at vertices, by cotangent weights and angle defects over mixed Voronoi areas"},
           {"mean", weighted_summary(std::move(mean), "per_mm")},
           {"gaussian", weighted_summary(std::move(gaussian), "per_mm2")},
           {"total_gaussian", total}};
@@ -84,7 +84,8 @@ double angle_deg(const std::vector<glm::dvec3>& points_mm) {
   const glm::dvec3& at = points_mm[1];
   const glm::dvec3 one = points_mm[0] - at, other = points_mm[2] - at;
   if (!(glm::length(one) > 0.0) || !(glm::length(other) > 0.0))
-    throw std::runtime_error("--angle: a point coincides with the corner, so there is no angle");
+    throw std::runtime_error(
+        "--angle: a point coincides with the corner, so the angle is undefined: choose another point");
   return std::atan2(glm::length(glm::cross(one, other)), glm::dot(one, other)) * 180.0 / std::numbers::pi;
 }
 

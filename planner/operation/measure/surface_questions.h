@@ -11,13 +11,13 @@
 
 namespace octotomy::planner {
 
-/// Measures of a closed surface besides its size.
+/// Requested measures of a closed surface besides its size.
 struct SurfaceQuestions {
   std::vector<glm::dvec3> section = {};   ///< a point and a normal
   std::vector<glm::dvec3> distance = {};  ///< two points
   std::vector<glm::dvec3> angle = {};     ///< three points, the angle at the second
   std::vector<glm::dvec3> along = {};     ///< two points
-  const brep::Mesh* to = nullptr;         ///< another surface: the least distance
+  const brep::Mesh* to = nullptr;         ///< file of another surface, for the least distance to it
   bool thickness = false, curvature = false;
 };
 
@@ -27,16 +27,16 @@ struct AtVertices {
   std::vector<double> values;
 };
 
-/// The answers that need no surface: the distance and the angle, as far as they were requested. Throws
+/// The answers that do not depend on the surface: the distance and the angle, if requested. Throws
 /// std::runtime_error if a leg of the angle has no length.
 Json point_answers(const SurfaceQuestions& questions);
 
-/// Computes the measures, each under its own key and timed. Sets `shown` to the last of thickness and
-/// curvature. Throws std::runtime_error if a leg of an angle has no length.
+/// Computes the requested measures, each with its own key and timing. `shown` is set to the values of the
+/// last measure of thickness and curvature. Throws std::runtime_error if a leg of an angle has no length.
 Json surface_answers(const SurfaceQuestions& questions, const brep::Solid& solid,
                      const voxel::Progress& progress, Timings& timings, AtVertices& shown);
 
-/// The existing answers as rows of text.
+/// The answers as rows of text, for those that exist.
 std::vector<std::pair<std::string, std::string>> surface_rows(const Json& answers);
 
 }  // namespace octotomy::planner

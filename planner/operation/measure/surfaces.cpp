@@ -30,7 +30,7 @@ struct Surfaces {
   fs::path path;
   std::vector<int> labels;
   int smooth = convert::LabelSurfaceOptions{}.smooth_voxels;
-  // Options of the verb only.
+  // Only the verb has the following options.
   fs::path out, names;
 };
 
@@ -40,23 +40,23 @@ void check(const Surfaces& surfaces, const FieldLocation& place) {
   if (place.scope != nullptr) check_output_path(surfaces.path, {".vtp", ".obj", ".glb"}, place.at("path"));
   for (const int label : surfaces.labels)
     if (label < 1 || label > voxel::most_label)
-      place.at("labels").refuse("a label is from 1 to " + std::to_string(voxel::most_label));
+      place.at("labels").refuse("a label must be from 1 to " + std::to_string(voxel::most_label));
 }
 
 /// Names of labels.
 using Names = std::map<int, std::string>;
 
-/// Calls `work` with a scene; refuses a scene that is not a label map.
+/// Calls `work` with a scene. Throws std::runtime_error that names the path if the scene is not a label map.
 template <typename Work>
 auto of_label_map(const voxel::Scene& scene, const Work& work) {
   try {
     return work();
   } catch (const voxel::InvalidInput& error) {
-    throw std::runtime_error(scene.source + ": is no label map: " + error.what());
+    throw std::runtime_error(scene.source + ": is not a label map: " + error.what());
   }
 }
 
-/// The names of the labels that have a surface; "label 5" if the table has none.
+/// The names of the labels with a surface; a label without a name gets one such as "label 5".
 Names names_of(const Surfaces& asked, const voxel::Scene& scene, const LabelTable& table) {
   const std::set<int> wanted(asked.labels.begin(), asked.labels.end());
   Names names;
@@ -69,7 +69,7 @@ Names names_of(const Surfaces& asked, const voxel::Scene& scene, const LabelTabl
   return names;
 }
 
-/// The given table, or the label map's own.
+/// The table of --names if it is stated, else the label map's own table.
 LabelTable table_of(const Surfaces& asked, const fs::path& label_map, const voxel::Scene& scene) {
   if (!asked.names.empty()) return read_label_table(asked.names);
   std::set<int> occurring;
@@ -88,7 +88,7 @@ brep::PartedSurface surfaces_of(const Surfaces& asked, const voxel::Scene& scene
   return made;
 }
 
-/// Numbers of parts, and areas of their contacts.
+/// The numbers of the labels, and the areas of the contacts between their parts.
 struct Sizes {
   struct Part {
     std::size_t faces = 0;
@@ -102,7 +102,7 @@ Sizes sizes_of(const brep::PartedSurface& parted) {
   Sizes sizes;
   for (std::size_t f = 0; f < parted.sides.size(); ++f) {
     const auto& [a, b, c] = parted.triangles.faces[f];
-    // Sums relative to the first point, because volumes far from the origin lose digits.
+    // Sums are relative to the first point, because volumes far from the origin lose digits.
     const glm::dvec3 &origin = parted.triangles.points_mm[0], p = parted.triangles.points_mm[a] - origin,
                      q = parted.triangles.points_mm[b] - origin, r = parted.triangles.points_mm[c] - origin;
     const double volume_mm3 = glm::dot(glm::cross(p, q), r) / 6.0,
@@ -133,7 +133,7 @@ constexpr auto members_of(const PartSize&) {
                     member("volume_samples_mm3", &P::volume_samples_mm3), member("area_mm2", &P::area_mm2));
 }
 
-/// The common surface of two parts.
+/// The surface that two parts share.
 struct PartContact {
   std::vector<int> between;  ///< two labels
   double area_mm2 = 0.0;
@@ -167,8 +167,8 @@ PartedSize parted_size(const brep::PartedSurface& surface, const voxel::Scene& s
   return made;
 }
 
-/// Findings on files that are not a table of names, on labels stored with a fraction, and on parts whose surface
-/// encloses another volume than their samples: thin layers between other parts.
+/// Findings on files that are no table of names, on labels that are stored as fractions, and on parts whose
+/// surface encloses another volume than their samples, such as thin layers between other parts.
 std::vector<std::string> findings_of(const PartedSize& parted, const LabelTable& table,
                                      const voxel::Scene& scene) {
   constexpr double told_share = 0.1;
@@ -183,15 +183,16 @@ std::vector<std::string> findings_of(const PartedSize& parted, const LabelTable&
     if (findings.size() == most_told)
       ++more;
     else
-      findings.push_back(part.name + ": the surface holds " + grouped(surface, 0) +
-                         " mm\u00b3, its samples " + grouped(samples, 0) +
-                         " mm\u00b3: it is thin, and smoothing changed it; --smooth 0 changes less");
+      findings.push_back(
+          part.name + ": the surface holds " + grouped(surface, 0) + " mm\u00b3, its samples " +
+          grouped(samples, 0) +
+          " mm\u00b3, because it is thin and smoothing changed it: --smooth 0 changes it less");
   }
-  if (more > 0) findings.push_back(std::to_string(more) + " more surfaces differ as much from their samples");
+  if (more > 0) findings.push_back(std::to_string(more) + " more surfaces differ from their samples as much");
   return findings;
 }
 
-/// The name as part of a file name: letters of any script, digits, dots and dashes.
+/// A name as part of a file's name: only letters of any script, digits, dots and dashes.
 std::string file_word(const std::string& name) {
   std::string word;
   for (const char letter : name) {
@@ -201,8 +202,8 @@ std::string file_word(const std::string& name) {
   return word;
 }
 
-/// One file per part: `out` with the part's name in place of {name}. Parts with the same name also get their
-/// numbers.
+/// The paths of the files, one for each part: `out` with the part's name in place of {name}. If several parts
+/// have the same name, the number is added.
 std::map<int, fs::path> files_of_parts(const Names& names, const fs::path& out) {
   std::map<int, fs::path> files;
   std::set<std::string> used;
@@ -220,7 +221,7 @@ bool is_of_parts(const fs::path& out) {
   return out.filename().string().find(name_mark) != std::string::npos;
 }
 
-/// The files that the verb writes; refuses generated names that cannot be written.
+/// The paths of the files that the verb writes. Throws if a generated name cannot be written.
 std::vector<fs::path> need_files(const Surfaces& asked, const Names& names) {
   if (!is_of_parts(asked.out)) return {asked.out};
   std::vector<fs::path> files;
@@ -276,8 +277,8 @@ FileAnswer on_files(const Surfaces& asked, const FileBench& bench) {
   if (!is_of_parts(asked.out) && !brep::is_parts_file(asked.out))
     throw std::runtime_error(
         asked.out.string() +
-        ": write all surfaces as one .vtp, .obj or .glb file, or one file per label: put " + name_mark +
-        " into its name");
+        ": all surfaces can be written only to one .vtp, .obj or .glb file, or to one file per label: put " +
+        name_mark + " into its name");
   need_mesh_extension(asked.out);
   need_folder_of(asked.out);
   const fs::path file = asked.scan.name;
@@ -291,7 +292,7 @@ FileAnswer on_files(const Surfaces& asked, const FileBench& bench) {
     made = surfaces_of(asked, scene, names, bench.progress("surfaces"));
   }
   if (made.triangles.faces.empty())
-    throw std::runtime_error(file.string() + ": every sample is 0, so there are no labels");
+    throw std::runtime_error(file.string() + ": contains no labels, because every sample is 0");
   is_of_parts(asked.out) ? write_each(made, asked.out, bench.timings)
                          : write_one(made, asked.out, bench.timings);
   std::vector<std::string> paths;
@@ -312,12 +313,14 @@ FileAnswer on_files(const Surfaces& asked, const FileBench& bench) {
 }  // namespace
 
 Operation surfaces_operation() {
-  return Describe<Surfaces>(
-             "surfaces", "Writes the surfaces of all labels of a label map, which share their common faces.",
-             Makes::File)
+  return Describe<Surfaces>("surfaces",
+                            "Writes the surfaces of all labels of a label map. Neighbouring surfaces share "
+                            "their common faces.",
+                            Makes::File)
       .takes(field("scan", &Surfaces::scan, "The label map.").required().positional("file"))
-      .takes(field("path", &Surfaces::path, "The file within the result's folder: .vtp, .obj or .glb.")
-                 .in_plans_only())
+      .takes(
+          field("path", &Surfaces::path, "Path of the file within the result's folder: .vtp, .obj or .glb.")
+              .in_plans_only())
       .takes(
           field("labels", &Surfaces::labels, "Only these labels. Default: all but 0.").for_example("[1, 2]"))
       .takes(field("smooth", &Surfaces::smooth,
@@ -325,14 +328,13 @@ Operation surfaces_operation() {
                  .from(0)
                  .to(4))
       .verb_takes(field("out", &Surfaces::out,
-                        "One .vtp, .obj or .glb file of all; or one file a label, with {name} in its name, "
-                        "which replaces only a file that Octotomy wrote.")
+                        "One .vtp, .obj or .glb file for all labels; or, with {name} in the path, one file "
+                        "for each label, which only replaces a file that Octotomy wrote.")
                       .required())
-      .verb_takes(
-          field("names", &Surfaces::names,
-                "The table of names, in place of the one found: .json, .csv, .tsv, ITK-SNAP's .txt, 3D "
-                "Slicer's .ctbl.")
-              .a_file())
+      .verb_takes(field("names", &Surfaces::names,
+                        "A table of names to use instead of the label map's own: .json, .csv, .tsv, "
+                        "ITK-SNAP's .txt, 3D Slicer's .ctbl.")
+                      .a_file())
       .reads_scans()
       .example(R"({"id": "organs", "do": "surfaces", "scan": "ct", "path": "organs.vtp"})")
       .on_files(

@@ -17,24 +17,27 @@ nlohmann::ordered_json measure(const Trials& asked, const AnswerBench&) {
 
 Operation trials_operation() {
   return Describe<Trials>("trials",
-                          "Reports the effect of errors of landmarks, saw, segmentation and seating on the "
-                          "plan's displacements, gaps, overlaps, distances and angles.",
+                          "Repeats the plan with random errors of landmarks, saw, segmentation and seating, "
+                          "and reports the effect on displacements, gaps, overlaps, distances and angles.",
                           Makes::Measurement)
       .takes(field("landmark_mm", &Trials::landmark_mm,
                    "Standard deviation of a landmark's placement along each axis.")
                  .from(0.0)
                  .to(20.0))
-      .takes(field("kerf_mm", &Trials::kerf_mm, "Standard deviation of a saw's width.").from(0.0).to(5.0))
+      .takes(field("kerf_mm", &Trials::kerf_mm, "Standard deviation of the width of saw cuts.")
+                 .from(0.0)
+                 .to(5.0))
       .takes(field("segmentation_mm", &Trials::segmentation_mm,
-                   "Standard deviation of the bone's border, the same distance outward everywhere.")
+                   "Standard deviation of the bone's border: in a trial it is displaced outward by the same "
+                   "distance everywhere.")
                  .from(0.0)
                  .to(5.0))
       .takes(field("seating_mm", &Trials::seating_mm,
-                   "Standard deviation of a moved piece's place along each axis.")
+                   "Standard deviation of a moved piece's position along each axis.")
                  .from(0.0)
                  .to(20.0))
       .takes(field("seating_deg", &Trials::seating_deg,
-                   "Standard deviation of a moved piece's turn about each axis through its centroid.")
+                   "Standard deviation of a moved piece's rotation about each axis through its centroid.")
                  .from(0.0)
                  .to(30.0))
       .takes(field("trials", &Trials::trials, "Number of trials.").from(100).to(1000000))

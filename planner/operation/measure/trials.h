@@ -3,13 +3,13 @@
 
 namespace octotomy::planner {
 
-/// Standard deviations of an operation's errors in trials; the errors are independent of each other.
+/// Standard deviations of the errors in trials of a plan. The errors are independent of each other.
 struct Trials {
-  double landmark_mm = 1.0;      ///< of a landmark's placement, along each axis
+  double landmark_mm = 1.0;      ///< of a landmark's position, along each axis
   double kerf_mm = 0.1;          ///< of a saw's width
-  double segmentation_mm = 0.2;  ///< of the bone's boundary, outward by the same amount everywhere
+  double segmentation_mm = 0.2;  ///< of the displacement of the bone's boundary, which is the same everywhere
   double seating_mm = 0.5;       ///< of a moved piece's position, along each axis
-  double seating_deg = 0.5;      ///< of its rotation about each axis through its centroid
+  double seating_deg = 0.5;      ///< of a moved piece's rotation about each axis through its centroid
   int trials = 10000;
   int seed = 1;
 };

@@ -14,11 +14,10 @@ namespace {
 using WeightedValues = std::vector<std::pair<double, double>>;
 
 constexpr const char* wall_rule =
-    "only where the ball touches the surface at a second place, at least 150 degrees from the first as seen "
-    "from its centre: edges are left out unless their sides converge by 30 degrees "
-    "or less";
+    "only where the ball touches the surface at two places that are at least 150 degrees apart, seen from "
+    "its centre; edges are thus left out unless their sides converge by 30 degrees or less";
 
-/// The results over a volume, with the same keys for both kernels.
+/// The thickness over the volume, with the same keys for both kernels.
 template <typename Found>
 Json volume_json(const Found& found, std::vector<std::string> sources) {
   return {{"average",
@@ -33,8 +32,8 @@ Json volume_json(const Found& found, std::vector<std::string> sources) {
           {"max_mm", found.largest_mm}};
 }
 
-/// Summarises the surface's points that lie on walls, with the thinnest wall and the walls' share of the
-/// surface; nulls if there are none.
+/// The thickness of the surface's points that lie on walls, the thinnest wall and the walls' share of the
+/// surface; nulls if there are no walls.
 Json wall_json(WeightedValues walls, double whole, const std::optional<glm::dvec3>& thinnest_mm) {
   double share = 0.0;
   for (const auto& [value, weight] : walls) share += weight;
@@ -43,11 +42,11 @@ Json wall_json(WeightedValues walls, double whole, const std::optional<glm::dvec
                {"thinnest_mm", to_json(thinnest_mm)},
                {"rule", wall_rule}});
   if (!thinnest_mm)
-    json.update({{"finding", "no two sides of the object are near enough to parallel for a wall"}});
+    json.update({{"finding", "the object has no walls, because no two of its sides are nearly parallel"}});
   return json;
 }
 
-/// At each vertex, the mean over the samples of its triangles, weighted by their nearness.
+/// For each vertex, the mean over the samples of its triangles, weighted by their nearness.
 std::vector<double> at_vertices_of(const brep::Solid& solid,
                                    const std::vector<brep::LocalThicknessAt>& surface) {
   const brep::Triangles& triangles = solid.triangles();
@@ -62,8 +61,7 @@ std::vector<double> at_vertices_of(const brep::Solid& solid,
       sums[vertex] += weight * surface[i].thickness_mm;
       weights[vertex] += weight;
     }
-  // In large meshes not every triangle has a sample. A vertex without a sample takes the value of a
-  // neighbour.
+  // In large meshes some triangles have no sample. A vertex without a sample gets the value of a neighbour.
   for (int round = 0; round < 8; ++round)
     for (const auto& face : triangles.faces)
       for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -120,7 +118,7 @@ Json thickness_json(const brep::Solid& solid, const voxel::Progress& progress,
       found.thinnest_wall ? std::optional(found.surface[*found.thinnest_wall].point.p_mm) : std::nullopt;
   return {{"definition",
            "local thickness after Hildebrand and Ruegsegger 1997: diameter of the largest ball inside that "
-           "holds the point; ball: at points of the surface, weighted by area; volume: at points of the "
+           "contains the point; ball: at points of the surface, weighted by area; volume: at points of the "
            "volume; ray: along the inward normal to the surface"},
           {"ray", weighted_summary(std::move(ray), "mm")},
           {"ball", weighted_summary(std::move(ball), "mm")},
@@ -145,9 +143,9 @@ Json thickness_json(const voxel::Octree& octree, const voxel::Progress& progress
     thinnest_mm = octree.universe().lattice().lps_mm(glm::dvec3(found.surface[*found.thinnest_wall].voxel));
   return {{"definition",
            "local thickness after Hildebrand and Ruegsegger 1997: diameter of the largest ball inside that "
-           "holds a voxel's centre; ball: over voxels with a face outside; volume: over all voxels"},
+           "contains a voxel's centre; ball: over voxels with a face outside; volume: over all voxels"},
           {"ball", weighted_summary(std::move(ball), "mm")},
-          {"volume", volume_json(found, {"half a voxel at either side", "sampling of the voxels"})},
+          {"volume", volume_json(found, {"half a voxel on either side", "sampling of the voxels"})},
           {"wall", wall_json(std::move(wall), static_cast<double>(found.surface.size()), thinnest_mm)},
           {"samples", found.surface.size()}};
 }

@@ -19,7 +19,7 @@ struct Advance {
   std::optional<std::string> towards;
   std::optional<glm::dvec3> direction;
   double gap_mm = 0.0, most_mm = 30.0;
-  // Determined before the kernels run.
+  // The following members are determined before the kernels run.
   double contact_after_mm = 0.0;
   glm::dmat4 moved_from_still{1.0};
   std::optional<glm::dvec3> contact_mm;
@@ -27,11 +27,12 @@ struct Advance {
 
 void check(const Advance& asked, const FieldLocation& place) {
   if (asked.object.name == asked.against.name)
-    place.at("against").refuse("is the object itself: name the object that it shall meet");
+    place.at("against").refuse("is the object itself: name the object that it is moved against");
   if (asked.towards.has_value() == asked.direction.has_value())
-    place.refuse("takes either 'towards', a word, or 'direction', a vector");
+    place.refuse("needs either 'towards', a word, or 'direction', a vector, but not both");
   if (asked.direction && !(glm::length(*asked.direction) > 0.0))
-    place.at("direction").refuse("has no length: give where the object goes, for example [0, -1, 0]");
+    place.at("direction")
+        .refuse("has no length: state the direction of the movement, for example [0, -1, 0]");
 }
 
 /// The direction of the movement as a unit vector, LPS.
@@ -79,21 +80,24 @@ void bound(const Advance& asked, const BoundBench& bench, Object& made) {
 }  // namespace
 
 Operation advance_operation() {
-  return Describe<Advance>("advance", "Moves an object in one direction until it meets another one.",
+  return Describe<Advance>("advance", "Moves an object in one direction until it touches another object.",
                            Makes::Object)
       .takes(field("object", &Advance::object, "The object, or its part.").required())
       .takes(field("against", &Advance::against, "The object to meet.").required())
-      .takes(field("towards", &Advance::towards, "The direction, relative to the head as it is held.")
+      .takes(field("towards", &Advance::towards,
+                   "The direction of the movement, relative to the head's position.")
                  .one_of({"forward", "back", "left", "right", "up", "down"}))
+      .takes(field("direction", &Advance::direction,
+                   "The direction of the movement as an LPS vector of any length, instead of 'towards'."))
       .takes(
-          field("direction", &Advance::direction, "The direction instead, LPS; its length does not count."))
-      .takes(field("gap_mm", &Advance::gap_mm, "The distance before contact at which the object stops.")
-                 .from(0.0)
-                 .to(100.0))
-      .takes(field("most_mm", &Advance::most_mm,
-                   "The largest distance to try. If the objects overlap at first, the object moves back.")
-                 .greater_than(0.0)
-                 .to(500.0))
+          field("gap_mm", &Advance::gap_mm, "The distance to the other object at which the movement stops.")
+              .from(0.0)
+              .to(100.0))
+      .takes(
+          field("most_mm", &Advance::most_mm,
+                "The largest movement that is tried. If the objects overlap at first, the object moves back.")
+              .greater_than(0.0)
+              .to(500.0))
       .example(R"({"id": "met", "do": "advance", "object": "maxilla", "against": "rest",
         "towards": "back", "gap_mm": 0.5})")
       .motion()

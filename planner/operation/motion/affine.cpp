@@ -19,8 +19,8 @@
 namespace octotomy::planner {
 namespace {
 
-/// The factors of lengths that are allowed. Beyond them a sample covers less than a voxel of any plan, or a
-/// voxel's rounding becomes larger than bone is thick.
+/// The allowed factors of lengths. With a smaller factor, a sample covers less than a voxel of any plan. With
+/// a larger one, the rounding of a voxel exceeds the thickness of bone.
 constexpr double least_factor = 0.01, greatest_factor = 100.0;
 
 struct Affine {
@@ -36,7 +36,7 @@ struct Affine {
   std::filesystem::path file;
 };
 
-/// The linear part of scale and shear. The shear comes after the scale.
+/// The linear part of the map: first the scale, then the shear.
 glm::dmat3 linear_of(const Affine& affine, const glm::dmat3& lps_from_head) {
   glm::dmat3 map(1.0);
   if (affine.scale) {
@@ -51,7 +51,7 @@ glm::dmat3 linear_of(const Affine& affine, const glm::dmat3& lps_from_head) {
   return map;
 }
 
-/// The reason why a map is refused; none if it is an affine motion that scales or shears.
+/// The reason why a map is refused; none if it is an affine map that scales or shears.
 std::optional<std::string> why_refused(const glm::dmat4& map) {
   if (glm::transpose(map)[3] != glm::dvec4(0, 0, 0, 1))
     return "is not affine: its last row must be [0, 0, 0, 1]";
@@ -62,13 +62,15 @@ std::optional<std::string> why_refused(const glm::dmat4& map) {
   if (!(found.least_length >= least_factor && found.greatest_length <= greatest_factor))
     return "changes lengths by factors from " + plain(found.least_length) + " to " +
            plain(found.greatest_length) + ", and " + plain(least_factor) + " to " + plain(greatest_factor) +
-           " are allowed" + (found.least_length < least_factor ? ": the object would become flat" : "");
-  if (found.volume_factor < 0.0) return "mirrors: mirror the object by 'mirror', then scale it";
-  if (is_rigid(map)) return "is a rigid motion, which scales and shears nothing: move the object by 'move'";
+           " are allowed" +
+           (found.least_length < least_factor ? ", because the object would become flat" : "");
+  if (found.volume_factor < 0.0) return "mirrors the object: use 'mirror' first, then scale the result";
+  if (is_rigid(map)) return "is a rigid motion, which neither scales nor shears: use 'move' instead";
   return std::nullopt;
 }
 
-/// The map in a file. Throws std::runtime_error, with the path, if it is refused.
+/// The map in a transform's file. Throws std::runtime_error that names the path if why_refused() refuses the
+/// map.
 TransformFile map_in(const std::filesystem::path& path) {
   TransformFile read = read_itk_transform(path);
   if (const auto why = why_refused(read.moved_from_still))
@@ -88,19 +90,19 @@ glm::dmat4 motion_of(const Affine& affine, const Objects& objects, const std::fi
 
 void check_shear(const Affine::Shear& shear, const FieldLocation& place) {
   const double off = std::abs(glm::dot(glm::normalize(shear.along), glm::normalize(shear.normal)));
-  constexpr double right_angle = 1e-6;  // directions are copied with six decimals
+  constexpr double right_angle = 1e-6;  // users copy directions with six decimals
   if (off > right_angle)
-    place.refuse("'along' and 'normal' must be at right angles; they are off by " +
+    place.refuse("'along' and 'normal' must be at right angles, but differ from that by " +
                  three_figures(glm::degrees(std::asin(std::min(1.0, off)))) + "\u00b0");
 }
 
 void check(const Affine& affine, const FieldLocation& place) {
   const bool by_parts = affine.scale || affine.shear;
   const int ways = int{by_parts} + int{affine.matrix.has_value()} + int{!affine.file.empty()};
-  if (ways == 0) place.refuse("changes nothing: add 'scale', 'shear' or both, 'matrix' or 'file'");
+  if (ways == 0) place.refuse("changes nothing: add 'scale', 'shear' or both, or 'matrix', or 'file'");
   if (ways > 1)
-    place.refuse("states its map twice: 'matrix' and 'file' each exclude all others; keep one of them");
-  if (by_parts && !affine.about_mm) place.refuse("'about_mm' is missing: the point that stays where it is");
+    place.refuse("states its map twice: keep only 'matrix', only 'file', or only 'scale' and 'shear'");
+  if (by_parts && !affine.about_mm) place.refuse("'about_mm' is missing: add the point that does not move");
   if (!by_parts && affine.about_mm)
     place.at("about_mm").refuse("is the fixed point of 'scale' and 'shear': add one of them");
   if (affine.matrix) {
@@ -109,7 +111,7 @@ void check(const Affine& affine, const FieldLocation& place) {
   }
   if (by_parts) {
     if (affine.shear) check_shear(*affine.shear, place.at("shear"));
-    // Factors along turned directions are those along the head's: the check does not need how it is held.
+    // This check does not need the head's position, because it does not change the factors.
     if (const auto why = why_refused(glm::dmat4(linear_of(affine, glm::dmat3(1.0)))))
       place.at(affine.scale ? "scale" : "shear").refuse(*why);
     return;
@@ -166,25 +168,29 @@ void bound(const Affine& affine, const BoundBench& bench, Object& made) {
 Operation affine_operation() {
   using Shear = Affine::Shear;
   return Describe<Affine>(
-             "affine", "Scales and shears an object: no rigid motion, so volumes, lengths and angles change.",
+             "affine",
+             "Scales and shears an object. This is not a rigid motion: volumes, lengths and angles change.",
              Makes::Object)
       .takes(field("object", &Affine::object, "The object.").required().positional("solid"))
+      .takes(field("scale", &Affine::scale,
+                   "Factors of the scale, which is done first, along the head's directions: across, front to "
+                   "back, upwards.")
+                 .for_example("[1.1, 1, 1]"))
       .takes(
-          field("scale", &Affine::scale,
-                "Factors along the head's directions, which are done first: across, front to back, upwards.")
-              .for_example("[1.1, 1, 1]"))
-      .takes(record(
-          "shear", &Affine::shear, "A shear, which is done after the scale.",
-          {field("by", &Shear::by, "Movement in mm per mm of distance from the plane through 'about_mm'.")
-               .required(),
-           field("along", &Shear::along, "The direction of the movement, LPS.").direction(),
-           field("normal", &Shear::normal, "The normal of the plane, LPS, at right angles to it.")
-               .direction()}))
+          record("shear", &Affine::shear, "A shear, done after the scale.",
+                 {field("by", &Shear::by,
+                        "Movement in mm for each mm of distance from the plane through 'about_mm'.")
+                      .required(),
+                  field("along", &Shear::along, "The direction of the movement, LPS.").direction(),
+                  field("normal", &Shear::normal, "The normal of the plane, LPS, at right angles to 'along'.")
+                      .direction()}))
       .takes(field("about_mm", &Affine::about_mm,
-                   "The point that stays where it is, for 'scale' and 'shear': [x, y, z] or a landmark."))
-      .takes(field("matrix", &Affine::matrix, "The whole map instead, as four rows of four numbers, LPS."))
+                   "The point that 'scale' and 'shear' do not move: [x, y, z] or a landmark."))
+      .takes(field("matrix", &Affine::matrix,
+                   "The whole map, instead of 'scale' and 'shear': four rows of four numbers, LPS."))
       .takes(field("file", &Affine::file,
-                   "The whole map instead: a linear transform of 3D Slicer or ITK, .tfm or .h5.")
+                   "A file of the whole map, instead of 'scale' and 'shear': a linear transform of 3D Slicer "
+                   "or ITK, .tfm or .h5.")
                  .a_file())
       .example(R"({"id": "wider", "do": "affine", "object": "maxilla", "scale": [1.1, 1, 1],
         "about_mm": [0, -40, -30]})")

@@ -19,14 +19,14 @@ struct Autorotate {
   ObjectName object, against;
   std::vector<Mark> condyles;
   double most_deg = 15.0;
-  // Determined before the kernels run.
+  // The following members are determined before the kernels run.
   double closed_deg = 0.0;
   glm::dmat4 moved_from_still{1.0};
   std::optional<glm::dvec3> contact_mm;
 };
 
-/// The rotation about the axis from the left condyle to the right one. A positive angle is right-handed and
-/// moves the front upwards.
+/// The rotation about the axis from the left condyle to the right one. A positive angle is right-handed about
+/// this axis and moves the front of the mandible upwards.
 glm::dmat4 turn(const std::array<glm::dvec3, 2>& right_left_mm, double degrees) {
   voxel::Motion motion;
   motion.degrees = degrees;
@@ -35,7 +35,7 @@ glm::dmat4 turn(const std::array<glm::dvec3, 2>& right_left_mm, double degrees) 
   return voxel::moved_from_still(motion);
 }
 
-/// The greatest distance of a box's corners from the axis.
+/// The greatest distance of a box's corners from the axis, in mm.
 double reach_mm(const voxel::Box& box, const std::array<glm::dvec3, 2>& axis_mm) {
   const glm::dvec3 along = glm::normalize(axis_mm[1] - axis_mm[0]);
   double reach = 0.0;
@@ -49,11 +49,11 @@ double reach_mm(const voxel::Box& box, const std::array<glm::dvec3, 2>& axis_mm)
 
 void check(const Autorotate& asked, const FieldLocation& place) {
   if (asked.object.name == asked.against.name)
-    place.at("against").refuse("is the object itself: name the object that it shall meet");
+    place.at("against").refuse("is the object itself: name the object that it is rotated against");
   const std::vector<Mark>& condyles = asked.condyles;
   if (condyles[0].object.empty() && condyles[1].object.empty() &&
       glm::distance(condyles[0].p_mm, condyles[1].p_mm) < 10.0)
-    place.at("condyles").refuse("lie within 10 mm of each other: give the right condyle, then the left");
+    place.at("condyles").refuse("lie within 10 mm of each other: state the right condyle, then the left one");
 }
 
 Autorotate settle(const Autorotate& asked, const SettleBench& bench) {
@@ -91,18 +91,19 @@ void bound(const Autorotate& asked, const BoundBench& bench, Object& made) {
 }  // namespace
 
 Operation autorotate_operation() {
-  return Describe<Autorotate>("autorotate", "Turns the mandible about its condyles to first contact.",
-                              Makes::Object)
+  return Describe<Autorotate>(
+             "autorotate", "Rotates the mandible about its condyles until it first touches another object.",
+             Makes::Object)
       .takes(field("object", &Autorotate::object, "The mandible, or its part.").required())
       .takes(field("against", &Autorotate::against, "The object to meet.").required())
       .takes(field("condyles", &Autorotate::condyles,
-                   "The right and the left condyle's centres: [x, y, z] or landmarks.")
+                   "The centres of the right and of the left condyle: [x, y, z] or landmarks.")
                  .required()
                  .from(2)
                  .to(2))
       .takes(field("most_deg", &Autorotate::most_deg,
-                   "The largest rotation to try. It closes the mandible, or opens it if the objects overlap "
-                   "at first.")
+                   "The largest rotation that is tried. It closes the mandible, or opens it if the objects "
+                   "overlap at first.")
                  .greater_than(0.0)
                  .to(60.0))
       .example(R"({"id": "closed", "do": "autorotate", "object": "rest", "against": "advanced",

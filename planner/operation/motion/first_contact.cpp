@@ -17,7 +17,7 @@ FirstContact first_contact(const Object& object, const Object& against, const Co
                            const std::stop_token& stop) {
   if (object.voxel.octree.is_empty() || against.voxel.octree.is_empty())
     throw std::runtime_error("'" + (object.voxel.octree.is_empty() ? object.id : against.id) +
-                             "' is empty: there is no contact");
+                             "' is empty, so it cannot touch anything");
   const voxel::Expression other(against.voxel.octree);
   const auto overlap = [&](double at) {
     if (stop.stop_requested()) throw voxel::Stopped("stopped while moving to contact");
@@ -31,7 +31,7 @@ FirstContact first_contact(const Object& object, const Object& against, const Co
     after += begins_apart ? search.step : -search.step;
     if (std::abs(after) > search.most)
       throw std::runtime_error("'" + object.id + "' " +
-                               (begins_apart ? "meets nothing of" : "does not come free of") + " '" +
+                               (begins_apart ? "meets nothing of" : "does not separate from") + " '" +
                                against.id + "' within " + search.most_said);
   } while (overlap(after).is_empty() == begins_apart);
   double apart = begins_apart ? before : after, touching = begins_apart ? after : before;

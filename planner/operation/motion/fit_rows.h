@@ -7,7 +7,7 @@
 
 namespace octotomy::planner {
 
-/// How a fit ended: "37, came to rest (0.00012 mm)".
+/// The number of rounds of a fit and how it ended, such as "37, came to rest (0.00012 mm)".
 inline std::string rounds_text(int rounds, bool converged, double last_step_mm, double rest_mm) {
   return std::to_string(rounds) +
          (converged ? ", came to rest: the last moved " : ", still moving: the last moved ") +

@@ -25,9 +25,10 @@
 namespace octotomy::planner {
 namespace {
 
-/// Landmarks farther from the skin than this are refused: about twice the error with which observers place them.
+/// Landmarks farther from the skin than this are refused. It is about twice the error with which observers
+/// place them.
 constexpr double off_skin_mm = 5.0;
-/// The steepest change of displacement that is allowed. At 1 the tissue folds.
+/// The largest allowed change of displacement per distance. At 1 the tissue folds.
 constexpr double steepest_allowed = 0.9;
 /// 99 of 100 values of a normal distribution lie within this multiple of its standard deviation.
 constexpr double coverage_factor = 2.5758;
@@ -36,7 +37,7 @@ constexpr double coverage_factor = 2.5758;
 constexpr const char* typed_source = "typed";
 
 struct LandmarkRatios {
-  /// A landmark of the skin and the one of the bone that it follows.
+  /// A landmark of the skin and the landmark of the bone that it follows.
   struct Pair {
     Mark soft;
     std::optional<Mark> bone;
@@ -58,7 +59,7 @@ bool has_files(const LandmarkRatios& step) {
   return !step.before.empty() || !step.after.empty();
 }
 
-/// A landmark's name for people: a typed point by its coordinates.
+/// A landmark's name for people. A typed point has its coordinates as its name.
 std::string landmark_name(const Mark& mark) {
   return mark.landmark.empty() ? voxel::rounded(mark.p_mm) : mark.landmark;
 }
@@ -73,7 +74,7 @@ TypedRatio typed_ratio(const std::string& text) {
   const std::size_t first = text.find(':'), second = text.find(':', first + 1);
   const auto refuse = [&] {
     throw std::runtime_error("'" + text +
-                             "' is no ratio: write SOFT:BONE:RATIO, for example upper_lip:incisor:0.6");
+                             "' is not a ratio: write SOFT:BONE:RATIO, for example upper_lip:incisor:0.6");
   };
   if (first == std::string::npos || second == std::string::npos || first == 0 || second == first + 1)
     refuse();
@@ -92,8 +93,7 @@ void check_pair(const LandmarkRatios::Pair& pair, const FieldLocation& place) {
   if (!pair.bone) {
     if (pair.ratio || pair.ratio_up || pair.deviation)
       place.refuse(
-          "has a ratio without the landmark that it is a part of: add 'bone', for example "
-          "\"incisor@advanced\"");
+          "states a ratio without a landmark of the bone: add 'bone', for example \"incisor@advanced\"");
     return;
   }
   const FieldLocation bone = place.at("bone");
@@ -106,9 +106,10 @@ void check_pair(const LandmarkRatios::Pair& pair, const FieldLocation& place) {
                 "' has no motion: add the object that carries it, for example \"" + pair.bone->landmark +
                 "@advanced\"");
   if (!pair.ratio && !published_ratio(pair.soft.landmark, pair.bone->landmark))
-    place.refuse("there is no published ratio of '" + landmark_name(pair.soft) + "' to '" +
+    place.refuse("there is no published ratio for '" + landmark_name(pair.soft) + "' to '" +
                  pair.bone->landmark + "': add 'ratio', or choose one of: " + published_pairs());
-  if (pair.deviation && !pair.ratio) place.at("deviation").refuse("is of a typed ratio: add 'ratio'");
+  if (pair.deviation && !pair.ratio)
+    place.at("deviation").refuse("applies only to a typed ratio: add 'ratio'");
 }
 
 void check(const LandmarkRatios& step, const FieldLocation& place) {
@@ -124,15 +125,17 @@ void check(const LandmarkRatios& step, const FieldLocation& place) {
       moves = moves || step.pairs[i].bone;
       if (!softs.insert(landmark_name(step.pairs[i].soft)).second)
         at.at("soft").refuse("'" + landmark_name(step.pairs[i].soft) +
-                             "' stands in an earlier pair, too: keep one of them");
+                             "' occurs in an earlier pair, too: delete one of the pairs");
     }
-    if (!moves) place.at("pairs").refuse("move nothing: all landmarks stay; add 'bone' to one of them");
+    if (!moves)
+      place.at("pairs").refuse(
+          "move nothing, because no pair has a landmark of the bone: add 'bone' to one of them");
     return;
   }
   for (const auto& [name, path] : {std::pair("before", &step.before), std::pair("after", &step.after)}) {
     if (path->empty())
       place.refuse(std::string("'") + name +
-                   "' is missing: the landmarks' positions are read from both files");
+                   "' is missing: add it, because displacements are computed from both files");
     check_field_file(place.at(name), *path, [](const std::filesystem::path& file) { read_landmarks(file); });
   }
   for (const std::string& text : step.ratios) {
@@ -144,7 +147,8 @@ void check(const LandmarkRatios& step, const FieldLocation& place) {
   }
 }
 
-/// A landmark of the skin, the displacement of the bone's landmark, and the ratio. Without a bone's landmark it stays.
+/// A landmark of the skin, with the displacement of the bone's landmark and the ratio. If `bone` is empty, it
+/// stays where it is.
 struct Follower {
   std::string name, bone;
   glm::dvec3 at_mm{0.0}, bone_by_mm{0.0};
@@ -182,7 +186,8 @@ std::optional<glm::dvec3> at(const std::vector<brep::Landmark>& landmarks, const
   return std::nullopt;
 }
 
-/// All pairs with a ratio whose landmarks are in both files. Typed ratios come first and replace published ones.
+/// All pairs of landmarks that have a ratio and occur in both files. A typed ratio replaces a published ratio
+/// for the same landmark of the skin.
 std::vector<Follower> followers_of_files(const LandmarkRatios& step, const std::filesystem::path& folder) {
   const std::vector<brep::Landmark> before = read_landmarks(folder / step.before),
                                     after = read_landmarks(folder / step.after);
@@ -252,16 +257,16 @@ void need_motion(const std::vector<RatioLandmark>& landmarks) {
     if (glm::length(each.bone_moved_mm) > 0.0) return;
     if (!each.follows.empty()) followed += (followed.empty() ? "'" : ", '") + each.follows + "'";
   }
-  throw std::runtime_error("there is no motion: " + followed +
-                           (followed.find(',') == std::string::npos ? " stays" : " stay") +
-                           " at the same place; move the bone first, or state where it goes");
+  throw std::runtime_error(
+      "there is no motion: " + followed + (followed.find(',') == std::string::npos ? " stays" : " stay") +
+      " at the same place: move the bone in an earlier step, or state its later landmarks");
 }
 
-/// Sets the distances from the object's surface.
+/// Sets the distance of each landmark from the object's surface. Throws if one exceeds off_skin_mm.
 void need_skin(std::vector<RatioLandmark>& landmarks, const ObjectName& object, const brep::Solid& solid) {
   std::vector<glm::dvec3> points_mm;
   for (const RatioLandmark& each : landmarks) points_mm.push_back(each.at_mm);
-  if (solid.empty()) throw std::runtime_error("'" + object.name + "' is empty: it has no skin");
+  if (solid.empty()) throw std::runtime_error("'" + object.name + "' is empty, so it has no skin");
   const std::vector<double> off_mm = solid.tree().distances_mm(points_mm);
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
     landmarks[i].off_skin_mm = off_mm[i];
@@ -272,8 +277,8 @@ void need_skin(std::vector<RatioLandmark>& landmarks, const ObjectName& object, 
   }
 }
 
-/// Throws std::runtime_error if the displacements fold the tissue: with the reach that is enough, or with the two
-/// landmarks that are too near for their displacements.
+/// Throws std::runtime_error if the displacements fold the tissue. The message states a fade that is long
+/// enough, or else the two landmarks that are too near each other for their displacements.
 void need_no_fold(const LandmarkRatios& step, const std::vector<RatioLandmark>& landmarks) {
   const auto steepest = [&](double reach_mm) {
     return brep::LandmarkWarp(step.points_mm, step.displacement_mm, reach_mm).steepest();
@@ -283,7 +288,7 @@ void need_no_fold(const LandmarkRatios& step, const std::vector<RatioLandmark>& 
   for (double times = longer; times <= most; times *= longer)
     if (steepest(times * step.fade_mm) <= steepest_allowed)
       throw std::runtime_error("a fade of " + three_figures(step.fade_mm) +
-                               " mm folds the tissue under these displacements: give at least " +
+                               " mm folds the tissue under these displacements: state at least " +
                                grouped(std::ceil(times * step.fade_mm), 0) + " mm");
   std::size_t a = 0, b = 1;
   double worst = 0.0;
@@ -298,13 +303,14 @@ void need_no_fold(const LandmarkRatios& step, const std::vector<RatioLandmark>& 
       three_figures(glm::distance(step.points_mm[a], step.points_mm[b])) +
       " mm apart, and their displacements differ by " +
       three_figures(glm::distance(step.displacement_mm[a], step.displacement_mm[b])) +
-      " mm, which folds the tissue between them: leave one of them out, or check their places and ratios");
+      " mm, which folds the tissue between them: leave out one of them, or check their positions and ratios");
 }
 
-/// Published ratios were measured where the bone went forward: by at least this share of its motion.
+/// Published ratios were measured for bone that moved forward. A ratio applies without a finding if at least
+/// this share of the motion is forward.
 constexpr double least_forward = 0.7;
 
-/// The results in one sentence each, for people, and what was assumed.
+/// Adds a finding that describes the displacement of each landmark, and findings on what was assumed.
 void report(const MeasuredRatios& measured, const glm::dmat3& lps_from_head,
             std::vector<std::string>& findings) {
   std::string text, unsure;
@@ -324,15 +330,16 @@ void report(const MeasuredRatios& measured, const glm::dmat3& lps_from_head,
     const Displacement bone = displacement_of(each.bone_moved_mm, lps_from_head);
     if (bone.forward_mm < least_forward * glm::length(each.bone_moved_mm))
       findings.push_back("the published ratio of '" + landmark_name(each) +
-                         "' is of operations that advance the bone, and " + each.follows + " moves " +
-                         in_words(bone) + ": type a ratio of such operations");
+                         "' was measured for operations that advance the bone, but " + each.follows +
+                         " moves " + in_words(bone) + ": type a ratio that was measured for such a motion");
   }
   findings.push_back("landmarks by ratios: " + text);
   if (has_published)
     findings.push_back(
         "the published ratios are those that later literature attributes to the named papers, and their "
-        "deviations are estimates: type ratios and deviations that were measured where they are known");
-  if (!unsure.empty()) findings.push_back("no interval for " + unsure + ": its ratio has no deviation");
+        "deviations are estimates: if measured ratios and deviations are known, type these");
+  if (!unsure.empty())
+    findings.push_back("no interval for " + unsure + ": no deviation of the ratio is known");
 }
 
 LandmarkRatios settle(const LandmarkRatios& asked, const SettleBench& bench) {
@@ -368,8 +375,8 @@ brep::Solid displaced(const LandmarkRatios& step, const brep::Solid& still) {
   return brep::warped(still, {step.points_mm, step.displacement_mm, step.fade_mm});
 }
 
-/// Of an object that is known by whole voxels only, the warped mesh is digitised: voxels read at other places than their
-/// centres would shift its surface by up to half a voxel.
+/// For an object that is only known by whole voxels, the warped mesh is digitised. Voxels read at other
+/// positions than their centres would shift the surface by up to half a voxel.
 void voxels(const LandmarkRatios& step, const VoxelBench& bench, VoxelSide& made) {
   const Object& still = bench.objects.at(step.object.name);
   if (still.mesh.whole && is_whole_voxels(still.voxel)) {
@@ -420,55 +427,56 @@ void bound(const LandmarkRatios& step, const BoundBench& bench, Object& made) {
 Operation landmark_ratios_operation() {
   using Pair = LandmarkRatios::Pair;
   return Describe<LandmarkRatios>("landmark_ratios",
-                                  "Predicts the face after an operation: landmarks of the skin move by "
-                                  "ratios of the bone's landmarks.",
+                                  "Predicts the face after an operation: each landmark of the skin moves by "
+                                  "a ratio of the motion of a bone's landmark.",
                                   Makes::Object)
-      .takes(field("object", &LandmarkRatios::object, "The skin, or all that is inside of it.")
+      .takes(field("object", &LandmarkRatios::object, "The object whose surface is the skin.")
                  .required()
                  .positional("solid"))
       .takes(
           records(
-              "pairs", &LandmarkRatios::pairs, "The skin's landmarks and those of the bone that they follow.",
+              "pairs", &LandmarkRatios::pairs,
+              "Landmarks of the skin, each with the landmark of the bone that it follows.",
               {field("soft", &Pair::soft, "A landmark of the skin, or its point [x, y, z].").required(),
                field("bone", &Pair::bone,
-                     "A landmark of the bone with the object that carries it, as incisor@advanced. Without "
-                     "it, the "
-                     "skin's landmark stays where it is."),
+                     "A landmark of the bone and the object with which it moves, for example "
+                     "incisor@advanced. Default: the skin's landmark stays where it is."),
                field("ratio", &Pair::ratio,
-                     "The share of the bone's motion. Default: the one of this pair that later literature "
-                     "attributes to Freihofer 1976 and 1977 or to Lines and Steinhauser 1974, of operations "
-                     "that "
-                     "advance the bone.")
+                     "The share of the bone's motion with which the skin moves. Default: the pair's ratio "
+                     "for operations that advance the bone, which later literature attributes to Freihofer "
+                     "1976 and 1977 or to Lines and Steinhauser 1974.")
                    .from(0.0)
                    .to(2.0),
-               field("ratio_up", &Pair::ratio_up, "The share of the bone's motion upwards. Default: 'ratio'.")
+               field("ratio_up", &Pair::ratio_up, "The share of the bone's upward motion. Default: 'ratio'.")
                    .from(0.0)
                    .to(2.0),
                field("deviation", &Pair::deviation,
-                     "Standard deviation of a typed ratio among people, from which the interval comes.")
+                     "Standard deviation of a typed ratio among people; the displacement's interval is "
+                     "computed from it.")
                    .from(0.0)
                    .to(2.0)})
               .in_plans_only())
       .takes(field("before", &LandmarkRatios::before,
-                   "A file with the landmarks of skin and bone: JSON, or 3D Slicer's .mrk.json or .fcsv. All "
-                   "pairs that have a ratio move. In plans, the place of 'pairs'.")
+                   "A file with the landmarks of skin and bone before the operation: JSON, or 3D Slicer's "
+                   ".mrk.json or .fcsv. All pairs that have a ratio move. In plans it replaces 'pairs'.")
                  .a_file()
                  .read_if<LandmarkRatios>([](const LandmarkRatios& step) { return !has_pairs(step); },
-                                          "is read where there are no 'pairs': keep one of them"))
+                                          "and 'pairs' exclude each other: keep one of them"))
       .takes(field("after", &LandmarkRatios::after, "The file of the bone's landmarks after the operation.")
                  .a_file()
                  .read_if<LandmarkRatios>([](const LandmarkRatios& step) { return !has_pairs(step); },
-                                          "is read where there are no 'pairs': keep one of them"))
+                                          "and 'pairs' exclude each other: keep one of them"))
       .takes(field("ratios", &LandmarkRatios::ratios,
-                   "Ratios for the files' landmarks, SOFT:BONE:RATIO, before the published ones.")
+                   "Ratios for landmarks of the files, each SOFT:BONE:RATIO. They replace published ratios.")
                  .called("ratio")
                  .repeated()
                  .for_example("[\"upper_lip:incisor:0.6\"]")
-                 .read_if<LandmarkRatios>([](const LandmarkRatios& step) { return !has_pairs(step); },
-                                          "is of the files 'before' and 'after': state 'ratio' in the pair"))
+                 .read_if<LandmarkRatios>(
+                     [](const LandmarkRatios& step) { return !has_pairs(step); },
+                     "applies only to the files 'before' and 'after': state 'ratio' in each pair instead"))
       .takes(field("fade_mm", &LandmarkRatios::fade_mm,
-                   "Farther than this from all landmarks, nothing moves. Long enough that the tissue does "
-                   "not fold.")
+                   "Tissue farther than this from all landmarks does not move. The distance must be so long "
+                   "that the tissue does not fold.")
                  .greater_than(0.0)
                  .to(1000.0))
       .example(R"({"id": "quick", "do": "landmark_ratios", "object": "soft", "pairs": [

@@ -32,7 +32,7 @@ struct Mirror {
   std::filesystem::path out;
 };
 
-/// The stated plane; the patient's mid-plane where none is stated.
+/// The stated plane, or the patient's mid-plane if none is stated.
 brep::MirrorPlane plane_of(const Mirror& mirror) {
   return {mirror.point_mm.value_or(glm::dvec3(0.0)),
           glm::normalize(mirror.normal.value_or(glm::dvec3(1, 0, 0)))};
@@ -49,7 +49,7 @@ brep::MirrorFit fit(const brep::Mesh& mesh, const Mirror& mirror, const voxel::P
   return brep::fit_mirror_plane(mesh, options);
 }
 
-/// The results of a fit; null values where none ran.
+/// The results of a fit as JSON; null values if there was no fit.
 Json fit_json(const brep::MirrorPlane& plane, const std::optional<brep::MirrorFit>& found) {
   const auto of_fit = [&](double brep::MirrorFit::*value) {
     return found ? Json((*found).*value) : Json(nullptr);
@@ -67,20 +67,22 @@ Json fit_json(const brep::MirrorPlane& plane, const std::optional<brep::MirrorFi
 
 void check(const Mirror& mirror, const FieldLocation& place) {
   if (mirror.exactly && mirror.plane.empty())
-    place.at("exactly").refuse("mirrors about a given plane without a fit: add 'plane'");
+    place.at("exactly").refuse("applies only to a stated plane: add 'plane'");
   if (!mirror.plane.empty() && mirror.plane[1] == glm::dvec3(0.0))
     place.at("plane").refuse("its normal has no length");
   if (!mirror.through.empty() && (mirror.point_mm || mirror.normal))
-    place.at("through").refuse("states the plane, as 'point_mm' and 'normal' do: keep one of the two");
+    place.at("through").refuse(
+        "states the plane a second time: keep either 'through', or 'point_mm' and 'normal'");
 }
 
-/// Stores the plane through three marks. Throws std::runtime_error where they are collinear.
+/// Stores the plane through three marks. Throws std::runtime_error if they lie on one line.
 void take_plane_through(const std::array<glm::dvec3, 3>& p_mm, Mirror& mirror) {
   const glm::dvec3 a = p_mm[1] - p_mm[0], b = p_mm[2] - p_mm[0], across = glm::cross(a, b);
-  // 1/100 of the sides is 0.1 mm in 10 mm. Nobody places marks more precisely.
+  // The limit of 1/100 means 0.1 mm over 10 mm. Nobody places marks more precisely.
   if (!(glm::length(across) > 0.01 * glm::length(a) * glm::length(b)))
     throw std::runtime_error(
-        "the three points of 'through' lie on one line: choose one that is farther off it");
+        "the three points of 'through' lie on one line, which determines no plane: move one of them off the "
+        "line");
   mirror.point_mm = p_mm[0];
   mirror.normal = glm::normalize(across);
 }
@@ -101,7 +103,7 @@ Mirror settle(const Mirror& mirror, const SettleBench& bench) {
   return settled;
 }
 
-/// The reflection in the plane: Householder's matrix about the plane's point.
+/// The reflection in the plane as a matrix: a Householder matrix about the plane's point.
 glm::dmat4 reflection_of(const Mirror& mirror) {
   const auto [point_mm, n] = plane_of(mirror);
   glm::dmat4 mirrored(glm::dmat3(1.0) - 2.0 * glm::outerProduct(n, n));
@@ -131,7 +133,8 @@ void triangles(const Mirror& mirror, const MeshBench& bench, MeshSide& made) {
 
 void bound(const Mirror& mirror, const BoundBench& bench, Object& made) {
   carry(mirror.object.name, reflection_of(mirror), bench, made);
-  // A mirror image is not a moved object: no deck moves with it, and no picture shows it as the same piece.
+  // A mirror image is not a moved object: decks do not move with it, and pictures do not show it as the same
+  // piece.
   made.moved.reset();
   made.shown.reset();
 }
@@ -183,7 +186,7 @@ FileAnswer on_files(const Mirror& asked, const FileBench& bench) {
 }  // namespace
 
 Operation mirror_operation() {
-  return Describe<Mirror>("mirror", "Makes an object's mirror image about a plane, given or fitted.",
+  return Describe<Mirror>("mirror", "Makes an object's mirror image about a plane that is stated or fitted.",
                           Makes::Object)
       .takes(field("object", &Mirror::object, "The object.").required().positional("mesh"))
       .takes(field("point_mm", &Mirror::point_mm, "A point of the plane, LPS. Default: the frame's origin.")
@@ -192,29 +195,32 @@ Operation mirror_operation() {
                  .direction()
                  .in_plans_only())
       .takes(field("through", &Mirror::through,
-                   "Three points of the plane instead: [x, y, z] or landmarks of the mid-line.")
+                   "Three points of the plane, instead of 'point_mm' and 'normal': [x, y, z] or landmarks of "
+                   "the mid-line.")
                  .from(3)
                  .to(3)
                  .in_plans_only())
       .takes(field("fit", &Mirror::fit,
-                   "Uses the plane that fits the object best, near the one given or about its own axes.")
+                   "Uses the plane of best symmetry. The search begins at the stated plane, or else at the "
+                   "planes of the object's axes.")
                  .in_plans_only())
-      .takes(field("overlap", &Mirror::overlap, "For a fit: the share of the surface that has a counterpart.")
+      .takes(field("overlap", &Mirror::overlap,
+                   "For a fit: the share of the surface that has a mirrored counterpart.")
                  .from(0.0)
                  .to(1.0))
-      .takes(field("rounds", &Mirror::rounds, "Largest number of rounds of each of a fit's two refinements.")
+      .takes(field("rounds", &Mirror::rounds, "Largest number of rounds in each of a fit's two refinements.")
                  .from(1)
                  .to(100000))
       .takes(field("rest_mm", &Mirror::rest_mm,
-                   "A fit ends with a round that moves the samples by at most this. Default: a millionth of "
-                   "their spread.")
+                   "A fit ends with a round that moves the samples by at most this distance. Default: a "
+                   "millionth of their spread.")
                  .greater_than(0.0))
-      .verb_takes(
-          field("plane", &Mirror::plane,
-                "A point X,Y,Z and a normal X,Y,Z near the plane; else the surface's own axes are tried.")
-              .from(2)
-              .to(2))
-      .verb_takes(field("exactly", &Mirror::exactly, "Mirrors about the given plane, without a fit."))
+      .verb_takes(field("plane", &Mirror::plane,
+                        "A point X,Y,Z and a normal X,Y,Z of a plane at which the search begins. Default: "
+                        "the planes of the surface's axes.")
+                      .from(2)
+                      .to(2))
+      .verb_takes(field("exactly", &Mirror::exactly, "Mirrors about the plane of --plane, without a fit."))
       .verb_takes(
           field("out", &Mirror::out, "The mirror image: a .stl, .ply, .obj, .off, .vtp or .glb file."))
       .example(

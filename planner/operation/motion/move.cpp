@@ -74,8 +74,8 @@ std::vector<WantedPoint> wanted_points(const Move& move, const MarkPlaces& place
   return wanted;
 }
 
-/// The directions of 'by': the head's, or of a plane through a front point and one at each side, right then
-/// left, as the occlusal plane. Throws std::invalid_argument where the three lie on one line.
+/// The directions along which 'by' is stated: those of the head, or of a plane through a front point, a right
+/// and a left point, such as the occlusal plane. Throws std::invalid_argument if these three lie on one line.
 glm::dmat3 directions_of(const Move& move, const MarkPlaces& places) {
   if (move.along.empty()) return places.lps_from_head;
   const glm::dvec3 right = places.mark_mm(move.along[1]), left = places.mark_mm(move.along[2]);
@@ -97,7 +97,7 @@ glm::dmat4 about_point(const glm::dmat3& turn, const glm::dvec3& p_mm) {
   return motion;
 }
 
-/// The rotation about the move's own axis or pivot.
+/// The rotation about the stated axis or pivot; the identity if there is no rotation.
 glm::dmat4 turn_of(const Move& move, const MarkPlaces& places) {
   if (move.turn)
     return about_point(rotation_of(*move.turn, places.lps_from_head), places.mark_mm(move.turn->about_mm));
@@ -114,7 +114,7 @@ glm::dmat4 turn_of(const Move& move, const MarkPlaces& places) {
   return voxel::moved_from_still(motion);
 }
 
-/// Throws std::invalid_argument where points or an axis do not determine the motion.
+/// The motion of a move. Throws std::invalid_argument if points or an axis do not determine it.
 glm::dmat4 motion_of(const Move& move, const MarkPlaces& places) {
   if (move.matrix) return *move.matrix;
   if (move.with) {
@@ -122,7 +122,7 @@ glm::dmat4 motion_of(const Move& move, const MarkPlaces& places) {
     if (!is_rigid(motion))
       throw voxel::InvalidInput(
           "'" + move.with->name +
-          "' was scaled or sheared, and a move is rigid: name the result of a rigid motion");
+          "' was scaled or sheared, but a move must be rigid: name the result of a rigid motion");
     return motion;
   }
   if (!move.points.empty())
@@ -131,7 +131,7 @@ glm::dmat4 motion_of(const Move& move, const MarkPlaces& places) {
   if (move.by) by_mm += lps_mm(*move.by, directions_of(move, places));
   if (move.from) by_mm += places.mark_mm(*move.to) - places.mark_mm(*move.from);
   if (!is_turned(move) || (move.rotate && move.rotate->through.empty())) {
-    // One call, so that the results of plans with numbers only stay the same to the bit.
+    // One call, because results of plans without landmarks must not change by a bit.
     voxel::Motion motion;
     motion.translate_mm = by_mm;
     if (move.rotate) {
@@ -153,12 +153,14 @@ void check_ways(const Move& move, const FieldLocation& place) {
         "moves nothing: add 'translate_mm', 'rotate' or both, 'by' and 'turn', 'from' and 'to', "
         "'points', 'matrix' or 'with'");
   if (ways > 1)
-    place.refuse("states its motion twice: 'points', 'matrix' and 'with' each exclude all others; keep one");
+    place.refuse(
+        "states its motion twice: keep only 'points', only 'matrix', only 'with', or only translations and "
+        "rotations");
   if (move.from.has_value() != move.to.has_value())
     place.refuse(std::string("'") + (move.from ? "to" : "from") +
-                 "' is missing: the motion goes from one mark to another");
+                 "' is missing: add it, because the translation leads from one mark to another");
   if (!move.along.empty() && !move.by)
-    place.at("along").refuse("states the plane along which 'by' goes: add 'by'");
+    place.at("along").refuse("applies only to 'by': add 'by', or leave it out");
   if (move.rotate && move.turn)
     place.refuse("states its rotation twice, as 'rotate' and 'turn': keep one of them");
 }
@@ -169,17 +171,18 @@ void check(const Move& move, const FieldLocation& place) {
     const FieldLocation rotate = place.at("rotate");
     if (move.rotate->axis.has_value() == !move.rotate->through.empty())
       rotate.refuse(move.rotate->axis ? "states its axis twice, as 'axis' and 'through': keep one of them"
-                                      : "'axis' is missing: add it, or 'through', two points");
+                                      : "'axis' is missing: add it, or the two points 'through'");
   }
   if (move.matrix && !is_rigid(*move.matrix))
     place.at("matrix").refuse(
-        "is no rigid motion: its first three columns must be a rotation, its last row [0, 0, 0, 1]; 'affine' "
-        "scales and shears");
+        "is not a rigid motion: its first three columns must be a rotation, and its last row [0, 0, 0, 1]; "
+        "to scale and shear, use 'affine'");
   for (std::size_t i = 0; i < move.points.size(); ++i) {
     const Move::Point& point = move.points[i];
     const bool is_typed = point.forward_mm != 0.0 || point.left_mm != 0.0 || point.up_mm != 0.0;
     if (point.to && is_typed)
-      place.at("points[" + std::to_string(i) + "]").refuse("has two targets: keep 'to', or the millimetres");
+      place.at("points[" + std::to_string(i) + "]")
+          .refuse("has two targets: keep either 'to' or the millimetres");
   }
   if (move.with && place.scope != nullptr) {
     const Operation& maker = place.scope->maker_of(move.with->name);
@@ -188,7 +191,7 @@ void check(const Move& move, const FieldLocation& place) {
                               "', which moves nothing: name the result of a step that moves an object");
     return;
   }
-  // Marks that move with objects are known only when the earlier motions are.
+  // Positions of marks that move with objects are not known before the earlier motions are evaluated.
   std::vector<Mark> marks{move.from.value_or(Mark{}), move.to.value_or(Mark{})};
   if (move.turn) marks.push_back(move.turn->about_mm);
   if (move.rotate) marks.push_back(move.rotate->about_mm);
@@ -216,7 +219,7 @@ std::string definition(const Move& move, const Objects&) {
   if (!move.points.empty()) {
     std::string text;
     for (const Move::Point& point : move.points) text += (text.empty() ? "" : ", ") + name_of(point.at);
-    return name + " moved by " + text + (fit_of(move) == PointFit::Best ? "" : ", the first trusted most");
+    return name + " moved by " + text + (fit_of(move) == PointFit::Best ? "" : ", the first one exactly");
   }
   const glm::dvec3 by_mm = move.translate_mm.value_or(glm::dvec3(0.0));
   std::string text;
@@ -241,7 +244,7 @@ void triangles(const Move& move, const MeshBench& bench, MeshSide& made) {
   move_triangles(move.object.name, motion_of(move, places_of(bench.objects)), bench, made);
 }
 
-/// Each point's target, its position after the motion, and the remaining distance.
+/// For each point its target, its position after the motion, and the remaining distance, as JSON.
 Json points_json(const Move& move, const Objects& objects) {
   const std::vector<WantedPoint> wanted = wanted_points(move, places_of(objects));
   const PointMotion found = motion_of_points(wanted, fit_of(move));
@@ -301,9 +304,10 @@ Operation move_operation() {
   using Turn = Move::Turn;
   using Point = Move::Point;
   const auto along = [](auto forward, auto left, auto up) {
-    return std::vector<Field>{field("forward_mm", forward, "Forward, as the head is held; negative: back."),
-                              field("left_mm", left, "To the patient's left; negative: right."),
-                              field("up_mm", up, "Upwards; negative: down.")};
+    return std::vector<Field>{
+        field("forward_mm", forward, "Forward along the head's direction; negative: back."),
+        field("left_mm", left, "To the patient's left; negative: right."),
+        field("up_mm", up, "Upwards; negative: down.")};
   };
   std::vector<Field> point =
       along(static_cast<double Point::*>(&Point::forward_mm), static_cast<double Point::*>(&Point::left_mm),
@@ -315,42 +319,44 @@ Operation move_operation() {
       .takes(field("object", &Move::object, "The object.").required())
       .takes(field("translate_mm", &Move::translate_mm, "The translation [x, y, z], LPS."))
       .takes(
-          record("rotate", &Move::rotate, "The rotation, which is done first.",
+          record("rotate", &Move::rotate, "The rotation, done before the translation.",
                  {field("degrees", &Rotation::degrees, "The angle, right-handed about the axis.").required(),
                   field("axis", &Rotation::axis, "The direction of the axis, LPS.").direction(),
                   field("about_mm", &Rotation::about_mm, "A point on the axis, LPS, or a landmark."),
                   field("through", &Rotation::through,
-                        "In place of 'axis': two points that the axis passes, for example both condyles.")
+                        "Two points on the axis, instead of 'axis', for example both condyles.")
                       .from(2)
                       .to(2)}))
-      .takes(record("by", &Move::by, "The translation along the directions of the head.",
+      .takes(record("by", &Move::by, "The translation along the head's directions.",
                     along(&Displacement::forward_mm, &Displacement::left_mm, &Displacement::up_mm)))
-      .takes(
-          field("along", &Move::along,
-                "A plane along which 'by' goes in place of the head's directions, as the occlusal plane: a "
-                "front point, then one to the right and one to the left.")
-              .from(3)
-              .to(3))
-      .takes(record(
-          "turn", &Move::turn,
-          "The rotation about the directions of the head, which is done first: roll, then pitch, then yaw.",
-          {field("pitch_deg", static_cast<double Turn::*>(&Turn::pitch_deg), "The front goes up."),
-           field("yaw_deg", static_cast<double Turn::*>(&Turn::yaw_deg),
-                 "The front goes to the patient's left."),
-           field("roll_deg", static_cast<double Turn::*>(&Turn::roll_deg),
-                 "The patient's left side goes up."),
-           field("about_mm", &Turn::about_mm, "The pivot: [x, y, z] or a landmark.").required()}))
+      .takes(field("along", &Move::along,
+                   "Three points of a plane whose directions 'by' uses instead of the head's, such as the "
+                   "occlusal plane: a front point, a right one and a left one.")
+                 .from(3)
+                 .to(3))
+      .takes(record("turn", &Move::turn,
+                    "The rotation about the head's directions, done before the translation: roll, then "
+                    "pitch, then yaw.",
+                    {field("pitch_deg", static_cast<double Turn::*>(&Turn::pitch_deg), "The front goes up."),
+                     field("yaw_deg", static_cast<double Turn::*>(&Turn::yaw_deg),
+                           "The front goes to the patient's left."),
+                     field("roll_deg", static_cast<double Turn::*>(&Turn::roll_deg),
+                           "The patient's left side goes up."),
+                     field("about_mm", &Turn::about_mm, "The pivot: [x, y, z] or a landmark.").required()}))
       .takes(
           field("from", &Move::from, "With 'to': the translation from this mark, [x, y, z] or a landmark."))
-      .takes(field("to", &Move::to, "The mark to which 'from' is brought."))
-      .takes(records("points", &Move::points, "Points and their targets; the motion fits them best.", point))
+      .takes(field("to", &Move::to, "The mark to which 'from' is translated."))
+      .takes(records("points", &Move::points,
+                     "Points with their targets; the motion is the one that brings them nearest to these.",
+                     point))
       .takes(field("fit", &Move::fit,
-                   "How points are weighed: best, the default, is the least squares; first_point brings the "
-                   "first one to its target, then turns.")
+                   "How points are fitted: best (default) by least squares; first_point moves the first "
+                   "point exactly to its target, then rotates about it.")
                  .one_of({"best", "first_point"}))
       .takes(field("matrix", &Move::matrix,
-                   "The motion as four rows of four numbers, LPS, as register prints it."))
-      .takes(field("with", &Move::with, "The motion of this earlier move or register step."))
+                   "The motion as four rows of four numbers, LPS, in the form that register prints."))
+      .takes(field("with", &Move::with,
+                   "The object of an earlier step, such as move or register, whose motion is repeated."))
       .example(R"({"id": "advanced", "do": "move", "object": "maxilla", "translate_mm": [0, -6, 2],
         "rotate": {"degrees": 5, "axis": [1, 0, 0], "about_mm": [0, -40, -30]}})")
       .motion()

@@ -9,21 +9,22 @@
 #include "planner/operation/table/bench.h"
 #include "planner/operation/table/operation.h"
 
-// Moves an object rigidly in each kernel, for every operation that moves one.
+// Moves an object rigidly in each kernel. Every operation that moves objects uses these functions.
 namespace octotomy::planner {
 
-/// The positions of marks and the motions of objects, in a plan or in a trial of a plan.
+/// The positions of marks and the motions of objects, in a plan or in one trial of a plan.
 struct MarkPlaces {
   std::function<glm::dvec3(const Mark& mark)> mark_mm;
   glm::dmat3 lps_from_head{1.0};
-  std::function<glm::dmat4(const std::string& object)> motion_of;  ///< of the step that moved it
+  std::function<glm::dmat4(const std::string& object)> motion_of;  ///< the motion of the step that made this
+                                                                   ///< object
 };
 
 /// The positions and motions of a plan's objects. `objects` must outlive the result.
 MarkPlaces places_of(const Objects& objects);
 
-/// The motion of a move with its marks at these positions; none for a step of another operation. Throws
-/// std::invalid_argument where the positions do not determine it.
+/// The motion of a move step if its marks have these positions; none for a step of another operation. Throws
+/// std::invalid_argument if the positions do not determine the motion.
 std::optional<glm::dmat4> motion_of(const Action& action, const MarkPlaces& places);
 
 void move_voxels(const std::string& object, const glm::dmat4& moved_from_still, const VoxelBench& bench,
@@ -31,8 +32,8 @@ void move_voxels(const std::string& object, const glm::dmat4& moved_from_still, 
 void move_triangles(const std::string& object, const glm::dmat4& moved_from_still, const MeshBench& bench,
                     MeshSide& made);
 
-// The functions of an operation whose motion is already determined. Its fields include `object` and
-// `moved_from_still`.
+// Functions for operations whose motion is determined before the kernels run. Their values must have the
+// members `object` and `moved_from_still`.
 
 template <typename Settled>
 void moved_voxels(const Settled& settled, const VoxelBench& bench, VoxelSide& made) {

@@ -34,12 +34,12 @@ struct Occlude {
   double deepest_mm = 0.0;
 };
 
-/// The tolerance: contacts are not more precise than a fraction of a voxel.
+/// The tolerance of a contact in mm, a small fraction of a voxel, because contacts are not more precise.
 double tolerance_mm(const Object& object) {
   return 0.02 * voxel_mm(object);
 }
 
-/// A surface's points around a target contact.
+/// A target place of contact, and the points of the surface around it.
 struct Seat {
   glm::dvec3 place_mm;
   std::vector<glm::dvec3> points_mm;
@@ -47,18 +47,18 @@ struct Seat {
 
 void check(const Occlude& asked, const FieldLocation& place) {
   if (asked.object.name == asked.against.name)
-    place.at("against").refuse("is the object itself: name the object that it shall meet");
+    place.at("against").refuse("is the object itself: name the object that it is seated on");
 }
 
-/// The direction of a word as a unit vector, LPS.
+/// The direction of the word up or down as a unit vector, LPS.
 glm::dvec3 direction_of(const std::string& word, const glm::dmat3& lps_from_head) {
   Displacement by;
   by.up_mm = word == "up" ? 1.0 : -1.0;
   return lps_mm(by, lps_from_head);
 }
 
-/// The small rigid motion that displaces each place along the direction by its distance, in least squares. Of
-/// several, it is the one with the smallest rotation.
+/// A small rigid motion that displaces each place along the direction by its distance, as a least-squares
+/// fit. If several motions do, the one with the smallest rotation.
 glm::dmat4 step_of(const std::vector<glm::dvec3>& places_mm, const std::vector<double>& distances_mm,
                    const glm::dvec3& along) {
   glm::dvec3 middle(0.0);
@@ -66,8 +66,8 @@ glm::dmat4 step_of(const std::vector<glm::dvec3>& places_mm, const std::vector<d
   for (std::size_t i = 0; i < places_mm.size(); ++i)
     middle += places_mm[i] / static_cast<double>(places_mm.size()),
         lift += distances_mm[i] / static_cast<double>(places_mm.size());
-  // The slopes across the direction: a 2 x 2 system. A small ridge term makes it solvable where the places
-  // are collinear.
+  // The slopes across the direction solve a 2 x 2 system. A small ridge term makes it solvable if the places
+  // lie on one line.
   const glm::dvec3 u =
       glm::normalize(glm::cross(along, std::abs(along.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
   const glm::dvec3 v = glm::cross(along, u);
@@ -82,7 +82,7 @@ glm::dmat4 step_of(const std::vector<glm::dvec3>& places_mm, const std::vector<d
   const glm::dvec2 slope = glm::inverse(normal + glm::dmat2(ridge)) * right;
   const glm::dvec3 turn = glm::cross(slope.x * u + slope.y * v, along);
   glm::dmat4 motion = glm::translate(glm::dmat4(1.0), lift * along);
-  // A place far from the others would cause a large rotation. One step rotates by at most 0.1 rad.
+  // One step rotates by at most 0.1 rad, because a place far from the others could cause a large rotation.
   if (const double angle = glm::length(turn); angle > 1e-12)
     motion = motion * glm::translate(glm::dmat4(1.0), middle) *
              glm::rotate(glm::dmat4(1.0), std::min(angle, 0.1), turn / angle) *
@@ -99,7 +99,7 @@ std::vector<Seat> seats_of(const Occlude& asked, const brep::Solid& solid, const
     if (seat.points_mm.empty())
       throw std::runtime_error("'" + asked.object.name + "' has no surface within " + plain(asked.about_mm) +
                                " mm of place " + std::to_string(seats.size() + 1) +
-                               ": give places on it, or raise 'about_mm'");
+                               ": choose places on its surface, or raise 'about_mm'");
     seats.push_back(std::move(seat));
   }
   return seats;
@@ -120,7 +120,7 @@ Occlude settle(const Occlude& asked, const SettleBench& bench) {
   const brep::Solid &solid = bench.object(asked.object.name), &against = bench.object(asked.against.name);
   if (solid.empty() || against.empty())
     throw std::runtime_error("'" + (solid.empty() ? asked.object.name : asked.against.name) +
-                             "' is empty: there is no contact");
+                             "' is empty, so it cannot touch anything");
   const glm::dvec3 along = direction_of(asked.towards, bench.objects.lps_from_head);
   const std::vector<Seat> seats = seats_of(asked, solid, bench.objects, voxel_mm(object));
   Occlude settled = asked;
@@ -141,8 +141,8 @@ Occlude settle(const Occlude& asked, const SettleBench& bench) {
     for (const Seat& seat : seats)
       if (glm::distance(glm::dvec3(settled.moved_from_still * glm::dvec4(seat.place_mm, 1.0)),
                         seat.place_mm) > asked.most_mm)
-        throw std::runtime_error("'" + asked.object.name + "' meets nothing of '" + asked.against.name +
-                                 "' at the places within " + plain(asked.most_mm) +
+        throw std::runtime_error("'" + asked.object.name + "' does not reach '" + asked.against.name +
+                                 "' at all places within " + plain(asked.most_mm) +
                                  " mm: check 'towards' and the places, or raise 'most_mm'");
   }
   settled.deepest_mm = std::max(
@@ -164,34 +164,35 @@ void bound(const Occlude& asked, const BoundBench& bench, Object& made) {
       made.findings.push_back("place " + std::to_string(i + 1) + " stays " +
                               three_figures(std::abs(asked.residuals_mm[i])) +
                               (asked.residuals_mm[i] > 0.0 ? " mm away" : " mm too deep") +
-                              ": no rigid motion touches at all places; give fewer");
+                              ", because no rigid motion touches at all places: state fewer places");
   if (asked.deepest_mm > allowed_mm)
     made.findings.push_back("overlaps '" + asked.against.name + "' by up to " +
-                            three_figures(asked.deepest_mm) + " mm beside the places: add one there");
+                            three_figures(asked.deepest_mm) + " mm away from the places: add a place there");
 }
 
 }  // namespace
 
 Operation occlude_operation() {
-  return Describe<Occlude>("occlude", "Seats an object on another one so that it touches at given places.",
+  return Describe<Occlude>("occlude", "Moves an object so that it touches another object at stated places.",
                            Makes::Object)
       .takes(field("object", &Occlude::object, "The object to move, such as the mandible.").required())
       .takes(field("against", &Occlude::against, "The object to touch, such as the upper jaw.").required())
       .takes(field("places", &Occlude::places,
-                   "Where it is to touch: points or landmarks on the object. One slides it along the "
-                   "direction, two also tilt it, three seat it.")
+                   "The places of contact: points or landmarks on the object. With one place the object "
+                   "slides along the direction, with two it also tilts, with three its seat is determined.")
                  .required()
                  .from(1)
                  .to(16))
-      .takes(field("towards", &Occlude::towards, "The direction, relative to the head as it is held.")
+      .takes(field("towards", &Occlude::towards,
+                   "The direction of the movement, relative to the head's position.")
                  .one_of({"up", "down"}))
-      .takes(field("about_mm", &Occlude::about_mm, "The largest distance of a contact from its place.")
+      .takes(field("about_mm", &Occlude::about_mm, "A contact may lie up to this distance from its place.")
                  .greater_than(0.0)
                  .to(50.0))
-      .takes(field("gap_mm", &Occlude::gap_mm, "The distance before contact at which the object stops.")
+      .takes(field("gap_mm", &Occlude::gap_mm, "The distance to the other object that remains at the places.")
                  .from(0.0)
                  .to(20.0))
-      .takes(field("most_mm", &Occlude::most_mm, "The largest displacement of a place.")
+      .takes(field("most_mm", &Occlude::most_mm, "The largest displacement of a place that is tried.")
                  .greater_than(0.0)
                  .to(200.0))
       .example(R"({"id": "seated", "do": "occlude", "object": "rest", "against": "advanced",

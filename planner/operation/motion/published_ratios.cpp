@@ -7,7 +7,7 @@
 
 namespace octotomy::planner {
 
-/// Names and texts of the tables in this folder; made when the program is configured.
+/// Names and texts of the tables in this folder. CMake writes this list.
 const std::vector<std::pair<std::string, std::string>>& ratios_files();
 
 namespace {

@@ -7,7 +7,7 @@
 
 namespace octotomy::planner {
 
-/// The published share of a bone landmark's motion with which a landmark of the skin moves.
+/// A published ratio: the share of a bone landmark's motion with which a landmark of the skin moves.
 struct PublishedRatio {
   std::string soft, bone;  ///< names as in the cephalometric definitions
   double ratio = 0.0;
@@ -15,11 +15,11 @@ struct PublishedRatio {
   std::string source;      ///< author and year
 };
 
-/// The ratios of the *.ratios.json of this folder, in their order.
+/// The ratios in the files *.ratios.json of this folder, in the files' order.
 const std::vector<PublishedRatio>& published_ratios();
-/// None if there is no ratio for this pair of landmarks.
+/// The published ratio for this pair of landmarks; none if there is none.
 std::optional<PublishedRatio> published_ratio(const std::string& soft, const std::string& bone);
-/// "pronasale with ans, subnasale with ans, ...".
+/// A list of all pairs: "pronasale with ans, subnasale with ans, ...".
 std::string published_pairs();
 
 }  // namespace octotomy::planner

@@ -25,14 +25,15 @@ namespace {
 
 struct Register {
   ObjectName object, onto;
-  std::vector<std::string> landmarks;  ///< files of the object's landmarks and of the other object's
+  std::vector<std::string> landmarks;  ///< file of the object's landmarks, then file of the other object's
+                                       ///< landmarks
   bool landmarks_only = false;
   std::string motion = "rigid";
   double overlap = brep::SurfaceFitOptions{}.overlap;
   int samples = static_cast<int>(brep::SurfaceFitOptions{}.samples);
   int rounds = brep::SurfaceFitOptions{}.max_rounds;
   std::optional<double> rest_mm;
-  std::string by;  ///< empty: surfaces, and mutual information of two scans' files
+  std::string by;  ///< empty: by surfaces, or for two files of scans by mutual information
   double least_overlap = ScanFitAsked{}.least_overlap, finest_mm = ScanFitAsked{}.finest_mm;
   std::filesystem::path out, watch;  ///< of the command only
   glm::dmat4 onto_from_object{1.0};  ///< determined before the kernels run
@@ -52,7 +53,7 @@ struct FitOfLandmarks {
   std::string motion;
   double rms_mm = 0.0, scale = 1.0;
   std::vector<LandmarkResidual> pairs;
-  std::vector<std::string> left_out;  ///< landmarks of one file only
+  std::vector<std::string> left_out;  ///< landmarks that only one file contains
 };
 constexpr auto members_of(const FitOfLandmarks&) {
   using F = FitOfLandmarks;
@@ -78,15 +79,14 @@ constexpr auto members_of(const FitOfSurfaces&) {
 
 struct TrustOfFit {
   double matched_share = 0.0, tolerance_mm = 0.0;
-  std::optional<double> rival_share;  ///< none where a start was given
+  std::optional<double> rival_share;  ///< none if the search began at a stated motion
   double noise_mm = 0.0;
   std::size_t starts = 0, agreeing_starts = 0;
   Json equal_transforms;
   std::string definition =
-      "matched_share of A lies within tolerance_mm of B with normals that agree to 37 degrees; rival_share "
-      "is that share at another motion of the search; noise_mm is the median distance of a vertex from the "
-      "mean of "
-      "its neighbours";
+      "matched_share is the share of A's surface within tolerance_mm of B with normals that agree to 37 "
+      "degrees; rival_share is this share at the best other motion of the search; noise_mm is the median "
+      "distance of a vertex from the mean of its neighbours";
 };
 constexpr auto members_of(const TrustOfFit&) {
   using T = TrustOfFit;
@@ -99,7 +99,7 @@ constexpr auto members_of(const TrustOfFit&) {
 struct FitDetails {
   std::optional<FitOfLandmarks> landmarks;
   std::optional<FitOfSurfaces> surfaces;
-  std::string verdict;  ///< of the fit of surfaces
+  std::string verdict;  ///< only for a fit of surfaces
   std::optional<TrustOfFit> trust;
 };
 constexpr auto members_of(const FitDetails&) {
@@ -108,7 +108,7 @@ constexpr auto members_of(const FitDetails&) {
                     member_if_any("verdict", &F::verdict), member_if_any("trust", &F::trust));
 }
 
-/// The resulting motion, with its results for the report.
+/// The motion of a registration, with its results for the report.
 struct Laid {
   glm::dmat4 onto_from_object{1.0};
   std::optional<double> rms_mm;  ///< none for scans, which have no points to compare
@@ -116,7 +116,7 @@ struct Laid {
   std::vector<std::string> findings = {};
 };
 
-/// The rotation of a motion, without its scale.
+/// The rotation of a motion, ignoring its scale.
 struct Turn {
   double degrees = 0.0;
   glm::dvec3 axis{0, 0, 1};
@@ -124,7 +124,7 @@ struct Turn {
 Turn turn_of(const glm::dmat4& motion) {
   glm::dmat3 m(motion);
   for (int k = 0; k < 3; ++k) m[k] = glm::normalize(m[k]);
-  // Computed from the quaternion, because the matrix's antisymmetric part loses digits near a half turn.
+  // Computed from the quaternion, because the antisymmetric part of the matrix loses digits near a half turn.
   const glm::dquat q = glm::normalize(glm::quat_cast(m));
   const glm::dvec3 v = q.w < 0.0 ? -glm::dvec3(q.x, q.y, q.z) : glm::dvec3(q.x, q.y, q.z);
   const double sine = glm::length(v);
@@ -138,8 +138,8 @@ bool is_json(const std::filesystem::path& path) {
   return is_landmarks_file(path);
 }
 
-/// The reason why the landmarks may be mirrored; none where they are not. Three points cannot show it: they
-/// are congruent to their mirror image.
+/// The reason why one set of landmarks may be mirrored; none if there is no sign of it. Three points never
+/// show it, because they are congruent to their mirror image.
 std::optional<std::string> mirrored(std::vector<brep::Landmark> moving,
                                     const std::vector<brep::Landmark>& fixed, const brep::LandmarkFit& fit) {
   constexpr double most_mm = 3.0;  // the error of landmarks placed by hand on a head
@@ -148,7 +148,8 @@ std::optional<std::string> mirrored(std::vector<brep::Landmark> moving,
   const double rms_mm = brep::register_landmarks(moving, fixed, brep::MotionModel::similarity).rms_mm;
   if (rms_mm > 0.3 * fit.rms_mm) return std::nullopt;
   return "the landmarks lie " + grouped(fit.rms_mm, 1) + " mm apart, and " + grouped(rms_mm, 1) +
-         " mm if one set is mirrored: left and right are exchanged in one set, by its names or its frame";
+         " mm if one set is mirrored: check whether the names or the frame of one set exchange left and "
+         "right";
 }
 
 Laid by_landmarks(const std::filesystem::path& moving, const std::filesystem::path& fixed,
@@ -169,18 +170,18 @@ Laid by_landmarks(const std::filesystem::path& moving, const std::filesystem::pa
     details.pairs.push_back({fit.paired[k], fit.residuals_mm[k]});
   details.left_out = fit.left_out;
   for (const std::string& name : fit.left_out)
-    laid.findings.push_back("landmark '" + name + "' is in one file only");
+    laid.findings.push_back("landmark '" + name + "' is only in one file, so it is not used");
   if (auto sides = mirrored(from, to, fit)) laid.findings.push_back(std::move(*sides));
   return laid;
 }
 
-/// Several equal answers are a WARN.
+/// The verdict of a fit of surfaces. If several motions fit equally well, it is at most WARN.
 const char* verdict_of(const brep::FitTrust& trust) {
   if (trust.verdict == brep::FitVerdict::Failed) return "FAIL";
   return trust.verdict == brep::FitVerdict::Doubtful || !trust.equals.empty() ? "WARN" : "PASS";
 }
 
-/// The findings that lower an object's certificate below PASS.
+/// The findings that begin with FAIL or WARN, which lower the verdict of an object's certificate.
 std::vector<Caveat> doubts_of(const std::vector<std::string>& findings) {
   std::vector<Caveat> doubts;
   for (const std::string& finding : findings)
@@ -191,11 +192,12 @@ std::vector<Caveat> doubts_of(const std::vector<std::string>& findings) {
   return doubts;
 }
 
-/// Refines the motion in `laid`, or searches for one where there is none yet.
+/// Refines the motion in `laid`; if `is_laid` is false, searches for a motion first.
 void by_surfaces(const brep::Mesh& moving, const brep::Mesh& fixed, const Register& asked, bool is_laid,
                  const voxel::Progress& progress, Timings& timings, Laid& laid) {
   if (asked.motion == "similarity")
-    throw std::runtime_error("surfaces are registered rigidly; a similarity needs --landmarks-only");
+    throw std::runtime_error(
+        "surfaces are registered rigidly: for a similarity, register landmarks by --landmarks-only");
   const Stopwatch watch(timings, "register");
   brep::SurfaceFitOptions options;
   if (is_laid) options.start = laid.onto_from_object;
@@ -232,7 +234,7 @@ ScanFitAsked scan_fit_asked(const Register& asked) {
   return {asked.by == "correlation", asked.least_overlap, asked.finest_mm, asked.watch};
 }
 
-/// The scan that an object was made of, and the object's motion since then.
+/// The scan from which an object was made, and the object's motion since then.
 const Shown& shown_of(const Objects& objects, const std::string& name) {
   const Object& object = objects.at(name);
   if (!object.shown || !object.shown->samples)
@@ -242,19 +244,19 @@ const Shown& shown_of(const Objects& objects, const std::string& name) {
   return *object.shown;
 }
 
-/// Objects move as their scans do. The scans are compared where they were read.
+/// Registers the two objects' scans at the positions where they were read. The objects move as their scans
+/// do.
 FittedScans by_scans_of(const Register& asked, const SettleBench& bench, Laid& laid) {
   const Shown& moving = shown_of(bench.objects, asked.object.name);
   const Shown& fixed = shown_of(bench.objects, asked.onto.name);
   if (moving.scan == fixed.scan)
     throw std::runtime_error("'" + asked.object.name + "' and '" + asked.onto.name +
-                             "' come from one scan, '" + moving.scan + "': compare them by surfaces");
+                             "' come from the same scan, '" + moving.scan + "': register them by surfaces");
   for (const auto& [name, shown] : {std::pair(asked.object.name, &moving), {asked.onto.name, &fixed}})
     if (!is_rigid(shown->moved_from_still))
-      throw std::runtime_error(
-          "'" + name +
-          "' is scaled or sheared, so that it does not move as its scan does: register it by "
-          "surfaces or landmarks");
+      throw std::runtime_error("'" + name +
+                               "' is scaled or sheared, so it does not move as its scan does: register it by "
+                               "surfaces or landmarks");
   FittedScans fitted =
       fit_scans(*moving.samples, *fixed.samples, scan_fit_asked(asked), bench.progress, bench.timings);
   laid.onto_from_object =
@@ -265,10 +267,10 @@ FittedScans by_scans_of(const Register& asked, const SettleBench& bench, Laid& l
 
 void check(const Register& asked, const FieldLocation& place) {
   if (asked.landmarks_only && asked.landmarks.empty())
-    place.at("landmarks_only").refuse("takes the motion of landmarks: add 'landmarks', two files");
+    place.at("landmarks_only").refuse("uses the motion of landmarks: add 'landmarks', two files");
   if (place.scope != nullptr && asked.motion == "similarity")
     place.at("motion").refuse(
-        "scales, and a registered object moves rigidly: use rigid or three_points, and 'affine' to scale");
+        "scales, but a registered object moves rigidly: use rigid or three_points, and 'affine' to scale");
 }
 
 Register settle(const Register& asked, const SettleBench& bench) {
@@ -284,7 +286,7 @@ Register settle(const Register& asked, const SettleBench& bench) {
                 !asked.landmarks.empty(), bench.progress, bench.timings, laid);
   bench.details = {{"transform", to_json(laid.onto_from_object)}};
   if (laid.rms_mm) bench.details["rms_mm"] = *laid.rms_mm;
-  // A fit of scans has its own details; a fit of surfaces or landmarks has a record.
+  // Scans have other details than surfaces and landmarks, whose details are a record.
   bench.details.update(is_by_samples(asked) ? of_scans : print_record(laid.details));
   bench.findings.insert(bench.findings.end(), laid.findings.begin(), laid.findings.end());
   Register settled = asked;
@@ -310,7 +312,7 @@ void bound(const Register& asked, const BoundBench& bench, Object& made) {
   made.caveats.insert(made.caveats.end(), asked.doubts.begin(), asked.doubts.end());
 }
 
-/// Writes the mesh at its new position, with a similarity's scale.
+/// Writes the mesh at its new position, scaled if the motion is a similarity.
 void write_moved(const Register& asked, const glm::dmat4& moved_from_still, Timings& timings) {
   brep::Mesh mesh = read_surface(asked.object.name, timings);
   for (const auto v : mesh.vertices()) {
@@ -321,7 +323,7 @@ void write_moved(const Register& asked, const glm::dmat4& moved_from_still, Timi
   write_surface(mesh, asked.out, timings);
 }
 
-/// The parts of the answer that all ways of registration share: the motion, its definition and its text.
+/// The parts of the answer that all kinds of registration share: the motion, its definition and its text.
 FileAnswer answer_of(const Register& asked, const Laid& laid, const Json& details) {
   FileAnswer answer;
   answer.json = {{"transform", to_json(laid.onto_from_object)},
@@ -342,11 +344,12 @@ FileAnswer answer_of(const Register& asked, const Laid& laid, const Json& detail
   return answer;
 }
 
-/// Registers two scans. The written scan has the samples of the moving scan, unchanged, in another frame.
+/// Registers two scans. The written file has the unchanged samples of the moving scan in a new frame.
 FileAnswer scans_on_files(const Register& asked, const FileBench& bench) {
   if (!asked.landmarks.empty() || asked.landmarks_only)
-    throw std::runtime_error("--landmarks: two scans are compared by their samples: leave it out");
-  // Refuses the options for surfaces here, because the name of a DICOM folder does not show that it is a
+    throw std::runtime_error(
+        "--landmarks does not apply to two scans, which are compared by their samples: leave it out");
+  // Options for surfaces are refused only here, because the name of a DICOM folder does not show that it is a
   // scan.
   const Register fresh;
   if (asked.overlap != fresh.overlap || asked.samples != fresh.samples || asked.rounds != fresh.rounds ||
@@ -356,7 +359,7 @@ FileAnswer scans_on_files(const Register& asked, const FileBench& bench) {
   if (!asked.out.empty()) {
     if (!voxel::volume_format(asked.out))
       throw std::runtime_error(asked.out.string() +
-                               ": a scan is written as .nrrd, .nhdr, .nii, .nii.gz, .mha or .mhd");
+                               ": a scan can be written as .nrrd, .nhdr, .nii, .nii.gz, .mha or .mhd");
     need_folder_of(asked.out);
   }
   voxel::Scene moving = bench.read_scan(asked.object.name);
@@ -372,13 +375,13 @@ FileAnswer scans_on_files(const Register& asked, const FileBench& bench) {
   FileAnswer answer = answer_of(asked, laid, fitted.details);
   answer.json["definition"] =
       "transform maps A's points, LPS mm, to B's frame; row by row; rms_mm is null, because scans have no "
-      "points to "
-      "be apart";
+      "pairs of points";
   answer.rows.insert(answer.rows.begin(), {"verdict", fitted.summary});
   return answer;
 }
 
-/// Files that are neither surfaces nor landmarks.
+/// Whether both files are scans, that is neither surfaces, landmarks nor octrees. Throws if only one of them
+/// is.
 bool are_scans(const Register& asked) {
   const auto is_scan = [](const std::string& name) {
     return !is_mesh(name) && !is_json(name) && !is_octree(name);
@@ -386,12 +389,13 @@ bool are_scans(const Register& asked) {
   const bool a = is_scan(asked.object.name), b = is_scan(asked.onto.name);
   if (a != b)
     throw std::runtime_error((a ? asked.object.name : asked.onto.name) +
-                             ": is a scan, and the other file is not: give two scans, or make a surface of "
-                             "this one by octotomy mesh");
+                             ": is a scan, but the other file is not: name two scans, or make a surface of "
+                             "this scan by octotomy mesh");
   if (!a && is_by_samples(asked))
     throw std::runtime_error("--by: " + asked.by + " applies only to two scans: leave it out");
   if (a && asked.by == "surfaces")
-    throw std::runtime_error("--by: two scans have no surfaces: make them by octotomy mesh");
+    throw std::runtime_error(
+        "--by surfaces does not apply to two scans: make surfaces of them by octotomy mesh");
   return a;
 }
 
@@ -400,11 +404,12 @@ FileAnswer on_files(const Register& asked, const FileBench& bench) {
   const bool points_only = is_json(a) || is_json(b);
   if (points_only && !(is_json(a) && is_json(b)))
     throw std::runtime_error(
-        "one of A and B is a file of landmarks and the other is not: give two of a kind, and landmarks "
-        "beside meshes by --landmarks A.json B.json");
+        "only one of A and B is a file of landmarks: name two files of the same kind; state landmarks of "
+        "meshes by --landmarks A.json B.json");
   if (are_scans(asked)) return scans_on_files(asked, bench);
   if (points_only && (!asked.out.empty() || !asked.landmarks.empty()))
-    throw std::runtime_error("with two files of landmarks there is no mesh for -o or --landmarks");
+    throw std::runtime_error(
+        "-o and --landmarks need meshes, but A and B are files of landmarks: leave these options out");
   if (!asked.out.empty()) {
     need_mesh_extension(asked.out);
     need_folder_of(asked.out);
@@ -432,7 +437,8 @@ FileAnswer on_files(const Register& asked, const FileBench& bench) {
   return answer;
 }
 
-// Conditions of fields. A name does not show whether it is a folder of DICOM or an object of a plan.
+// Conditions under which fields apply. They depend on the fields' values only, because a name does not show
+// whether it is a DICOM folder or an object of a plan.
 bool is_of_samples(const Register& asked) {
   return is_by_samples(asked) || (asked.by.empty() && voxel::volume_format(asked.object.name));
 }
@@ -450,28 +456,28 @@ constexpr const char* of_samples =
 }  // namespace
 
 Operation register_operation() {
-  return Describe<Register>(
-             "register",
-             "Registers an object to another one, by surfaces, named landmarks or the samples of two scans.",
-             Makes::Object)
+  return Describe<Register>("register",
+                            "Moves an object so that it matches another object, by surfaces, named landmarks "
+                            "or the samples of two scans.",
+                            Makes::Object)
       .takes(field("object", &Register::object,
-                   "What moves: an object; on the command line a mesh, a scan or a .json of landmarks.")
+                   "The object that moves; on the command line a mesh, a scan or a .json of landmarks.")
                  .required()
                  .positional("a"))
       .takes(field("onto", &Register::onto, "What stays.").required().positional("b"))
-      .takes(
-          field(
-              "landmarks", &Register::landmarks,
-              "Two files, the landmarks of the moving and of the fixed object, with which the search begins.")
-              .from(2)
-              .to(2)
-              .a_file()
-              .read_if<Register>(is_of_surfaces, of_surfaces))
-      .takes(field("landmarks_only", &Register::landmarks_only, "Uses the landmarks' motion unchanged.")
+      .takes(field("landmarks", &Register::landmarks,
+                   "Two files: the landmarks of the moving object and of the fixed object. Their motion is "
+                   "the start of the search.")
+                 .from(2)
+                 .to(2)
+                 .a_file()
+                 .read_if<Register>(is_of_surfaces, of_surfaces))
+      .takes(field("landmarks_only", &Register::landmarks_only,
+                   "Uses the motion of the landmarks, without a fit of surfaces.")
                  .read_if<Register>(is_of_surfaces, of_surfaces))
       .takes(field("motion", &Register::motion,
-                   "For landmarks: rigid; three_points, which matches the first pair exactly; or similarity, "
-                   "for meshes only.")
+                   "Motion of landmarks: rigid; three_points, which matches the first pair exactly; or "
+                   "similarity, for meshes only.")
                  .one_of({"rigid", "similarity", "three_points"})
                  .read_if<Register>(is_of_surfaces, of_surfaces))
       .takes(field("overlap", &Register::overlap,
@@ -479,41 +485,38 @@ Operation register_operation() {
                  .from(0.05)
                  .to(1.0)
                  .read_if<Register>(is_of_surfaces, of_surfaces))
-      .takes(field("samples", &Register::samples, "Number of points of the moving surface that are compared.")
+      .takes(field("samples", &Register::samples, "Number of sample points on the moving surface.")
                  .from(100)
                  .to(1000000)
                  .read_if<Register>(is_of_surfaces, of_surfaces))
       .takes(
-          field("rounds", &Register::rounds, "Largest number of rounds of each of the last two refinements.")
+          field("rounds", &Register::rounds, "Largest number of rounds in each of the last two refinements.")
               .from(1)
               .to(100000)
               .read_if<Register>(is_of_surfaces, of_surfaces))
       .takes(field("rest_mm", &Register::rest_mm,
-                   "A refinement ends with a round that moves the samples by at most this. Default: a "
-                   "millionth of their "
-                   "spread.")
+                   "A refinement ends with a round that moves the samples by at most this distance. Default: "
+                   "a millionth of their spread.")
                  .greater_than(0.0)
                  .read_if<Register>(is_of_surfaces, of_surfaces))
-      .takes(
-          field(
-              "by", &Register::by,
-              "surfaces, or the samples of the two scans: their correlation, for one kind of scan, or their "
-              "mutual_information, for any two. Default: surfaces; for two files of scans, "
-              "mutual_information.")
-              .one_of({"surfaces", "correlation", "mutual_information"}))
+      .takes(field("by", &Register::by,
+                   "What is compared: surfaces; or the samples of two scans, by correlation for scans of the "
+                   "same kind or by mutual_information for any two scans. Default: surfaces; for two files "
+                   "of scans, mutual_information.")
+                 .one_of({"surfaces", "correlation", "mutual_information"}))
       .takes(field("least_overlap", &Register::least_overlap,
-                   "Least share of the smaller scan that the other one must cover.")
+                   "The other scan must cover at least this share of the smaller scan.")
                  .from(0.05)
                  .to(1.0)
                  .read_if<Register>(may_be_of_samples, of_samples))
       .takes(field("finest_mm", &Register::finest_mm,
-                   "The resolution at which the search for the motion of a scan ends.")
+                   "The resolution at which the search for a scan's motion ends.")
                  .from(0.5)
                  .to(8.0)
                  .read_if<Register>(may_be_of_samples, of_samples))
       .verb_takes(field("out", &Register::out,
-                        "A moved to B: a .stl, .ply, .obj, .off, .vtp or .glb file; for scans a .nrrd, "
-                        ".nhdr, .nii, .nii.gz, .mha or .mhd file with unchanged samples in a new frame."))
+                        "The file of A moved to B: .stl, .ply, .obj, .off, .vtp or .glb; for scans .nrrd, "
+                        ".nhdr, .nii, .nii.gz, .mha or .mhd, with unchanged samples in a new frame."))
       .verb_takes(field("watch", &Register::watch,
                         "A new folder for a picture of the difference of two scans at each step of the "
                         "search: the moving scan in magenta, the fixed scan in green.")

@@ -18,11 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Edge of a pixel of the difference pictures, mm. Three planes of a head side by side then fit the width of
-/// a screen.
+/// Edge in mm of a pixel in the difference pictures. Three planes of a head side by side then fit the width
+/// of a screen.
 constexpr double watched_pixel_mm = 1.0;
 
-/// Pictures of the difference of two scans while one moves.
+/// Draws a picture of the difference of two scans for each step of the search.
 class Watched {
  public:
   Watched(const voxel::Scene& moving, const voxel::Scene& fixed, const fs::path& folder)
@@ -69,7 +69,7 @@ class Watched {
     steps_.push_back({{"picture", name}, {"resolution_mm", step.resolution_mm}, {"likeness", step.likeness}});
   }
 
-  /// Puts the folder in its place; returns the steps.
+  /// Renames the folder to its final name. Returns the list of steps.
   Json finish() {
     const fs::path from = work_.keep();
     fs::permissions(from, fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec |
@@ -79,7 +79,7 @@ class Watched {
   }
 
  private:
-  /// The values shown as black and white: the 1st and the 99th percentile of the visible samples.
+  /// The sample values that are drawn black and white: the 1st and 99th percentiles of the visible samples.
   static voxel::Range tones_of(const std::vector<voxel::SheetSamples>& seen) {
     std::vector<float> values;
     for (const voxel::SheetSamples& samples : seen)
@@ -99,7 +99,7 @@ class Watched {
 
   fs::path folder_;
   voxel::UnfinishedFolder work_;
-  voxel::Scene moving_;  ///< its frame follows the motion
+  voxel::Scene moving_;  ///< its frame follows the motion of each step
   const glm::dmat4 still_frame_ = moving_.lattice.lps_from_voxel;
   std::vector<voxel::Sheet> sheets_;
   std::vector<voxel::SheetSamples> still_;
@@ -126,7 +126,8 @@ FittedScans fit_scans(const voxel::Scene& moving, const voxel::Scene& fixed, con
   std::unique_ptr<Watched> watched;
   if (!asked.watch.empty()) {
     if (fs::exists(asked.watch))
-      throw std::runtime_error("--watch: " + asked.watch.string() + " exists already: name a new folder");
+      throw std::runtime_error("--watch: " + asked.watch.string() +
+                               " exists already: choose the name of a new folder");
     watched = std::make_unique<Watched>(moving, fixed, asked.watch);
     options.watch = [&](const voxel::ScanFitStep& step) { watched->draw(step); };
   }

@@ -16,7 +16,8 @@ namespace octotomy::planner {
 struct ScanFitAsked {
   bool is_correlation = false;  ///< else mutual information
   double least_overlap = 0.3, finest_mm = 2.0;
-  std::filesystem::path watch;  ///< a folder for a picture of the difference at each step; empty: none
+  std::filesystem::path watch;  ///< new folder for a picture of the difference at each step; empty: no
+                                ///< pictures
 };
 
 struct FittedScans {
@@ -24,13 +25,13 @@ struct FittedScans {
   std::string verdict;  ///< PASS, WARN or FAIL
   Json details = Json::object();
   std::vector<std::string> findings;
-  std::string summary;  ///< of the verdict, for people
+  std::string summary;  ///< the verdict in words, for people
 };
 
-/// Registers a scan to another one by voxel::register_scans() and returns its results as details. Pictures in
-/// the folder `watch` show the two scans in the fixed scan's middle planes: the moving scan in magenta, the
-/// fixed scan in green, so equal tones are grey. Throws as register_scans(), and voxel::Error if the folder
-/// exists or cannot be created.
+/// Registers a scan to another by voxel::register_scans(), and returns the motion with its results as
+/// details. If `watch` names a folder, it gets a picture of both scans for each step, in the middle planes of
+/// the fixed scan: the moving scan in magenta and the fixed scan in green, so that equal tones are grey.
+/// Throws as register_scans(), and voxel::Error if the folder exists or cannot be created.
 FittedScans fit_scans(const voxel::Scene& moving, const voxel::Scene& fixed, const ScanFitAsked& asked,
                       const voxel::Progress& progress, Timings& timings);
 

@@ -15,13 +15,14 @@ struct Transform {
   std::filesystem::path file;
 };
 
-/// The motion in a file. Throws std::runtime_error, with the path, if the file contains no rigid motion.
+/// The motion in a transform's file. Throws std::runtime_error that names the path if the motion is not
+/// rigid.
 TransformFile motion_in(const std::filesystem::path& path) {
   TransformFile read = read_itk_transform(path);
   if (!is_rigid(read.moved_from_still))
     throw std::runtime_error(
         path.string() +
-        ": scales, shears or mirrors: save a rigid transform, or take 'affine', which scales and shears");
+        ": scales, shears or mirrors: save a rigid transform, or use 'affine' to scale and shear");
   return read;
 }
 
@@ -52,13 +53,13 @@ void bound(const Transform& transform, const BoundBench& bench, Object& made) {
 }  // namespace
 
 Operation transform_operation() {
-  return Describe<Transform>("transform", "Moves an object by a transform of 3D Slicer or ITK.",
+  return Describe<Transform>("transform",
+                             "Moves an object by the rigid transform in a file of 3D Slicer or ITK.",
                              Makes::Object)
       .takes(field("object", &Transform::object, "The object.").required().positional("solid"))
       .takes(field("file", &Transform::file,
-                   "A linear transform, .tfm or .h5: LPS, mm, from after the motion to before, as both "
-                   "programs write "
-                   "it.")
+                   "A file of a rigid transform, .tfm or .h5, in LPS and mm. As both programs write it, it "
+                   "maps positions after the motion to positions before it.")
                  .required()
                  .a_file())
       .example(R"({"id": "moved", "do": "transform", "object": "maxilla", "file": "advanced_motion.tfm"})")

@@ -29,30 +29,30 @@ struct Warp {
   std::optional<double> fade_mm;
 };
 
-/// The displacements of a solved deck, and the facts about them that the answer reports.
+/// The displacements of a solved deck, with facts about them for the answer.
 struct Displaced {
   convert::DisplacementField field;
   Json details;
 };
 
-/// The distance over which the displacement fades. Throws std::runtime_error where the typed distance folds
-/// space.
+/// The distance in mm over which the displacement fades. Throws std::runtime_error if the stated distance
+/// folds space.
 double fade_of(const Warp& warp, double largest_mm) {
   constexpr double usual_mm = 20.0;
-  // Above the least by enough that no part shrinks to less than a sixth.
+  // This much above the least distance, no part shrinks to less than a sixth.
   constexpr double clearance = 1.2;
   const double least_mm = clearance * convert::least_fade_mm(largest_mm);
   if (!warp.fade_mm) return std::max(usual_mm, least_mm);
   if (*warp.fade_mm < least_mm)
     throw std::runtime_error("'fade_mm' is " + three_figures(*warp.fade_mm) + " mm, but a displacement of " +
                              three_figures(largest_mm) +
-                             " mm that fades so fast folds the tissue: give at least " +
+                             " mm that fades over this distance folds the tissue: state at least " +
                              grouped(std::ceil(10.0 * least_mm) / 10.0, 1) + " mm");
   return *warp.fade_mm;
 }
 
-/// Throws std::runtime_error with the place if elements are inverted: no tissue moves like that, and the scan
-/// of such a field shows one place twice.
+/// Throws std::runtime_error that states the position if elements are inverted. Tissue cannot move like that,
+/// and a scan warped by such a field would show some places twice.
 void refuse_turned_over(const convert::DisplacementField& field, const std::filesystem::path& path) {
   const std::vector<convert::TurnedOver> found = field.turned_over();
   if (found.empty()) return;
@@ -67,10 +67,9 @@ void refuse_turned_over(const convert::DisplacementField& field, const std::file
       path.string() + ": the displacements invert " + std::to_string(found.size()) +
       (found.size() == 1 ? " element" : " elements") + ", the worst at " + voxel::rounded(worst->centre_mm) +
       " mm, all between " + voxel::rounded(low_mm) + " and " + voxel::rounded(high_mm) +
-      " mm (LPS): there a motion is longer than the tissue between the moved and the fixed nodes is thick. "
-      "Take that place out of 'fixed', or write *STEP, NLGEOM in the deck, so "
-      "that the solver follows the motion in increments (linear steps only scale it), "
-      "and solve the deck again");
+      " mm (LPS), because a motion there exceeds the thickness of the tissue between moved and fixed nodes. "
+      "Remove the fixed nodes there from 'fixed', or write *STEP, NLGEOM in the deck, so that the solver "
+      "applies the motion in increments (linear steps only scale it); then solve the deck again");
 }
 
 Displaced displaced(const Warp& warp, const std::filesystem::path& path, const voxel::Progress& progress,
@@ -116,7 +115,7 @@ void bound(const Warp& warp, const BoundBench& bench, Object& made) {
   made.bound.measured_apart_mm = object.bound.measured_apart_mm;
   made.ends_with_universe = true;
   if (!made.mesh.whole || !object.mesh.whole) return;
-  // Read at once, because the file may have changed when the certificate is computed.
+  // The file is read only once, because it may have changed before the certificate is computed.
   const auto deck =
       std::make_shared<const convert::SolvedDeck>(convert::read_solved_deck(bench.folder / warp.result));
   const double fade_mm = made.mesh.details.at("fade_mm");
@@ -175,18 +174,19 @@ FileAnswer on_files(const Warp& warp, const FileBench& bench) {
 }  // namespace
 
 Operation warp_operation() {
-  return Describe<Warp>("warp", "Moves an object as a solved deck moved: the face after the operation.",
+  return Describe<Warp>("warp", "Deforms an object as a solved deck deforms: the face after the operation.",
                         Makes::Object)
       .takes(field("object", &Warp::object, "An object; on the command line a mesh or a scan.")
                  .required()
                  .positional("file"))
-      .takes(field("result", &Warp::result, "CalculiX's .frd file of a deck of linear tetrahedra.")
-                 .required()
-                 .a_file())
+      .takes(
+          field("result", &Warp::result, "The .frd file that CalculiX wrote for a deck of linear tetrahedra.")
+              .required()
+              .a_file())
       .takes(field("fade_mm", &Warp::fade_mm,
-                   "Beyond the deck's box along the patient's axes, the displacement fades to zero over this "
-                   "distance. At least 2.54 times the largest displacement, or space would fold. Default: 20 "
-                   "mm, or that minimum if it is longer.")
+                   "Outside the deck's bounding box along the patient's axes, the displacement fades to zero "
+                   "over this distance. It must be at least 2.54 times the largest displacement, or space "
+                   "would fold. Default: 20 mm, or that minimum if it is longer.")
                  .greater_than(0.0))
       .verb_takes(field("out", &Warp::out, "A mesh, or a .nrrd, .nii.gz or .mha file.").required())
       .reads_scans()

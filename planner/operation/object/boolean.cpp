@@ -40,10 +40,10 @@ struct Boolean {
 
 void check(const Boolean& asked, const FieldLocation& place) {
   if (asked.exact && !asked.further.empty())
-    place.at("exact").refuse("proves one Boolean at a time: leave 'with' out");
+    place.at("exact").refuse("applies only to two objects: leave 'with' out");
 }
 
-/// "the difference of skull and cut".
+/// Text such as "the difference of skull and cut".
 std::string definition(const Boolean& asked, const Objects&) {
   const std::vector<std::string> names = asked.operands();
   std::string text = "the " + asked.operation + " of " + names.front();
@@ -66,7 +66,8 @@ void voxels(const Boolean& asked, const VoxelBench& bench, VoxelSide& made) {
       made);
 }
 
-/// The proof as JSON. Replaces the result's solid by the proven mesh.
+/// Computes the Boolean with exact numbers. Replaces the result's solid by this mesh, and returns the proof
+/// as JSON.
 Json proven(const MeshBench& bench, const brep::Solid& a, brep::Operation operation, const brep::Solid& b,
             brep::BooleanResult& result) {
   brep::ExactBoolean exact =
@@ -83,14 +84,14 @@ Json proven(const MeshBench& bench, const brep::Solid& a, brep::Operation operat
           {"rounded_points", exact.points}};
 }
 
-/// Whether a solid is so thin that the rounding of its points may have produced it. Exact arithmetic finds
+/// Whether a solid is so thin that the rounding of its points may have produced it. Exact arithmetic makes
 /// such slivers between faces that coincide except for rounding.
 bool is_film(const brep::Solid& solid) {
   const brep::Size& size = solid.size();
   double reach_mm = 0.0;
   for (const glm::dvec3& p : {size.low_mm, size.high_mm})
     reach_mm = std::max({reach_mm, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-  constexpr double roundings = 8.0;  // of turned corners, see common_frame.h
+  constexpr double roundings = 8.0;  // rounding of a rotated corner, in units of epsilon; see common_frame.h
   return size.volume_mm3 <=
          roundings * std::numeric_limits<double>::epsilon() * reach_mm * 0.5 * size.area_mm2;
 }
@@ -111,23 +112,25 @@ void triangles(const Boolean& asked, const MeshBench& bench, MeshSide& made) {
     proof = proven(bench, operands[0], asked.kind(), operands[1], result);
   else
     result = brep::boolean(operands, asked.kind(), bench.progress.stop);
-  // An empty result may be due to rounding: a body thinner than the rounding of points vanishes.
+  // An empty result may be wrong, because a body thinner than the rounding of points vanishes.
   if (!asked.exact && result.solid.empty() && operands.size() == 2 && boxes_meet(operands[0], operands[1])) {
     try {
       proof = proven(bench, operands[0], asked.kind(), operands[1], result);
     } catch (const brep::Error& error) {
-      // Exact arithmetic finds gaps and overlaps between faces that coincide except for rounding. These are
-      // no solids.
+      // Between faces that coincide except for rounding, exact arithmetic makes gaps and overlaps that are
+      // not a solid.
       if (error.code() != brep::ErrorCode::Geometry) throw;
-      result.findings.emplace_back("empty, except perhaps for parts thinner than the rounding of points");
+      result.findings.emplace_back(
+          "the result is empty, except perhaps for parts thinner than the rounding of points");
     }
     if (!result.solid.empty() && is_film(result.solid)) result.solid = brep::Solid();
     if (!result.solid.empty())
-      result.findings.push_back("thinner than the rounding of points, so made with exact numbers: " +
-                                three_figures(result.solid.size().volume_mm3) + " mm3");
+      result.findings.push_back(
+          "the result is thinner than the rounding of points, so it was computed with exact numbers: " +
+          three_figures(result.solid.size().volume_mm3) + " mm3");
   }
   if (result.solid.empty() && !proof.is_null())
-    result.findings.emplace_back("empty: proven with exact numbers for the points as they are rounded");
+    result.findings.emplace_back("the result is empty, which exact numbers prove for the rounded points");
   made.whole = std::move(result.solid);
   made.shift_mm = result.shift_mm;
   made.findings = std::move(result.findings);
@@ -140,7 +143,7 @@ void triangles(const Boolean& asked, const MeshBench& bench, MeshSide& made) {
 void bound(const Boolean& asked, const BoundBench& bench, Object& made) {
   const std::vector<std::string> names = asked.operands();
   bound_of_operands(names, bench, made);
-  // Names of files are no valid names in an expression, so the operands are numbered.
+  // The operands are numbered, because names of files are not valid names in an expression.
   std::string text = "_0";
   for (std::size_t i = 1; i < names.size(); ++i)
     text += std::string(" ") + asked.sign() + " _" + std::to_string(i);
@@ -152,7 +155,9 @@ void bound(const Boolean& asked, const BoundBench& bench, Object& made) {
 }  // namespace
 
 Operation boolean_operation() {
-  return Describe<Boolean>("boolean", "Makes the Boolean of two or more objects.", Makes::Object)
+  return Describe<Boolean>("boolean",
+                           "Makes the union, the intersection or the difference of two or more objects.",
+                           Makes::Object)
       .takes(field("a", &Boolean::a, "An object; on the command line a mesh or an octree.")
                  .required()
                  .positional("a"))
@@ -162,10 +167,11 @@ Operation boolean_operation() {
                  .positional("op"))
       .takes(field("b", &Boolean::b, "Another object.").required().positional("b"))
       .takes(field("with", &Boolean::further,
-                   "Further objects: all are united or intersected, or subtracted from the first."))
+                   "Further objects, which are united or intersected with the first two, or subtracted from "
+                   "the first."))
       .takes(field("exact", &Boolean::exact,
-                   "Computes the mesh's new points as exact numbers, and proves in rational numbers that the "
-                   "volumes add up; slower."))
+                   "Computes new points of the mesh as exact numbers and proves in rational numbers that the "
+                   "volumes add up. This is slower."))
       .example(R"({"id": "remainder", "do": "boolean", "a": "skull", "op": "difference", "b": "cut"})")
       .on_files(
           "octotomy boolean skull.stl difference box.stl -o rest.stl --json\n"

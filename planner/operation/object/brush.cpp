@@ -24,7 +24,7 @@ struct Stroke {
   std::vector<glm::dvec3> points_mm;
   double radius_mm = 3.0;
   std::string shape = "ball";
-  std::optional<glm::dvec3> normal;    ///< of a slab, of any length
+  std::optional<glm::dvec3> normal;    ///< normal of a slab, of any length
   std::optional<double> thickness_mm;  ///< of a slab
 
   bool is_slab() const { return shape == "slab"; }
@@ -40,7 +40,7 @@ struct Brush {
   std::vector<Stroke> all() const { return strokes.empty() ? std::vector{drawn} : strokes; }
 };
 
-/// A slab's frame. The direction of its first corner is a choice that both kernels must share.
+/// The frame of a slab. Its first corner may lie in any direction, so both kernels read it from here.
 struct SlabFrame {
   glm::dvec3 normal, across;
 };
@@ -54,8 +54,8 @@ SlabFrame frame_of(const Stroke& stroke) {
   return {normal, glm::normalize(across - normal * normal[least])};
 }
 
-/// The strokes in the types of a kernel or of the witness; `slab` is the member for a slab's frame and
-/// thickness.
+/// The strokes in the types of one kernel or of the witness. `slab` is the member there for a slab's frame
+/// and thickness.
 template <typename Made, typename Slab>
 std::vector<Made> strokes_of(const Brush& brush, std::optional<Slab> Made::*slab) {
   std::vector<Made> made;
@@ -70,18 +70,19 @@ std::vector<Made> strokes_of(const Brush& brush, std::optional<Slab> Made::*slab
 
 std::string changes_no(const std::string& part, const Brush& brush) {
   return "the brush changes no " + part + " of '" + brush.object.name +
-         "': look where its strokes lie, and draw them again";
+         "': check the positions of its strokes, and draw them again";
 }
 
-/// Unequal points nearer to each other than this make a hull whose faces are thinner than rounding.
+/// If two different points are nearer to each other than this, the faces of their hull are thinner than
+/// rounding.
 constexpr double least_way_mm = 1e-3;
-/// Farther from the origin, rounding would turn the faces of a small brush.
+/// Farther from the origin than this, rounding would displace the faces of a small brush.
 constexpr double most_mm = 1e6;
 
 void check_stroke(const Stroke& stroke, const FieldLocation& place) {
   if (stroke.is_slab()) {
-    if (!stroke.normal) place.at("normal").refuse("is missing: a slab has one");
-    if (!stroke.thickness_mm) place.at("thickness_mm").refuse("is missing: a slab has one");
+    if (!stroke.normal) place.at("normal").refuse("is missing: a slab needs it");
+    if (!stroke.thickness_mm) place.at("thickness_mm").refuse("is missing: a slab needs it");
   } else {
     if (stroke.normal)
       place.at("normal").refuse("applies only to a slab: set 'shape' to \"slab\", or leave it out");
@@ -92,19 +93,19 @@ void check_stroke(const Stroke& stroke, const FieldLocation& place) {
     if (!(glm::length(stroke.points_mm[i]) <= most_mm))
       place.at("points_mm")
           .refuse("point " + std::to_string(i) +
-                  " lies more than 1000 m from the origin: give LPS coordinates in mm");
+                  " lies more than 1000 m from the origin: state LPS coordinates in mm");
   for (std::size_t i = 1; i < stroke.points_mm.size(); ++i) {
     const double way_mm = glm::distance(stroke.points_mm[i - 1], stroke.points_mm[i]);
     if (way_mm > 0.0 && way_mm < least_way_mm)
       place.at("points_mm")
           .refuse("points " + std::to_string(i - 1) + " and " + std::to_string(i) +
-                  " are less than 0.001 mm apart: leave one of them out");
+                  " are less than 0.001 mm apart: leave out one of them");
   }
 }
 
 void check(const Brush& brush, const FieldLocation& place) {
   if (place.scope == nullptr && brush.strokes.empty()) return check_stroke(brush.drawn, place);
-  if (brush.strokes.empty()) place.refuse("'strokes' is missing: add one");
+  if (brush.strokes.empty()) place.refuse("'strokes' is missing: add at least one stroke");
   for (std::size_t i = 0; i < brush.strokes.size(); ++i)
     check_stroke(brush.strokes[i], place.at("strokes[" + std::to_string(i) + "]"));
 }
@@ -151,9 +152,9 @@ void triangles(const Brush& brush, const MeshBench& bench, MeshSide& made) {
       std::string("corefinement with the hulls of the brush") + (brush.paints() ? not_measured : "");
 }
 
-/// Distance from a dab's centre to the plane, normal to an axis, that touches it.
+/// The distance from a dab's centre to the plane that is normal to an axis and touches the dab.
 double reach_mm(const Stroke& stroke, int axis) {
-  // A ball's outermost edges along an axis lie between two hexagons.
+  // The outermost edges of a ball's polyhedron along an axis lie between two hexagons.
   if (!stroke.is_slab())
     return 0.9675583399663303 * std::numbers::sqrt3 / std::numbers::phi * stroke.radius_mm;
   const SlabFrame frame = frame_of(stroke);
@@ -167,8 +168,8 @@ double reach_mm(const Stroke& stroke, int axis) {
          0.5 * *stroke.thickness_mm * std::abs(frame.normal[axis]);
 }
 
-/// The planes of walls that are normal to an axis. A piece of a stroke that is normal to the axis leaves a
-/// wall on either side; a slab that is normal to the axis leaves one at each of its points.
+/// The planes of the brush's walls that are normal to an axis. A piece of a stroke that is perpendicular to
+/// the axis has such a wall on either side. A slab whose normal is the axis has two at each of its points.
 std::vector<CutPlane> walls_of(const std::vector<Stroke>& strokes) {
   constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
   std::array<std::set<double>, 3> offsets_mm;
@@ -212,32 +213,32 @@ void bound(const Brush& brush, const BoundBench& bench, Object& made) {
   const double before = static_cast<double>(object.voxel.octree.voxel_count());
   const double changed = std::abs(static_cast<double>(made.voxel.octree.voxel_count()) - before);
   if (changed == 0.0) {
-    // One finding is enough where the mesh kernel found the same.
+    // If the mesh kernel found no change, either, one finding is enough.
     std::erase(made.findings, changes_no("part of the surface", brush));
     made.findings.push_back(changes_no("voxel", brush));
   }
   if (changed > 0.0 && brush.paints())
     made.findings.push_back("painted: " + three_figures(changed * bench.universe.lattice().voxel_mm3()) +
-                            " mm\u00b3 are drawn by hand and not measured by a scan");
+                            " mm\u00b3 were drawn by hand; no scan measured them");
 }
 
 std::vector<Field> stroke_fields() {
   std::vector<Field> fields;
-  fields.push_back(field("points_mm", &Stroke::points_mm, "The points of the stroke, one or more, LPS.")
+  fields.push_back(field("points_mm", &Stroke::points_mm, "One or more points of the stroke, LPS.")
                        .required()
                        .from(1)
                        .to(2000));
   fields.push_back(
       field("radius_mm", &Stroke::radius_mm,
-            "The radius of the brush. A ball is a polyhedron of 32 faces with the ball's volume, "
-            "its surface 3.2 % of the radius inside to 4.9 % outside of the ball's; a slab is a "
-            "disc of 16 sides, 0.6 % inside to 1.3 % outside.")
+            "The radius of the brush. A ball is a polyhedron with 32 faces and the ball's volume; its "
+            "surface lies between 3.2 % of the radius inside and 4.9 % outside of the ball's surface. A slab "
+            "is a disc with 16 sides, from 0.6 % inside to 1.3 % outside.")
           .from(0.1)
           .to(100.0));
   fields.push_back(field("shape", &Stroke::shape, "The shape of the brush.").one_of({"ball", "slab"}));
   fields.push_back(field("normal", &Stroke::normal, "The slab's normal, LPS.").direction());
   fields.push_back(field("thickness_mm", &Stroke::thickness_mm,
-                         "The thickness of a slab, half on either side of the points.")
+                         "The thickness of a slab; half of it lies on either side of the points.")
                        .from(0.1)
                        .to(200.0));
   return fields;
@@ -251,7 +252,8 @@ Operation brush_operation() {
                          Makes::Object)
       .takes(field("object", &Brush::object, "The object.").required().positional("solid"))
       .takes(records("strokes", &Brush::strokes,
-                     "The strokes. Between two points the brush is the convex hull of both.", stroke_fields())
+                     "The strokes. Between two points a stroke is the convex hull of the brush at both.",
+                     stroke_fields())
                  .from(1)
                  .to(500)
                  .in_plans_only())

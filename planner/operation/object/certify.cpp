@@ -15,8 +15,8 @@
 namespace octotomy::planner {
 namespace {
 
-/// The witness is cut at the universe's border, as both results were. It is loosened by the distance that
-/// Booleans may have moved surfaces.
+/// The witness of an object, cut at the universe's border, as both results are, and loosened by the distance
+/// by which Booleans may have moved surfaces.
 verify::Witness within_universe(const Object& made) {
   const voxel::Box world = voxel::bounds(made.voxel.octree.universe().lattice());
   const verify::Witness within = verify::both(made.witness, verify::witness_of_box(world));
@@ -34,8 +34,9 @@ void judge_reshaped(Object& made, const voxel::Progress& progress) {
                       progress);
 }
 
-/// Missing tissue below this share of an object is stated among its findings and does not lower its verdict. A project's
-/// choice: the interval of the volume of the head phantom's maxilla is 9 % wide on each side.
+/// Missing tissue lowers the verdict only if it exceeds this share of the object; otherwise a finding states
+/// it. The share is a choice: for comparison, the volume's interval of the head phantom's maxilla is 9 % wide
+/// on each side.
 constexpr double negligible_share = 0.001;
 
 void lower_by_caveats(Object& made) {
@@ -44,7 +45,7 @@ void lower_by_caveats(Object& made) {
       verify::lower(*made.certificate, caveat.verdict, caveat.reason);
 }
 
-/// Computes the certificate, without the time that this takes.
+/// Computes the certificate; the caller measures the time.
 void judge(Object& made, const std::string& title, const voxel::Progress& progress) {
   if (!made.mesh.within) {
     made.certificate = verify::certify_alone(
@@ -56,7 +57,7 @@ void judge(Object& made, const std::string& title, const voxel::Progress& progre
   inputs.operation = title;
   inputs.voxel_lineage = made.voxel.lineage;
   inputs.mesh_lineage = made.mesh.lineage;
-  // Objects that commands make from files have no measures yet.
+  // Objects that verbs make from files have no measures yet.
   if (made.voxel.measures.voxel_count > 0 &&
       made.voxel.measures.voxel_count == made.voxel.octree.voxel_count())
     inputs.voxel_measures = made.voxel.measures;

@@ -52,7 +52,7 @@ void triangles(const Combine& combine, const MeshBench& bench, MeshSide& made) {
   made.lineage = "corefinement of meshes";
 }
 
-/// Whether a point is in an expression. Bit i of `held` states whether it is in object i.
+/// Whether a point lies in an expression. Bit i of `held` states whether it lies in object i.
 bool holds(const verify::ExpressionTree& tree, unsigned held) {
   if (tree.parts.empty()) return ((held >> static_cast<unsigned>(tree.leaf)) & 1U) != 0;
   bool made = holds(tree.parts.front(), held);
@@ -67,8 +67,8 @@ bool holds(const verify::ExpressionTree& tree, unsigned held) {
   return made;
 }
 
-/// Whether an expression is empty for all objects, as a - a: no row of its truth table is true. Returns false
-/// for expressions of more than 10 objects.
+/// Whether an expression such as a - a is empty for any objects, because no row of its truth table is true.
+/// Returns false for expressions of more than 10 objects.
 bool is_empty_of_any(const std::string& expression) {
   constexpr std::size_t most_objects = 10;
   std::vector<std::string> names;
@@ -83,15 +83,15 @@ void bound(const Combine& combine, const BoundBench& bench, Object& made) {
   bound_of_operands(uses(combine), bench, made);
   made.is_surely_empty = is_empty_of_any(combine.expression);
   if (made.is_surely_empty)
-    made.findings.push_back("'" + combine.expression + "' is empty for all objects: check the expression");
+    made.findings.push_back("'" + combine.expression + "' is empty for any objects: check the expression");
   else if (made.voxel.octree.is_empty())
-    made.findings.push_back("no voxel is in '" + combine.expression +
+    made.findings.push_back("no voxel lies in '" + combine.expression +
                             "': it is empty, or thinner than the distance between voxels");
   made.witness = verify::witness_of_expression(
       combine.expression, [&](const std::string& name) { return bench.objects.at(name).witness; });
 }
 
-/// Adds a finding where a mask contains nothing, or all, of an object of the expression.
+/// Adds a finding for each mask that contains nothing or everything of an object in the expression.
 void tell_idle_masks(const std::vector<std::string>& names, const BoundBench& bench, Object& made) {
   for (const std::string& tool : names) {
     if (!bench.objects.at(tool).is_tool) continue;
@@ -101,10 +101,10 @@ void tell_idle_masks(const std::vector<std::string>& names, const BoundBench& be
       if (object.is_tool || object.voxel.octree.is_empty()) continue;
       const voxel::Expression bone(object.voxel.octree);
       if (voxel::combine(bench.universe, bone & mask).is_empty())
-        made.findings.push_back("the mask '" + tool + "' holds nothing of '" + name +
-                                "' and cuts nothing: look at it by octotomy preview, and redraw its regions");
+        made.findings.push_back("the mask '" + tool + "' contains nothing of '" + name +
+                                "', so it cuts nothing: view it by octotomy preview, and redraw its regions");
       else if (voxel::combine(bench.universe, bone - mask).is_empty())
-        made.findings.push_back("the mask '" + tool + "' holds all of '" + name + "' and cuts nothing");
+        made.findings.push_back("the mask '" + tool + "' contains all of '" + name + "' and cuts nothing");
     }
   }
 }
@@ -116,8 +116,8 @@ void combine_voxels(const VoxelBench& bench,
                     VoxelSide& made) {
   voxel::Names operands, symbols;
   operands.object = [&](std::string_view name) {
-    // A mask's expression selects the same voxel centres as its octree, and is evaluated without traversing a
-    // tree.
+    // A mask is evaluated by its expression, which selects the same voxel centres as its octree without a
+    // traversal.
     const VoxelSide& operand = bench.object(std::string(name));
     return bench.is_tool(std::string(name)) ? *operand.symbol : voxel::Expression(operand.octree);
   };
@@ -131,12 +131,14 @@ void bound_of_operands(const std::vector<std::string>& names, const BoundBench& 
   tell_idle_masks(names, bench, made);
   made.shown = shown_in_common(bench.objects, names);
   for (const std::string& name : names) inherit(bench.objects.at(name), made);
-  // Both kernels cut the result of an expression at the universe's border. Later motions move the cut object.
+  // Both kernels cut the result of an expression at the universe's border, so a later motion moves the cut
+  // object.
   made.ends_with_universe = true;
 }
 
 void check_expression(const std::string& expression, const FieldLocation& place) {
-  // Any object will do to check the grammar and the names; motions are steps of their own.
+  // To check grammar and names any object is sufficient. Motions are separate steps in plans, so names of
+  // motions are refused.
   voxel::Names names;
   names.object = [&](std::string_view name) -> voxel::Expression {
     place.need_object(std::string(name));

@@ -16,17 +16,17 @@ struct Combine {
   std::string expression;
 };
 
-/// Refuses a text that is no expression of earlier objects, with the position of the fault.
+/// Throws if the text is not an expression of earlier objects; the message states the position of the fault.
 void check_expression(const std::string& expression, const FieldLocation& place);
 
-/// The voxel kernel's Boolean of earlier objects. `expression` builds the Boolean from the operands of its names. It
-/// is called twice: with the objects' octrees and with their symbols.
+/// Computes the voxel kernel's Boolean of earlier objects. `expression` builds the Boolean from the operands
+/// of its names. It is called twice: with the objects' octrees, and with their symbols.
 void combine_voxels(const VoxelBench& bench,
                     const std::function<voxel::Expression(const voxel::Names& names)>& expression,
                     VoxelSide& made);
 
-/// Adds the operands' cut walls, bound terms and windows to a Boolean's result, and a finding for each mask
-/// that cuts nothing of an operand.
+/// Adds the cut walls, bound terms and windows of the operands to a Boolean's result, and a finding for each
+/// mask that cuts nothing.
 void bound_of_operands(const std::vector<std::string>& names, const BoundBench& bench, Object& made);
 
 }  // namespace octotomy::planner

@@ -28,7 +28,7 @@ struct Contours {
   std::optional<double> tolerance;
   double least_area_mm2 = 0.0, thin_mm = 0.0, by_mm = 0.0;
   std::optional<int> harmonics;
-  // Options of the command line only.
+  // Only the verb has the following options.
   std::filesystem::path edits, codes;
   double code_spacing_mm = 1.0;
 
@@ -49,23 +49,23 @@ std::vector<SliceWindow> own_windows(const Contours& contours) {
   return own;
 }
 
-/// The reason why options contradict each other, with the names that `name` returns for them; empty if they
-/// do not.
+/// The reason why options contradict each other; empty if they do not. `name` returns an option's name for
+/// the message.
 std::string conflict_of(const Contours& contours, const std::function<std::string(const char*)>& name) {
   if (!contours.seeds_mm.empty() && has_windows(contours))
-    return name("seeds_mm") + ": set the thresholds: leave " + name("window") + " out";
+    return name("seeds_mm") + ": determine the thresholds: leave " + name("window") + " out";
   if (!contours.seeds_mm.empty() && !contours.around_mm.empty())
     return name("around_mm") + ": cannot be combined with seeds on edges: leave " + name("seeds_mm") + " out";
   if (contours.tolerance && contours.around_mm.empty())
     return name("tolerance") + ": applies only to a region around a seed: add " + name("around_mm");
   if (contours.tolerance && has_windows(contours))
-    return name("tolerance") + ": selects the samples in place of a window: leave " + name("window") + " out";
+    return name("tolerance") + ": replaces the window: leave " + name("window") + " out";
   if (!contours.around_mm.empty() && !contours.slice_windows.empty())
     return name("slice_windows") + ": cannot be combined with regions around pixels: leave " +
            name("around_mm") + " out";
   if (!contours.around_mm.empty() && !contours.window && !contours.tolerance)
     return name("around_mm") + ": add " + name("window") + " or " + name("tolerance") +
-           ", which bounds the samples of the region";
+           ", which limits the samples of the region";
   return "";
 }
 
@@ -84,7 +84,7 @@ void check(const Contours& contours, const FieldLocation& place) {
     place.refuse("'window' is missing: add it, for example \"bone\", or 'seeds_mm'");
 }
 
-/// Follows the contours on a scan. For each seed, adds the contour found to `of_seeds`.
+/// Computes the contours in a scan. Adds the contour that was found for each seed to `of_seeds`.
 voxel::SliceMask followed(const Contours& asked, const voxel::Scene& scene, Timings& timings, Json& of_seeds,
                           std::vector<std::string>& findings) {
   const Stopwatch watch(timings, "follow");
@@ -100,8 +100,8 @@ voxel::SliceMask followed(const Contours& asked, const voxel::Scene& scene, Timi
                           {"away_mm", seed.away_mm}});
       if (seed.is_far)
         findings.push_back("a seed lies " + plain(std::round(100.0 * seed.away_mm) / 100.0) +
-                           " mm from the contour at its threshold of " + plain(seed.threshold) +
-                           ", on no edge: the nearest contour is a guess, choose a seed on the edge");
+                           " mm away from the nearest contour at its threshold of " + plain(seed.threshold) +
+                           ", so it lies on no edge and this contour is a guess: choose a seed on the edge");
     }
     return std::move(made.mask);
   }
@@ -121,7 +121,8 @@ voxel::SliceMask finished(const Contours& asked, const voxel::SliceMask& mask, T
   return done;
 }
 
-/// Sizes per slice, and sums for the printed text. Holes are subtracted from areas.
+/// The sizes of the contours in each slice, and their sums for the printed text. The areas of holes are
+/// subtracted.
 struct Sizes {
   Json slices = Json::array();
   std::size_t contours = 0, points = 0;
@@ -167,10 +168,10 @@ FileAnswer on_files(const Contours& asked, const FileBench& bench) {
   const std::string conflict = conflict_of(asked, option_named);
   if (!conflict.empty()) throw std::runtime_error(conflict);
   if (is_json(file) && (!asked.seeds_mm.empty() || !asked.around_mm.empty()))
-    throw std::runtime_error(file.string() + ": holds contours already: leave " +
+    throw std::runtime_error(file.string() + ": already contains contours: leave " +
                              (asked.seeds_mm.empty() ? "--around" : "--seed") + " out");
   if (is_json(file) && has_windows(asked))
-    throw std::runtime_error(file.string() + ": holds contours already: leave " +
+    throw std::runtime_error(file.string() + ": already contains contours: leave " +
                              (asked.window ? "--window" : "--slice-window") + " out");
   if (!is_json(file) && !has_windows(asked) && asked.seeds_mm.empty() && asked.around_mm.empty())
     throw std::runtime_error(
@@ -215,36 +216,37 @@ FileAnswer on_files(const Contours& asked, const FileBench& bench) {
 
 Operation contours_operation() {
   return Describe<Contours>(
-             "contours", "Writes contours on a scan's slices: followed, thinned, smoothed, offset, edited.",
+             "contours",
+             "Writes the contours on a scan's slices, and can thin, smooth, offset and edit them.",
              Makes::File)
       .takes(field("scan", &Contours::scan, "The scan; for the verb also a .json of regions on slices.")
                  .required()
                  .positional("file"))
-      .takes(field("path", &Contours::out, "A .json of regions on slices, as masks read it.")
+      .takes(field("path", &Contours::out, "A .json file of regions on slices, in the form that masks read.")
                  .required()
                  .called("out"))
-      .takes(field("window", &Contours::window, "For a scan: LOW:HIGH or LOW: in sample units, or a tissue."))
+      .takes(field("window", &Contours::window,
+                   "For a scan: the samples that the contours outline, LOW:HIGH or LOW: in sample units, or "
+                   "a tissue."))
       .takes(field("seeds_mm", &Contours::seeds_mm,
-                   "For a scan, in place of a window: pixels on edges, LPS. A pixel's sample is the "
-                   "threshold of its "
-                   "slice, whose contour nearest to the pixel is written.")
+                   "For a scan, instead of a window: pixels on edges, LPS. The pixel's sample is the "
+                   "threshold in its slice, and the contour nearest to the pixel is written.")
                  .repeated()
                  .called("seed"))
       .takes(field("slice_windows", &Contours::slice_windows,
-                   "For a scan: separate windows of single slices, POSITION=LOW:HIGH, the position in mm "
-                   "along the "
-                   "contours' view. Other slices use 'window' if it is set; otherwise they have no contours.")
+                   "For a scan: separate windows for single slices, POSITION=LOW:HIGH, with the position in "
+                   "mm along the contours' view. Other slices use 'window' if it is set; otherwise they have "
+                   "no contours.")
                  .repeated()
                  .called("slice-window"))
-      .takes(
-          field("around_mm", &Contours::around_mm,
-                "For a scan: pixels within regions, LPS. Each keeps in its slice the connected region of the "
-                "window around it, with the region's holes.")
-              .repeated()
-              .called("around"))
+      .takes(field("around_mm", &Contours::around_mm,
+                   "For a scan: pixels within regions, LPS. For each, the connected region of the window "
+                   "around it in its slice is written, with the region's holes.")
+                 .repeated()
+                 .called("around"))
       .takes(field("tolerance", &Contours::tolerance,
-                   "For regions around pixels, in place of a window: the largest difference from the pixel's "
-                   "sample.")
+                   "For regions around pixels, instead of a window: the largest difference of samples from "
+                   "the pixel's sample.")
                  .from(0.0))
       .takes(field("least_area_mm2", &Contours::least_area_mm2,
                    "Leaves out contours that enclose less than this area.")
@@ -256,18 +258,20 @@ Operation contours_operation() {
       .takes(field("harmonics", &Contours::harmonics, "Number of Fourier harmonics that smooth each contour.")
                  .from(1)
                  .to(10000))
-      .takes(field("by_mm", &Contours::by_mm, "Moves contours outward by this; inward if it is below zero.")
+      .takes(field("by_mm", &Contours::by_mm,
+                   "Moves contours outward by this distance, or inward if it is negative.")
                  .from(-1e6)
                  .to(1e6))
+      .verb_takes(field("edits", &Contours::edits,
+                        "A .json file of manual edits. They are made last, in their order.")
+                      .a_file())
       .verb_takes(
-          field("edits", &Contours::edits, "A .json file of manual edits, which are made last, in order.")
-              .a_file())
-      .verb_takes(field("codes", &Contours::codes, "Writes Freeman's chain codes too, to this .json."))
-      .verb_takes(field("code_spacing_mm", &Contours::code_spacing_mm,
-                        "The spacing of the samples on which chain codes step.")
-                      .greater_than(0.0)
-                      .read_if<Contours>([](const Contours& contours) { return !contours.codes.empty(); },
-                                         "needs 'codes': add it"))
+          field("codes", &Contours::codes, "A .json file to which Freeman's chain codes are also written."))
+      .verb_takes(
+          field("code_spacing_mm", &Contours::code_spacing_mm, "The spacing of the grid of chain codes.")
+              .greater_than(0.0)
+              .read_if<Contours>([](const Contours& contours) { return !contours.codes.empty(); },
+                                 "needs 'codes': add it"))
       .reads_scans()
       .example(
           R"({"id": "lines", "do": "contours", "scan": "ct", "path": "bone.json",

@@ -27,8 +27,9 @@ struct Decimate {
   bool mend = false;
 };
 
-/// The allowed error as a share of the surface's extent, where no error is given and the share is below 0.1 mm, as
-/// for extents below 20 mm. So objects of another size or unit keep their shape.
+/// If no error is stated, the allowed error is this share of the surface's extent, at most 0.1 mm. For
+/// extents below 20 mm, the share thus limits the error, so that small objects or those in another unit keep
+/// their shape.
 constexpr double default_share() {
   return 1.0 / 200.0;
 }
@@ -63,16 +64,16 @@ brep::Mesh fewer(const Decimate& decimate, const brep::Mesh& mesh, Json& details
   details["volume_change_mm3"] = after_mm3 - before_mm3;
   details["max_error_mm"] = options.max_error_mm;
   if (made.n_faces() == mesh.n_faces())
-    findings.push_back("no triangle was taken out within an error of " + three_figures(options.max_error_mm) +
-                       " mm: allow a larger one");
+    findings.push_back("no triangle could be removed within an error of " +
+                       three_figures(options.max_error_mm) + " mm: allow a larger error");
   else if (decimate.faces && made.n_faces() > options.faces)
     findings.push_back(std::to_string(made.n_faces()) +
-                       " triangles are left, more than requested: fewer would deviate by more than " +
+                       " triangles remain, more than requested, because fewer would deviate by more than " +
                        three_figures(options.max_error_mm) + " mm");
   if (is_closed(mesh) && std::abs(after_mm3 - before_mm3) > told_share() * std::abs(before_mm3))
-    findings.push_back("WARN volume: it went from " + three_figures(before_mm3) + " to " +
+    findings.push_back("WARN volume: it changed from " + three_figures(before_mm3) + " to " +
                        three_figures(after_mm3) + " mm\u00b3 within an error of " +
-                       three_figures(options.max_error_mm) + " mm: allow a smaller one");
+                       three_figures(options.max_error_mm) + " mm: allow only a smaller error");
   return made;
 }
 
@@ -112,28 +113,30 @@ FileAnswer on_files(const Decimate& asked, const FileBench& bench) {
 }  // namespace
 
 Operation decimate_operation() {
-  return Describe<Decimate>("decimate", "Makes an object's surface of fewer triangles.", Makes::Object)
+  return Describe<Decimate>("decimate", "Reduces the number of triangles of an object's surface.",
+                            Makes::Object)
       .takes(field("object", &Decimate::object, "The object.").required().positional("mesh"))
       .takes(field("max_error_mm", &Decimate::max_error_mm,
-                   "Largest distance of either surface from the other. Default: 0.1, or a 200th of the "
+                   "Largest distance between the old and new surfaces. Default: 0.1, or a 200th of the "
                    "object's extent if that is less.")
                  .greater_than(0.0))
-      .takes(field("faces", &Decimate::faces, "Number of triangles to end at.").from(4).to(100000000))
+      .takes(field("faces", &Decimate::faces, "Number of triangles at which decimation ends.")
+                 .from(4)
+                 .to(100000000))
       .takes(field("max_normal_deviation_deg", &Decimate::max_normal_deviation_deg,
-                   "Largest turn of a triangle at one collapse.")
+                   "Largest rotation of a triangle by the collapse of one edge.")
                  .greater_than(0.0)
                  .to(90.0))
-      .verb_takes(
-          field("out", &Decimate::out,
-                "The answer: a .stl, .ply, .obj, .off, .vtp or .glb file, or an .octree of the voxels "
-                "inside that surface.")
-              .required())
+      .verb_takes(field("out", &Decimate::out,
+                        "The file of the new surface: .stl, .ply, .obj, .off, .vtp or .glb; or an .octree of "
+                        "the voxels inside it.")
+                      .required())
       .verb_takes(field("voxel_mm", &Decimate::voxel_mm,
-                        "Edge of an octree's voxels. Default: a 128th of the answer's extent.")
+                        "Edge of an octree's voxels. Default: a 128th of the new surface's extent.")
                       .greater_than(0.0))
       .verb_takes(field("mend", &Decimate::mend,
-                        "Mends a mesh that is no solid first, as repair --solid does. Without it an open "
-                        "mesh keeps its borders."))
+                        "Mends a mesh that is not a solid first, as repair --solid does. Default: an open "
+                        "mesh stays open."))
       .example(R"({"id": "light", "do": "decimate", "object": "skull", "max_error_mm": 0.2})")
       .on_files("octotomy decimate skull.stl -o light.stl --max-error 0.2 --json", on_files)
       .object(definition, nullptr, triangles, bound);

@@ -47,14 +47,14 @@ voxel::Resampling resampling_of(const Eval& asked) {
                                          : Interpolation::Linear};
 }
 
-/// Parses NAME=VALUE texts into values by name; refuses other texts and repeated names.
+/// Parses texts NAME=VALUE into values by name. Throws for other texts and for repeated names.
 std::map<std::string, std::string> bound(const std::vector<std::string>& texts, const std::string& option,
                                          const std::string& value) {
   std::map<std::string, std::string> values;
   for (const std::string& text : texts) {
     const auto equals = text.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-      throw std::runtime_error(option + ": '" + text + "' binds nothing: give NAME=" + value);
+      throw std::runtime_error(option + ": '" + text + "' has no name: write NAME=" + value);
     if (!values.emplace(text.substr(0, equals), text.substr(equals + 1)).second)
       throw std::runtime_error(option + ": '" + text.substr(0, equals) + "' is bound twice");
   }
@@ -72,8 +72,8 @@ glm::dmat4 parse_motion(const std::string& name, const std::string& text) {
   const std::vector<double> numbers = comma_numbers(text);
   if (numbers.size() != 3 && numbers.size() != 7 && numbers.size() != 10)
     throw std::runtime_error("--motion: '" + name + "=" + text +
-                             "' is no motion: give X,Y,Z in mm, then perhaps DEGREES and the axis X,Y,Z, "
-                             "then perhaps a point X,Y,Z in mm on the axis");
+                             "' is not a motion: write X,Y,Z in mm, optionally followed by DEGREES and the "
+                             "axis X,Y,Z, optionally followed by a point X,Y,Z in mm on the axis");
   voxel::Motion motion;
   motion.translate_mm = {numbers[0], numbers[1], numbers[2]};
   if (numbers.size() >= 7) {
@@ -84,13 +84,13 @@ glm::dmat4 parse_motion(const std::string& name, const std::string& text) {
   return voxel::moved_from_still(motion);
 }
 
-/// Motions by name, and which of them the expression names.
+/// Motions by name, with a record of those that the expression uses.
 class Motions {
  public:
   Motions(const std::vector<std::string>& texts, const std::string& option)
       : texts_(bound(texts, option, "X,Y,Z")), option_(option) {}
 
-  /// The motion of a name; `remedy` ends the refusal of a name that is not known.
+  /// The motion of a name. If the name is unknown, throws a message that ends with `remedy`.
   glm::dmat4 at(const std::string& name, const std::string& remedy) {
     const auto found = texts_.find(name);
     if (found == texts_.end())
@@ -99,11 +99,11 @@ class Motions {
     used_.insert(name);
     return parse_motion(found->first, found->second);
   }
-  /// Refuses motions that the expression does not name, because they would change nothing.
+  /// Throws if the expression does not use a motion, because it would have no effect.
   void need_all_used() const {
     for (const auto& [name, unused] : texts_)
       if (!used_.contains(name))
-        throw voxel::InvalidInput(option_ + ": the expression does not name '" + name + "': leave it out");
+        throw voxel::InvalidInput(option_ + ": the expression does not use '" + name + "': leave it out");
   }
   const std::map<std::string, std::string>& texts() const { return texts_; }
 
@@ -113,14 +113,14 @@ class Motions {
   std::set<std::string> used_;
 };
 
-/// Checks a step, whose expression names objects of the plan and motions of its own.
+/// Checks a step. Its expression names objects of the plan, and motions of the step.
 void check(const Eval& asked, const FieldLocation& place) {
   if (place.scope == nullptr) return;
   check_output_path(asked.out, {".octree"}, place.at("path"));
   const FieldLocation at = place.at("expression");
   try {
     Motions motions(asked.motions, "'motions'");
-    // Any object will do to check the grammar and the names.
+    // To check grammar and names any object is sufficient.
     voxel::parse_expression(asked.expression, {[&](std::string_view name) -> voxel::Expression {
                                                  at.need_object(std::string(name));
                                                  return voxel::Sphere{};
@@ -134,11 +134,11 @@ void check(const Eval& asked, const FieldLocation& place) {
   }
 }
 
-/// A file or an object as an operand, with its universe.
+/// An operand, from a file or an object of the plan, with its universe.
 struct Operand {
   voxel::Expression expression;
   voxel::Universe universe;
-  std::optional<voxel::ShareBracket> shares;  // of a file that stores the filled shares of voxels
+  std::optional<voxel::ShareBracket> shares;  // if the file stores the filled shares of voxels
   bool is_grey = false;
 };
 
@@ -146,7 +146,7 @@ Operand operand_of(const FileBench& bench, const std::string& name, const fs::pa
                    const std::map<std::string, std::string>& windows) {
   if (!names_octree(path.string(), bench))
     throw std::runtime_error(name + "=" + path.string() +
-                             ": names stand for .octree files: make one with octotomy octree");
+                             ": each name must refer to an .octree file: make one by octotomy octree");
   const voxel::OctreeFile file = octree_named(path.string(), bench);
   const auto window = windows.find(name);
   if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
@@ -156,15 +156,15 @@ Operand operand_of(const FileBench& bench, const std::string& name, const fs::pa
     return {window_on(*grey, parse_sample_window(window->second)), grey->universe(), std::nullopt, true};
   }
   if (window != windows.end())
-    throw std::runtime_error(path.string() + ": holds no samples to take a --window of: leave '" + name +
-                             "' out");
+    throw std::runtime_error(path.string() + ": contains no samples, so --window does not apply: leave '" +
+                             name + "' out");
   if (const auto* partial = std::get_if<voxel::PartialOctree>(&file.tree))
     return {partial->touching, partial->inside.universe(), voxel::bracket_of(*partial)};
   const auto& octree = std::get<voxel::Octree>(file.tree);
   return {octree, octree.universe(), std::nullopt};
 }
 
-/// A result of filled shares, and the volume with its bounds.
+/// A result with filled shares of voxels, and its volume with bounds as JSON.
 struct ShareResult {
   voxel::PartialOctree tree;
   Json said;
@@ -180,8 +180,8 @@ ShareResult combine_shares(const voxel::Expression& expression,
                              : nullptr;
     if (!operand.shares && octree == nullptr)
       throw std::runtime_error(name +
-                               ": samples have no shares to combine with those of the other operands: make "
-                               "an octree of its window first");
+                               ": contains samples instead of the filled shares that the other operands "
+                               "have: make an octree of its window first");
     known.push_back({operand.expression,
                      operand.shares ? *operand.shares : voxel::ShareBracket{*octree, *octree, {}, {}}});
   }
@@ -189,8 +189,8 @@ ShareResult combine_shares(const voxel::Expression& expression,
   ShareResult result{voxel::middle(bracket), Json::object()};
   const voxel::VolumeBracket volume = voxel::volume_mm3(bracket);
   const voxel::Measures counted = voxel::measure(voxel::at_least_half(result.tree));
-  // Three standard deviations of a count on curved or oblique boundary: 0.26 of a voxel's face times the square root
-  // of the number of the boundary's faces (Kendall 1948).
+  // Three standard deviations of a count for a curved or oblique boundary: 0.26 of a voxel's face times the
+  // square root of the number of faces in the boundary (Kendall 1948).
   const double voxel_mm3 = bracket.inside.universe().lattice().voxel_mm3();
   HalfWidth count{3.0 * 0.26 * std::pow(voxel_mm3, 2.0 / 3.0) * std::sqrt(counted.area_crofton13_mm2), {}};
   const bool is_off =
@@ -210,17 +210,19 @@ ShareResult combine_shares(const voxel::Expression& expression,
   return result;
 }
 
-/// Refuses files that the expression does not name, and options of samples where no operand has any.
+/// Throws if the expression does not use a file, or if options for samples are set and no operand has
+/// samples.
 void need_options_read(const Eval& asked, const std::vector<std::string>& bound_names,
                        const std::map<std::string, Operand>& operands) {
   for (const std::string& name : bound_names)
     if (!operands.contains(name))
-      throw std::runtime_error("--let " + name + ": the expression does not name it: leave it out");
+      throw std::runtime_error("--let " + name + ": the expression does not use this name: leave it out");
   if (std::any_of(operands.begin(), operands.end(), [](const auto& one) { return one.second.is_grey; }))
     return;
-  if (asked.grey) throw std::runtime_error("--grey: no operand has samples to keep: leave it out");
+  if (asked.grey)
+    throw std::runtime_error("--grey does not apply, because no operand has samples: leave it out");
   if (asked.interpolate != Eval().interpolate)
-    throw std::runtime_error("--interpolate: no operand has samples to interpolate: leave it out");
+    throw std::runtime_error("--interpolate does not apply, because no operand has samples: leave it out");
 }
 
 FileAnswer on_files(const Eval& asked, const FileBench& bench) {
@@ -263,7 +265,7 @@ FileAnswer on_files(const Eval& asked, const FileBench& bench) {
   for (const std::string& name : used)
     if (!(operands.at(name).universe == universe))
       findings.push_back(name + ": its universe differs from that of " + used.front() +
-                         ", whose voxels the result has: it is resampled there");
+                         ", which the result has, so it is resampled there");
   voxel::OctreeFile result{voxel::Octree::empty(universe), asked.expression, ""};
   Json more = Json::object();
   const bool with_shares = std::any_of(operands.begin(), operands.end(),
@@ -300,32 +302,33 @@ Operation eval_operation() {
       .takes(field("expression", &Eval::expression, "For example \"(a | b) - c\".")
                  .required()
                  .positional("expression"))
-      .takes(field("path", &Eval::out, "An .octree file, in the universe of the first name.")
+      .takes(field("path", &Eval::out,
+                   "An .octree file. It has the universe of the first name in the expression.")
                  .required()
                  .called("out"))
-      .verb_takes(field("lets", &Eval::lets, "NAME=FILE: the .octree file to which a name refers.")
+      .verb_takes(field("lets", &Eval::lets, "NAME=FILE: the .octree file for a name in the expression.")
                       .repeated()
                       .called("let"))
-      .verb_takes(field("windows", &Eval::windows,
-                        "NAME=LOW:HIGH or NAME=TISSUE: the window of an object in a grey octree.")
-                      .repeated()
-                      .called("window"))
+      .verb_takes(
+          field("windows", &Eval::windows,
+                "NAME=LOW:HIGH or NAME=TISSUE: the window that selects the object in a name's grey octree.")
+              .repeated()
+              .called("window"))
       .takes(field("motions", &Eval::motions,
-                   "NAME=X,Y,Z[,DEGREES,X,Y,Z[,X,Y,Z]]: a translation in mm after a rotation about an axis "
-                   "through "
-                   "a point.")
+                   "NAME=X,Y,Z[,DEGREES,X,Y,Z[,X,Y,Z]]: a motion for move(a, NAME): a translation in mm, "
+                   "after a rotation by DEGREES about an axis through a point.")
                  .repeated()
                  .called("motion"))
       .verb_takes(field("grey", &Eval::grey,
-                        "Keeps samples: each voxel gets the sample of the first operand that holds it and "
+                        "Keeps samples: each voxel gets the sample of the first operand that contains it and "
                         "has samples. Samples move with their operand."))
       .takes(field("digitise", &Eval::digitise,
-                   "The voxels of a moved octree: those whose centre it contains, or those that it fills at "
-                   "least half.")
+                   "Which voxels a moved octree has: those whose centre it contains, or those that it fills "
+                   "at least half.")
                  .one_of({"centre", "half"})
                  .read_if<Eval>(has_motions, "applies only to moved objects: add 'motions'"))
       .verb_takes(field("interpolate", &Eval::interpolate,
-                        "How samples of a moved grey octree are read: nearest, linear or cubic.")
+                        "How samples of a moved grey octree are interpolated: nearest, linear or cubic.")
                       .one_of({"nearest", "linear", "cubic"})
                       .read_if<Eval>(has_motions, "applies only to moved objects: add 'motions'"))
       .example(R"({"id": "rest", "do": "eval", "expression": "skull - cut", "path": "rest.octree"})")

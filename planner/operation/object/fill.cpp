@@ -24,7 +24,7 @@ void voxels(const Fill& fill, const VoxelBench& bench, VoxelSide& made) {
   const VoxelSide& object = bench.object(fill.object.name);
   made.octree = voxel::fill_cavities(object.octree);
   made.symbol = symbol_of_filled(*object.symbol, object.octree, made.octree);
-  made.lineage = "voxels that no path of face neighbours joins to the outside";
+  made.lineage = "voxels that no path of face neighbours connects with the outside";
 }
 
 void triangles(const Fill& fill, const MeshBench& bench, MeshSide& made) {
@@ -33,7 +33,7 @@ void triangles(const Fill& fill, const MeshBench& bench, MeshSide& made) {
       convert::fill_cavities(bench.object(fill.object.name), std::numeric_limits<double>::infinity());
   made.details = {{"cavities", filled.cavities}, {"filled_mm3", filled.volume_mm3}};
   made.whole = filled.solid;
-  made.lineage = "the mesh without shells that enclose cavities";
+  made.lineage = "the mesh without the shells of cavities";
 }
 
 void bound(const Fill& fill, const BoundBench& bench, Object& made) {

@@ -23,7 +23,7 @@ void check(const Import& import, const FieldLocation& place) {
   if (import.frame && !brep::frame_named(*import.frame))
     place.at("frame").refuse(
         "'" + *import.frame +
-        "' is not a frame: give three letters for the directions of x, y and z, LPS or RAS");
+        "' is not a frame: write three letters for the directions of x, y and z, such as LPS or RAS");
 }
 
 std::string definition(const Import& import, const Objects&) {
@@ -77,13 +77,13 @@ Operation import_operation() {
       .takes(field("path", &Import::path,
                    std::string("The file: ") + brep::mesh_formats_read + ", relative to the plan's folder.")
                  .required())
-      .takes(field("frame", &Import::frame,
-                   "Directions of x, y and z in the file, in place of the file's statement: LPS, RAS, or "
-                   "three other letters of "
-                   "L or R, A or P, S or I. Default: the file's statement, else LPS."))
+      .takes(
+          field("frame", &Import::frame,
+                "Directions of x, y and z in the file: LPS, RAS, or other letters of L or R, A or P, S or I. "
+                "It overrides the file's statement. Default: the file's statement, or LPS if there is none."))
       .takes(field("unit", &Import::unit,
-                   "The unit of the file's lengths, in place of the file's statement. Default: the file's "
-                   "statement, else mm.")
+                   "The unit of the file's lengths. It overrides the file's statement. Default: the file's "
+                   "statement, or mm if there is none.")
                  .one_of({"um", "mm", "cm", "m", "inch", "foot"}))
       .check(check)
       .example(R"({"id": "plate", "do": "import", "path": "plate.stl"})")

@@ -8,11 +8,11 @@
 
 namespace octotomy::planner {
 
-/// Whether the action is an import, which makes an object from a mesh file alone.
+/// Whether the step is an import, which makes an object from a mesh file alone.
 bool is_import(const Action& action);
 
-/// The box of an import's mesh, LPS mm; relative paths are relative to `folder`. Reads the file and throws as
-/// brep::read_mesh(). Precondition: is_import().
+/// The bounding box of an import's mesh, LPS mm. Relative paths are relative to `folder`. Reads the file and
+/// throws as brep::read_mesh(). Precondition: is_import().
 voxel::Box import_box(const Action& action, const std::filesystem::path& folder);
 
 }  // namespace octotomy::planner

@@ -22,7 +22,7 @@ struct LabelMap {
   std::filesystem::path path;
 };
 
-/// All objects, in the order of their labels.
+/// All objects of the step, in the order of their labels.
 std::vector<std::string> labelled(const LabelMap& map) {
   std::vector<std::string> names{map.object.name};
   for (const ObjectName& also : map.also) names.push_back(also.name);
@@ -34,7 +34,8 @@ void check(const LabelMap& map, const FieldLocation& place) {
   std::set<std::string> seen;
   for (const std::string& name : labelled(map))
     if (!seen.insert(name).second)
-      place.at("also").refuse("names '" + name + "' twice: a voxel has one label");
+      place.at("also").refuse("names '" + name +
+                              "' twice, but an object can have only one label: delete one of them");
 }
 
 void write(const LabelMap& wanted, const AnswerBench& bench, Exported& made) {
@@ -48,7 +49,7 @@ void write(const LabelMap& wanted, const AnswerBench& bench, Exported& made) {
     names[static_cast<int>(octrees.size())] = name;
     if (!octrees.back().is_empty()) continue;
     if (wanted.also.empty()) return made.findings.push_back("not written: '" + name + "' is empty");
-    made.findings.push_back("'" + name + "' is empty: no voxel has its label");
+    made.findings.push_back("'" + name + "' is empty, so no voxel has its label");
   }
   const voxel::Octree& octree = octrees.front();
   const Stopwatch watch(bench.timings, "write");
@@ -56,18 +57,18 @@ void write(const LabelMap& wanted, const AnswerBench& bench, Exported& made) {
       voxel::label_map(octree.universe().lattice(), octrees, bench.progress("labelling " + object.id));
   if (map.overlaps > 0)
     made.findings.push_back("WARN, labels: " + grouped(static_cast<double>(map.overlaps), 0) +
-                            " voxels are in several objects and have the label of the first: a .seg.nrrd of "
-                            "octotomy scene keeps all");
+                            " voxels lie in several objects and have the label of the first: to keep all, "
+                            "write a .seg.nrrd by octotomy scene");
   map.scene.source = object.id;
   const std::filesystem::path file = output_file(bench.folder, made.path);
   voxel::write_scene(map.scene, file);
-  // An existing file with the name of the table of labels is not overwritten: it may belong to another label
-  // map.
+  // If a file with the name of the label table exists, it is not overwritten, because it may belong to
+  // another label map.
   const std::filesystem::path table = label_table_path(file);
   if (!std::filesystem::exists(table))
     voxel::write_whole(table, label_table_text(names));
   else if (!holds_names(table, names))
-    made.findings.push_back("the names of its labels are not written, because " + table.filename().string() +
+    made.findings.push_back("the names of the labels are not written, because " + table.filename().string() +
                             " exists and has other names: rename one of the two files");
   made.written = true;
   made.content = grouped(static_cast<double>(octree.voxel_count()), 0) + " voxels labelled 1";
@@ -87,8 +88,9 @@ void write(const LabelMap& wanted, const AnswerBench& bench, Exported& made) {
 Operation label_map_operation() {
   return Describe<LabelMap>("label_map", "Writes objects' voxels as a label map.", Makes::File)
       .takes(field("object", &LabelMap::object, "The object, which gets label 1.").required())
-      .takes(field("also", &LabelMap::also, "Further objects, which get labels 2, 3, ... in this order."))
-      .takes(field("path", &LabelMap::path, "The file within the result's folder: .nrrd, .nii.gz or .mha.")
+      .takes(field("also", &LabelMap::also, "Further objects, which get the labels 2, 3, ... in this order."))
+      .takes(field("path", &LabelMap::path,
+                   "Path of the file within the result's folder: .nrrd, .nii.gz or .mha.")
                  .required())
       .example(R"({"id": "labels", "do": "label_map", "object": "advanced", "path": "advanced.nrrd"})")
       .check(check)

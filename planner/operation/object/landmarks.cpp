@@ -23,7 +23,7 @@ void check(const Landmarks& landmarks, const FieldLocation& place) {
   if (landmarks.file.empty()) return;
   const FieldLocation file = place.at("file");
   if (!std::filesystem::is_regular_file(place.scope->folder() / landmarks.file))
-    file.refuse(landmarks.file.string() + " is no file: paths are relative to the plan's folder");
+    file.refuse(landmarks.file.string() + " does not exist: state its path relative to the plan's folder");
   std::vector<brep::Landmark> read;
   try {
     read = read_landmarks(place.scope->folder() / landmarks.file);
@@ -31,7 +31,7 @@ void check(const Landmarks& landmarks, const FieldLocation& place) {
     rethrow_at(file.where + ": ", error);
   }
   if (read.empty())
-    file.refuse(landmarks.file.string() + " holds no placed point: place one, or leave it out");
+    file.refuse(landmarks.file.string() + " contains no placed point: place one, or leave the file out");
   for (const brep::Landmark& landmark : read)
     place.scope->bind_landmark(file.where, {landmark.name, landmark.p_mm});
 }
@@ -39,13 +39,15 @@ void check(const Landmarks& landmarks, const FieldLocation& place) {
 }  // namespace
 
 Operation landmarks_operation() {
-  return Describe<Landmarks>("landmarks", "Names points, which later steps use in the place of coordinates.",
+  return Describe<Landmarks>("landmarks",
+                             "Names points. Later steps can use these names instead of coordinates.",
                              Makes::Names)
       .takes(records("points", &Landmarks::points, "The points.",
                      {field("name", &NamedPoint::name, "The name, for example ans.").required(),
                       field("point_mm", &NamedPoint::p_mm, "The point [x, y, z], LPS.").required()}))
       .takes(field("file", &Landmarks::file,
-                   "A file of points beside the plan: {\"landmarks\": [{\"name\", \"point_mm\"}]}, or 3D "
+                   "A file of named points, relative to the plan's folder: {\"landmarks\": [{\"name\", "
+                   "\"point_mm\"}]}, or 3D "
                    "Slicer's .mrk.json or .fcsv.")
                  .a_file())
       .example(R"({"id": "marks", "do": "landmarks", "points": [{"name": "ans", "point_mm": [0, -88, -28]},

@@ -34,8 +34,8 @@ voxel::RegionMask mask_of(const Mask& mask) {
   return made;
 }
 
-/// A region's prism extends beyond both ends of the universe by more than the universe's size, so that no end
-/// of the prism lies in the universe, even after a motion.
+/// The prism of a region. It extends beyond the universe by more than the universe's size, so that neither
+/// end of the prism lies in the universe, even after a motion.
 brep::Prism prism_of(const Mask::Region& region, const glm::dvec3& low_mm, const glm::dvec3& high_mm) {
   const voxel::View view = voxel::parse_view(region.view);
   const double size_mm = glm::length(high_mm - low_mm);
@@ -48,7 +48,7 @@ brep::Prism prism_of(const Mask::Region& region, const glm::dvec3& low_mm, const
           middle_mm + 1.6 * size_mm};
 }
 
-/// The motion from views of the scan to those of the mask; none where they are the same.
+/// The motion from the scan's views to the mask's views; none if they are the same.
 std::optional<glm::dmat4> held(const Mask& mask, const Objects& objects) {
   if (mask.views_of == "scan" || objects.lps_from_head == glm::dmat3(1.0)) return std::nullopt;
   return glm::dmat4(objects.lps_from_head);
@@ -58,7 +58,7 @@ bool has_regions(const Mask& mask) {
   return !mask.regions.empty() || !mask.planes.empty();
 }
 
-/// The files of curves and planes.
+/// The paths of the mask's files of curves and planes.
 std::vector<std::string> files_of(const Mask& mask) {
   std::vector<std::string> files = mask.planes;
   for (const Mask::Region& region : mask.regions)
@@ -66,11 +66,11 @@ std::vector<std::string> files_of(const Mask& mask) {
   return files;
 }
 
-/// The name of a horizontal view that sees the plane edge-on; "anterior" if the plane is horizontal.
+/// The name of a horizontal view in which the plane is seen edge-on; "anterior" if the plane is horizontal.
 std::string view_along(const glm::dvec3& normal) {
   const double level = std::hypot(normal.x, normal.y);
   if (level < 1e-12) return "anterior";
-  // look = z x normal, and a view's look is (-sin azimuth, cos azimuth, 0).
+  // The view has look = z x normal, and a look is (-sin azimuth, cos azimuth, 0).
   const double azimuth_deg = std::atan2(normal.y, normal.x) * 180.0 / std::numbers::pi;
   const std::array<std::pair<double, const char*>, 5> named{
       {{0.0, "anterior"}, {90.0, "left"}, {-90.0, "right"}, {180.0, "posterior"}, {-180.0, "posterior"}}};
@@ -81,7 +81,7 @@ std::string view_along(const glm::dvec3& normal) {
          ",0";
 }
 
-/// The half-space to which a plane's normal points, as a region.
+/// The half-space on the side of a plane to which its normal points, as a region.
 Mask::Region region_of(const glm::dvec3& origin_mm, const glm::dvec3& normal) {
   constexpr double far_mm = 2e3;
   Mask::Region region{view_along(normal), {}, {}};
@@ -100,12 +100,12 @@ void check(const Mask& mask, const FieldLocation& place) {
   if (mask.slices.empty() && mask.other_identity) place.at("other_identity").refuse(of_set);
   if (place.scope == nullptr) return;
   if (!has_regions(mask) && mask.slices.empty())
-    place.refuse("'regions' is missing: add it, 'planes' or 'slices'");
+    place.refuse("'regions' is missing: add 'regions', 'planes' or 'slices'");
   if (!has_regions(mask)) return;
   for (std::size_t i = 0; i < mask.regions.size(); ++i)
     if (mask.regions[i].polygons_mm.empty() && mask.regions[i].curves.empty())
       place.at("regions[" + std::to_string(i) + "]")
-          .refuse("'polygons_mm' is missing: add it, or 'curves', files of closed curves");
+          .refuse("'polygons_mm' is missing: add it, or name files of closed curves as 'curves'");
   std::size_t index = 0;
   for (const Mask::Region& region : mask.regions) try {
       voxel::parse_view(region.view);
@@ -143,9 +143,9 @@ std::string definition(const Mask& mask, const Objects&) {
          mask.slices.filename().string();
 }
 
-/// The scan that slices were drawn on, of the scans that no step made. For a structure set, which a plan may
-/// read beside several scans, it is the first scan whose identity agrees best; for other files it is the only
-/// scan. Null where there is none.
+/// The scan on which slices were drawn, among the scans that no step made. For a structure set it is the
+/// first of the scans whose identity agrees best, because a plan may read several scans. For other files it
+/// is the only scan; null if there are several or none.
 const ScanRecord* drawn_on(const std::optional<voxel::Identity>& of_set,
                            const std::vector<ScanRecord>& scans) {
   const ScanRecord* nearest = nullptr;
@@ -162,7 +162,8 @@ const ScanRecord* drawn_on(const std::optional<voxel::Identity>& of_set,
   return nearest;
 }
 
-/// Findings on how the slices agree with the scan that they were drawn on. Refuses slices of another patient.
+/// Findings on the agreement of slices with the scan on which they were drawn. Throws if they state another
+/// patient.
 std::vector<std::string> findings_of_slices(const Mask& mask, const DrawnSlices& drawn,
                                             const std::vector<ScanRecord>& scans) {
   std::vector<std::string> findings;
@@ -191,8 +192,9 @@ void voxels(const Mask& typed, const VoxelBench& bench, VoxelSide& made) {
     const auto found = findings_of_slices(mask, drawn, bench.scans);
     made.findings.insert(made.findings.end(), found.begin(), found.end());
     if (auto cut = cut_at_cube(drawn.mask, bench.universe, mask.slices.generic_string()))
-      made.findings.push_back(*cut +
-                              ": the plan's cube holds its scans; check that the contours belong to them");
+      made.findings.push_back(
+          *cut +
+          ", although the cube contains all of the plan's scans: check that the contours belong to them");
     const voxel::Expression slices = std::move(drawn.mask);
     made.symbol = made.symbol ? *made.symbol & slices : slices;
   }
@@ -200,11 +202,12 @@ void voxels(const Mask& typed, const VoxelBench& bench, VoxelSide& made) {
   made.lineage = "regions projected at voxel centres";
   if (made.octree.is_empty())
     throw std::runtime_error(
-        "the mask holds no voxel: its regions miss each other or the universe, which spans " +
-        plain(bench.box_mm()) + "; draw them within it");
+        "the mask contains no voxel, because its regions do not overlap or lie outside of the universe, "
+        "which spans " +
+        plain(bench.box_mm()) + ": draw them within the universe");
 }
 
-/// The prisms' intersection; none without regions.
+/// The intersection of the regions' prisms; none if there are no regions.
 std::optional<brep::Solid> solid_of_regions(const Mask& mask, const MeshBench& bench, MeshSide& made) {
   std::optional<brep::Solid> solid;
   for (const Mask::Region& region : mask.regions) {
@@ -304,25 +307,24 @@ Mask with_files_read(const Mask& mask, const std::filesystem::path& folder, cons
 }
 
 Operation mask_operation() {
-  return Describe<Mask>("mask", "Makes a volume of interest from regions drawn in views.", Makes::Object)
-      .takes(
-          records("regions", &Mask::regions,
-                  "The regions; the mask is what all of their back-projections enclose.",
-                  {field("view", &Mask::Region::view, "The view in which the region is drawn.").required(),
-                   field("polygons_mm", &Mask::Region::polygons_mm,
-                         "Closed polygons of points [u, v] in the view's millimetres."),
-                   field("curves", &Mask::Region::curves,
-                         "Files of 3D Slicer's closed curves, .mrk.json: polygons of the region, projected "
-                         "along the view.")
-                       .a_file()})
-              .from(1)
-              .in_plans_only())
-      .takes(
-          field(
-              "planes", &Mask::planes,
-              "Files of 3D Slicer's planes, .mrk.json: the mask is on the side to which their normals point.")
-              .a_file()
-              .in_plans_only())
+  return Describe<Mask>("mask", "Makes a volume of interest from regions that are drawn in views.",
+                        Makes::Object)
+      .takes(records("regions", &Mask::regions,
+                     "The regions. The mask is the intersection of their back-projections.",
+                     {field("view", &Mask::Region::view, "The view in which the region is drawn.").required(),
+                      field("polygons_mm", &Mask::Region::polygons_mm,
+                            "Closed polygons of points [u, v] in the view's millimetres."),
+                      field("curves", &Mask::Region::curves,
+                            "Files of 3D Slicer's closed curves, .mrk.json. Projected along the view, they "
+                            "become polygons of the region.")
+                          .a_file()})
+                 .from(1)
+                 .in_plans_only())
+      .takes(field("planes", &Mask::planes,
+                   "Files of 3D Slicer's planes, .mrk.json. The mask lies on the side to which their normals "
+                   "point.")
+                 .a_file()
+                 .in_plans_only())
       .takes(field("views_of", &Mask::views_of,
                    "The frame of the views: the head's frame at its head position, or the scan's frame, "
                    "which a head position does not rotate.")
@@ -330,37 +332,34 @@ Operation mask_operation() {
                  .in_plans_only())
       .takes(field("slices", &Mask::slices,
                    "A file of regions on parallel slices, {\"view\", \"slices\": [{\"position_mm\", "
-                   "\"polygons_mm\"}]}, or a DICOM structure set, which cut the mask too.")
+                   "\"polygons_mm\"}]}, or a DICOM structure set. The mask lies within these regions, too.")
                  .a_file())
-      .takes(field(
-          "structure", &Mask::structure,
-          "The name or ROI number of the structure that is meant, where the slices are a structure set."))
-      .takes(
-          field(
-              "bridge_mm", &Mask::bridge_mm,
-              "For a structure set: interpolates between planes of the structure up to this distance apart. "
-              "Default: as the file says.")
-              .greater_than(0.0))
-      .takes(
-          field("other_identity", &Mask::other_identity,
-                "Accepts a structure set that states another patient, study or frame of reference than the "
-                "scan, and reports a FAIL."))
+      .takes(field("structure", &Mask::structure,
+                   "For a structure set: the name or ROI number of the structure to use."))
+      .takes(field("bridge_mm", &Mask::bridge_mm,
+                   "For a structure set: interpolates between planes of the structure up to this distance "
+                   "apart. Default: the file's statement.")
+                 .greater_than(0.0))
+      .takes(field("other_identity", &Mask::other_identity,
+                   "Accepts a structure set that states another patient, study or frame of reference than "
+                   "the scan; a finding then begins with FAIL."))
       .verb_takes(
           field("region", &Mask::region_files,
-                "VIEW:FILE, repeated: the mask is what all of their back-projections enclose. The file "
-                "is JSON, an SVG drawing in mm, or closed curves of Slicer (.mrk.json); an SVG drawn "
-                "over a .png of render or slice takes no view.")
+                "VIEW:FILE, a region in a view; may be repeated. The mask is the intersection of the "
+                "regions' back-projections. The file is JSON, an SVG drawing in mm, or closed curves of "
+                "Slicer (.mrk.json). An SVG that is drawn over a .png of render or slice needs no view.")
               .repeated())
-      .verb_takes(
-          field("region_pixels", &Mask::region_pixels,
-                "PICTURE.png:X,Y X,Y X,Y, repeated: a region in pixels of a .png that render or slice "
-                "wrote, from its top left; a semicolon begins another polygon.")
-              .repeated()
-              .called("region-pixels"))
-      .verb_takes(field("edit", &Mask::edit, "A mask's .octree that the regions cut further.").a_file())
-      .verb_takes(field("like", &Mask::like, "A scan or .octree whose voxels the mask has."))
+      .verb_takes(field("region_pixels", &Mask::region_pixels,
+                        "PICTURE.png:X,Y X,Y X,Y, a region in pixels of a .png that render or slice wrote, "
+                        "counted from its top left; may be repeated. A semicolon begins another polygon.")
+                      .repeated()
+                      .called("region-pixels"))
+      .verb_takes(field("edit", &Mask::edit,
+                        "The .octree file of a mask; the new mask is its part within the regions.")
+                      .a_file())
+      .verb_takes(field("like", &Mask::like, "A scan or .octree file that determines the mask's voxels."))
       .verb_takes(field("voxel_mm", &Mask::voxel_mm,
-                        "Edge of a voxel of the mask, mm. Default: the scan's, or 1 for regions.")
+                        "Edge of the mask's voxels, mm. Default: that of the scan of --like, else 1.")
                       .greater_than(0.0))
       .verb_takes(field("out", &Mask::out, "An .octree file.").required())
       .on_files(

@@ -16,16 +16,20 @@ struct Mask {
   struct Region {
     std::string view;  ///< a view's name or angles as for pictures: "anterior", "35,15"
     Polygons polygons_mm;
-    std::vector<std::string> curves;  ///< files of closed curves of 3D Slicer, more polygons of the region
+    std::vector<std::string> curves;  ///< files of 3D Slicer's closed curves, which add polygons to the
+                                      ///< region
   };
   std::vector<Region> regions;
-  std::vector<std::string> planes;  ///< files of 3D Slicer's planes; the mask is where their normals point
+  std::vector<std::string> planes;  ///< files of 3D Slicer's planes; the mask lies on the side to which their
+                                    ///< normals point
   std::string views_of = "head";    ///< "head": views of the head as it is positioned; "scan": views along
                                     ///< the scan's axes
-  std::filesystem::path slices;     ///< a file of regions on parallel slices; the mask is within them as well
-  std::string structure;            ///< the region of a structure set in that file
-  std::optional<double> bridge_mm;  ///< gaps between the structure's planes that are filled
-  bool other_identity = false;  ///< the structure set may be of another patient, study or frame of reference
+  std::filesystem::path slices;     ///< a file of regions on parallel slices; the mask lies within them, too
+  std::string structure;            ///< name or ROI number of the structure to use, if that file is a
+                                    ///< structure set
+  std::optional<double> bridge_mm;  ///< gaps up to this width between the structure's planes are interpolated
+  bool other_identity = false;  ///< whether the structure set may state another patient, study or frame of
+                                ///< reference
   // Of the command only.
   std::vector<std::string> region_files;   ///< VIEW:FILE
   std::vector<std::string> region_pixels;  ///< PICTURE.png:X,Y X,Y X,Y
@@ -33,11 +37,11 @@ struct Mask {
   std::optional<double> voxel_mm;
 };
 
-/// The mask with the regions of its files: curves become polygons of their region. A plane becomes a region
-/// of its own, in a view that sees the plane edge-on: a rectangle of four kilometres that ends at the
-/// plane. Files are in LPS. If the mask's views are relative to the head, the files' points are first
-/// converted to the head's directions, so that the mask lies where the files place it. Adds findings on the
-/// files. Throws std::runtime_error as read_slicer_markups().
+/// The mask with the content of its files. Curves become polygons of their region. A plane becomes a separate
+/// region in a view that sees the plane edge-on: a rectangle of four kilometres that ends at the plane. Files
+/// are in LPS. If the mask's views are relative to the head, the files' points are first converted to the
+/// head's directions, so that the mask keeps its place in the scan. Adds findings on the files. Throws
+/// std::runtime_error as read_slicer_markups().
 Mask with_files_read(const Mask& mask, const std::filesystem::path& folder, const glm::dmat3& lps_from_head,
                      std::vector<std::string>& findings);
 Mask with_files_read(const Mask& mask, const std::filesystem::path& folder, const glm::dmat3& lps_from_head);

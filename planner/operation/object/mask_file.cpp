@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The mask's bounds along the patient's axes, from the views along these axes.
+/// The mask's bounds along the patient's axes, from regions in views along these axes.
 class Bounds {
  public:
   void add(const glm::dvec3& direction, double low_mm, double high_mm) {
@@ -45,8 +45,8 @@ class Bounds {
     for (int axis = 0; axis < 3; ++axis)
       if (!std::isfinite(box_.high_mm[axis] - box_.low_mm[axis]) || box_.high_mm[axis] <= box_.low_mm[axis])
         throw std::runtime_error(
-            "the regions do not bound the mask along x, y and z: draw it in another view too, or choose its "
-            "voxels by --like FILE");
+            "the regions do not bound the mask along x, y and z: draw a region in another view, too, or "
+            "choose the voxels by --like FILE");
     return box_;
   }
 
@@ -55,7 +55,7 @@ class Bounds {
   voxel::Box box_{glm::dvec3(-far), glm::dvec3(far)};
 };
 
-/// The file whose voxels the mask has. An octree states neither an identity nor the end of its samples.
+/// The voxels of the file --like. An octree states neither an identity nor the end of the scan's samples.
 struct Like {
   voxel::Universe universe;
   voxel::Identity identity = {};
@@ -65,14 +65,16 @@ struct Like {
 Like like_file(const fs::path& path, const std::optional<double>& voxel_mm, const FileBench& bench) {
   if (is_octree(path)) {
     if (voxel_mm)
-      throw std::runtime_error(path.string() + ": the mask has an octree's voxels: leave --voxel out");
+      throw std::runtime_error(path.string() +
+                               ": --like with an octree already determines the voxels: leave --voxel out");
     return {voxel::universe(voxel::read_octree(path))};
   }
   const voxel::Scene scene = bench.read_scan(path);
   return {universe_of(scene, voxel_mm), scene.identity, scene.lattice};
 }
 
-/// The regions on slices that bound the mask. Refuses slices of another patient than the scan's.
+/// The regions on slices that bound the mask, with findings on them. Throws if they state another patient
+/// than the scan.
 voxel::SliceMask slices_of(const Mask& asked, const std::optional<Like>& like,
                            std::vector<std::string>& findings) {
   DrawnSlices drawn = read_slices(asked.slices, SlicesOptions{asked.structure, asked.bridge_mm});
@@ -82,8 +84,8 @@ voxel::SliceMask slices_of(const Mask& asked, const std::optional<Like>& like,
                           asked.other_identity, "--other-identity");
   else if (asked.other_identity)
     throw std::runtime_error(
-        "--other-identity lets a structure set be of another patient than a scan: give both, as --slices and "
-        "--like, or leave it out");
+        "--other-identity applies only to a structure set (--slices) and a scan (--like): state both, or "
+        "leave it out");
   if (like && like->scan)
     if (auto beyond = beyond_scan(drawn.mask, *like->scan, asked.slices.string()))
       findings.push_back(std::move(*beyond));
@@ -92,12 +94,12 @@ voxel::SliceMask slices_of(const Mask& asked, const std::optional<Like>& like,
       findings.push_back(std::move(*lacking));
   if (like)
     if (auto cut = cut_at_cube(drawn.mask, like->universe, asked.slices.string()))
-      findings.push_back(*cut + "; without --like the cube is as large as the contours");
+      findings.push_back(*cut + "; without --like, the cube is made as large as the contours");
   findings.insert(findings.end(), drawn.findings.begin(), drawn.findings.end());
   return std::move(drawn.mask);
 }
 
-/// The universe around the volume that regions and slices enclose.
+/// The universe around the volume that regions and slices enclose, with voxels of `voxel_mm`.
 voxel::Universe universe_around(const voxel::RegionMask& regions,
                                 const std::optional<voxel::SliceMask>& slices, double voxel_mm) {
   Bounds bounds;
@@ -115,8 +117,8 @@ voxel::Universe universe_around(const voxel::RegionMask& regions,
   return voxel::universe_around(bounds.box(), voxel_mm);
 }
 
-/// The regions as a step that encloses the same volume in any plan of the scan, independent of the head's
-/// position; null if no step can.
+/// The mask as a step that encloses the same volume in any plan of the scan, at any head position; null if no
+/// step can.
 Json step_of(const std::vector<DrawnRegion>& drawn, bool is_cut_further) {
   Json regions = Json::array();
   for (const DrawnRegion& each : drawn) {
@@ -157,11 +159,11 @@ FileAnswer mask_file(const Mask& asked, const FileBench& bench) {
       const voxel::OctreeFile old = voxel::read_octree(asked.edit);
       const auto* octree = std::get_if<voxel::Octree>(&old.tree);
       if (octree == nullptr)
-        throw std::runtime_error(asked.edit.string() + ": only a binary octree is a mask that can be edited");
+        throw std::runtime_error(asked.edit.string() + ": only a binary octree can be edited as a mask");
       if (!universe && asked.voxel_mm)
         throw std::runtime_error(
             asked.edit.string() +
-            ": the mask already has a voxel size: leave --voxel out, or give a scan as --like");
+            ": the mask of --edit determines the voxels: leave --voxel out, or name a scan by --like");
       if (!universe) universe = octree->universe();
       expression = *octree;
     }
@@ -182,7 +184,9 @@ FileAnswer mask_file(const Mask& asked, const FileBench& bench) {
   for (const DrawnRegion& each : drawn)
     findings.insert(findings.end(), each.findings.begin(), each.findings.end());
   if (std::get<voxel::Octree>(file.tree).is_empty())
-    findings.emplace_back("the mask holds no voxel: its regions do not overlap, or lie outside the universe");
+    findings.emplace_back(
+        "the mask contains no voxel, because its regions do not overlap or lie outside of the universe: draw "
+        "them again");
   Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION}, {"regions", asked.region_files}};
   if (!asked.region_pixels.empty()) made["region_pixels"] = asked.region_pixels;
   if (slices) made["slices"] = asked.slices.filename().string();

@@ -6,7 +6,8 @@
 
 namespace octotomy::planner {
 
-/// Writes a mask from files of regions as an octree, around the regions or on another file's voxels.
+/// Makes a mask from files of regions and writes it as an octree. Its voxels are those of another file, or
+/// cover the regions.
 FileAnswer mask_file(const Mask& asked, const FileBench& bench);
 
 }  // namespace octotomy::planner

@@ -28,30 +28,31 @@ void check(const Measure& measure, const FieldLocation& place) {
   if (place.scope == nullptr) return;
   const FieldLocation points = place.at("points_mm");
   if (measure.asks_surface() && (measure.to || !measure.points_mm.empty()))
-    place.refuse("requests measures of a surface and a gap or points: use a step for each");
+    place.refuse(
+        "requests measures of a surface together with a gap or points: use a separate step for each");
   if (measure.points_mm.empty()) {
     if (!measure.object) place.refuse("'object' is missing: add it");
     if (measure.to && measure.to->name == measure.object->name)
-      place.at("to").refuse("is the object itself: name another, to which the gap is measured");
+      place.at("to").refuse("is the object itself: name another object to which the gap is measured");
     return;
   }
   if (measure.object || measure.to)
-    points.refuse("stands alone: measure an object or points, in a step each");
+    points.refuse("excludes other measures: measure objects and points in separate steps");
   if (measure.points_mm.size() != 2 && measure.points_mm.size() != 3)
     points.refuse("must be two points [x, y, z] for a distance, or three for the angle at the second");
   if (measure.points_mm.size() == 3 &&
       (measure.points_mm[1] == measure.points_mm[0] || measure.points_mm[1] == measure.points_mm[2]))
-    points.refuse("has its second point twice: an angle needs two legs");
+    points.refuse("has its second point twice, so a leg of the angle has no length: choose another point");
 }
 
-/// A recommended volume and area, with their findings.
+/// A recommended volume and area, with the facts on which their findings depend.
 struct Recommended {
   verify::SizeIntervals intervals;
   bool is_of_phases = false, has_core = false;
 };
 
-/// The two-phase estimate from the samples of a window's scan. It is cached, because several objects may come
-/// from one window.
+/// The two-phase estimate from the samples of a window's scan; none for labels and for windows with an upper
+/// bound. It is cached, because several objects may come from one window.
 const std::optional<verify::TwoPhase>& phases_of(const AnswerBench& bench, const Shown& window) {
   std::shared_ptr<const void>& kept =
       bench.kept["phases of " + window.scan + " from " + std::to_string(window.threshold)];
@@ -64,22 +65,21 @@ const std::optional<verify::TwoPhase>& phases_of(const AnswerBench& bench, const
   return *static_cast<const std::optional<verify::TwoPhase>*>(kept.get());
 }
 
-/// Whether the object is the whole selection of a window, moved or not.
+/// Whether the object is the whole selection of a window step, or an image of the whole.
 bool is_whole_window(const Objects& objects, const Object& object) {
   return still_of(objects, object).kind == "window" && (!object.image || object.image->is_whole);
 }
 
-/// The window on a label map that an object is; none if the object is only a part of a window, or comes from other
-/// samples or from several objects.
+/// The window if the object is the whole window on a label map; else null.
 const Shown* label_window_of(const AnswerBench& bench, const Object& object) {
   if (object.bound.windows.empty() || !is_whole_window(bench.objects, object)) return nullptr;
   const Shown& window = object.bound.windows.front();
   return window.samples && window.samples->meaning == voxel::Meaning::Label ? &window : nullptr;
 }
 
-/// Adds what the sum of the samples shows beyond the surface: for a whole window the two-phase numbers; for a part of
-/// a window a doubt in proportion to the part's share of the window's surface, because the places of thin walls are
-/// not known.
+/// Adds to the recommended size the difference between the sum of the samples and the surface. A whole window
+/// gets the two-phase numbers. A part of a window gets a wider half-width in proportion to its share of the
+/// window's surface, because the positions of thin walls are unknown.
 void take_phases(const AnswerBench& bench, const Object& object, Recommended& found) {
   std::vector<const Shown*> windows;
   for (const Shown& window : object.bound.windows)
@@ -112,7 +112,8 @@ void take_phases(const AnswerBench& bench, const Object& object, Recommended& fo
   }
 }
 
-/// The change of a window's size with thicker samples; cached as in phases_of().
+/// The change of a window's size if samples are twice as thick. It is cached, because several objects may
+/// come from one window.
 const std::optional<Thickness>& kept_thickness(const AnswerBench& bench, const Shown& window) {
   std::shared_ptr<const void>& kept =
       bench.kept["thickness of " + window.scan + " from " + std::to_string(window.threshold) + " to " +
@@ -126,8 +127,8 @@ const std::optional<Thickness>& kept_thickness(const AnswerBench& bench, const S
   return *static_cast<const std::optional<Thickness>*>(kept.get());
 }
 
-/// Adds the doubt of thicker samples for windows without a two-phase estimate, in proportion to the object's
-/// share of their surface.
+/// For windows without a two-phase estimate, adds the error due to the samples' thickness, in proportion to
+/// the object's share of the window's surface.
 void take_thickness(const AnswerBench& bench, const Object& object, Recommended& found) {
   std::set<std::tuple<std::string, double, double>> known;
   for (const Shown& window : object.bound.windows) {
@@ -143,8 +144,8 @@ void take_thickness(const AnswerBench& bench, const Object& object, Recommended&
   }
 }
 
-/// The counting error of an object without a mesh, from its scan's samples; it changes with the volume. None
-/// where the object comes from no scan.
+/// The counting error in mm3 of an object without a mesh, from its scan's samples. A motion that changes the
+/// volume changes it in proportion. None if the object comes from no scan.
 std::optional<double> counting_doubt_of(const AnswerBench& bench, const Object& object) {
   const Object& still = still_of(bench.objects, object);
   for (const ScanRecord& scan : bench.scans)
@@ -166,9 +167,9 @@ Recommended of_voxels_alone(const AnswerBench& bench, const Object& object, cons
   return found;
 }
 
-/// A mesh that comes from no scan is exact up to the rounding of its points.
+/// The size of a mesh that comes from no scan. It is exact except for the rounding of its points.
 Recommended of_mesh_alone(const brep::Solid& mesh) {
-  constexpr double rounding = 1e-6;  // points of single precision, as files have them
+  constexpr double rounding = 1e-6;  // relative rounding, for points that a file stores in single precision
   const brep::Size& size = mesh.size();
   const auto exact = [](double value) {
     return verify::Interval{
@@ -181,7 +182,7 @@ Recommended of_mesh_alone(const brep::Solid& mesh) {
   return found;
 }
 
-/// The intervals of intervals_of(), but from the object's own surface.
+/// The intervals from the object's own surface, without regard to the object of which it is an image.
 Recommended own_intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
   const glm::dvec3 voxel_mm = bench.universe.lattice().spacing_mm();
   if (object.is_surely_empty) return {};
@@ -229,7 +230,8 @@ Recommended own_intervals_of(const AnswerBench& bench, const Object& object, con
 
 Recommended intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised);
 
-/// The intervals of an object where it was made; cached, because one object may have several images.
+/// The intervals of an object before its motions. They are cached, because the object may have several
+/// images.
 const Recommended& kept_intervals_of(const AnswerBench& bench, const Object& still) {
   std::shared_ptr<const void>& kept = bench.kept["recommended size of " + still.id];
   if (!kept)
@@ -243,9 +245,9 @@ void scale(verify::Interval& interval, double value_factor, double width_factor)
   for (verify::DoubtSource& source : interval.sources) source.half_width *= width_factor;
 }
 
-/// The sizes of a scaled or sheared image. Every volume changes by the determinant, and so does its doubt.
-/// The area follows the triangles of both; without them it is the middle of the range that the map allows. A
-/// doubt about the area grows by at most the largest factor of areas.
+/// The sizes of a scaled or sheared image. Its volume and the volume's half-width change by the determinant.
+/// Its area changes by the ratio of the two meshes' areas; without meshes, by the middle of the range that
+/// the map allows. The area's half-width grows by at most the largest factor of areas.
 Recommended deformed_intervals(Recommended found, const Deformation& deformation, const Object& still,
                                const Object& object) {
   const double volume_factor = std::abs(deformation.volume_factor);
@@ -267,11 +269,11 @@ Recommended deformed_intervals(Recommended found, const Deformation& deformation
   return found;
 }
 
-/// The recommended volume and area. They are the mesh's where there is one, because its cuts are exact. Parts share
-/// the doubt of the windows of their whole. A motion or mirror changes no size, and scaling changes the volume by its
-/// determinant: where the universe contains both objects, an image of a whole object has that object's values,
-/// because the image's own voxels and points were rounded once more. An object made from another's surface has the
-/// doubt of that surface.
+/// The recommended volume and area. If there is a mesh, they come from it, because its cuts are exact. A part
+/// of an object has the uncertainty of the whole object's windows. The image of a whole object gets that
+/// object's values, scaled by the map, if the universe contains both, because the image's own voxels and
+/// points were rounded once more. An object made from another object's surface has the uncertainty of that
+/// surface.
 Recommended intervals_of(const AnswerBench& bench, const Object& object, const Digitised& digitised) {
   if (object.image && object.image->is_whole) {
     const Object& still = still_of(bench.objects, object);
@@ -330,7 +332,7 @@ MeasuredGap measured_gap(const Measure& asked, const AnswerBench& bench) {
   made.gap_mesh_mm = gap.mesh_mm;
   made.gap_half_width_mm = width.value;
   made.overlap_mm3 = gap.overlap_mm3;
-  made.gap_estimator = "faces of the two voxels whose centres are nearest";
+  made.gap_estimator = "faces of the two voxels with the nearest centres";
   made.gap_half_width_terms = width.terms;
   made.from_mm = gap.from_mm;
   made.to_mm = gap.to_mm;
@@ -371,8 +373,8 @@ MeasuredSize measured_size(const Measure& asked, const AnswerBench& bench) {
   made.mesh = size_of(object.mesh.within->measures());
   made.area_mm2 = made.mesh->area_mm2;
   made.area_estimator = made.mesh->area_estimator;
-  // The half-width of the triangles' area is the recommended area's half-width plus the difference of the
-  // two areas. Where voxels are too coarse, the recommended half-width already is that difference.
+  // The half-width of the triangles' area is the recommended half-width plus the difference of the two areas.
+  // If voxels are too coarse, the recommended half-width already is this difference.
   const double off_mm2 = std::abs(recommended.area_mm2.value - made.mesh->area_mm2);
   const double doubt_mm2 = recommended.area_mm2.half_width;
   made.area_half_width_mm2 = doubt_mm2 == off_mm2 ? off_mm2 : doubt_mm2 + off_mm2;
@@ -382,7 +384,8 @@ MeasuredSize measured_size(const Measure& asked, const AnswerBench& bench) {
   return made;
 }
 
-/// The requested measures of the object's mesh beyond its size; null with a finding where it has no mesh.
+/// The requested measures of an object's mesh besides its size, as JSON; null with a finding if it has no
+/// mesh.
 Json surface_json(const Measure& asked, const AnswerBench& bench) {
   const Object& object = bench.objects.at(asked.object->name);
   Json json = print_record(measured_size(asked, bench));
@@ -418,41 +421,48 @@ Json measure(const Measure& asked, const AnswerBench& bench) {
 }  // namespace
 
 Operation measure_operation() {
-  return Describe<Measure>("measure", "Measures an object, the gap between two, or a distance or angle.",
+  return Describe<Measure>("measure",
+                           "Measures an object, the gap between two objects, a distance or an angle.",
                            Makes::Measurement)
       .takes(field("object", &Measure::object,
                    "The object whose volume, area and extents are measured; on the command line a scan or "
                    "grey octree (with "
                    "a window), an octree or a mesh.")
                  .positional("file"))
-      .takes(field("to", &Measure::to, "A second object: measures the gap between the two instead."))
+      .takes(field("to", &Measure::to,
+                   "A second object. The gap between the two is measured instead of the sizes."))
       .takes(field("points_mm", &Measure::points_mm,
-                   "Two points [x, y, z] or landmarks, for their distance, or three, for the angle at the "
-                   "second.")
+                   "Two points [x, y, z] or landmarks, whose distance is measured; or three, for the angle "
+                   "at the second.")
                  .in_plans_only())
       .takes(field("section", &Measure::section,
-                   "A point and a normal: area and perimeter of the surface where that plane cuts it.")
+                   "A point and a normal of a plane: the area and perimeter of the section in which it cuts "
+                   "the surface.")
                  .from(2)
                  .to(2))
-      .takes(
-          field("along", &Measure::along, "Two points: the shortest path along the surface.").from(2).to(2))
+      .takes(field("along", &Measure::along, "Two points: the length of the shortest path along the surface.")
+                 .from(2)
+                 .to(2))
       .takes(field("thickness", &Measure::thickness,
-                   "Local thickness of a mesh or an octree: at each point of the volume and of the "
-                   "surface, the diameter of the largest ball inside that contains the point; and the "
-                   "thinnest wall, without edges."))
+                   "Local thickness of a mesh or an octree: at each point of the volume and of the surface, "
+                   "the diameter of the largest ball inside that contains the point; also the thinnest wall "
+                   "away from edges."))
       .takes(field("curvature", &Measure::curvature, "Mean and Gaussian curvature of the surface."))
-      .verb_takes(field("distance", &Measure::distance, "Two points: their straight distance.").from(2).to(2))
-      .verb_takes(field("angle", &Measure::angle, "Three points: the angle at the second.").from(3).to(3))
-      .verb_takes(field("window", &Measure::window, "LOW:HIGH or LOW: in sample units, or a tissue."))
+      .verb_takes(field("distance", &Measure::distance, "Two points, whose straight distance is measured.")
+                      .from(2)
+                      .to(2))
+      .verb_takes(field("angle", &Measure::angle, "Three points: the angle at the second one.").from(3).to(3))
+      .verb_takes(field("window", &Measure::window,
+                        "The samples of the object: LOW:HIGH or LOW: in sample units, or a tissue."))
       .verb_takes(
           field("voxel_mm", &Measure::voxel_mm,
-                "Edge of a voxel. Default: as fine as the scan, at most 512 a side.")
+                "Edge of a voxel. Default: the scan's finest spacing, with at most 512 voxels a side.")
               .greater_than(0.0)
               .read_if<Measure>(
                   [](const Measure& asked) { return !asked.object || !is_octree(asked.object->name); },
-                  "an .octree file keeps its own voxels: leave it out"))
+                  "does not apply to an .octree file, which already has voxels: leave it out"))
       .verb_takes(field("out", &Measure::out,
-                        "The mesh with thickness, or curvature, as scalars: a .vtp or .ply file."))
+                        "A .vtp or .ply file for the mesh with thickness or curvature as scalars."))
       .reads_scans()
       .example(R"({"id": "maxilla_size", "do": "measure", "object": "maxilla"})")
       .on_files(

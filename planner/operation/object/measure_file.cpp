@@ -38,7 +38,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// The numbers of a file's size that people read.
+/// The numbers of a measured size that the printed text contains.
 struct FileSize {
   std::optional<double> volume_mm3, volume_half_width_mm3, volume_partial_mm3, area_mm2, area_half_width_mm2;
   std::string volume_estimator, area_estimator;
@@ -71,7 +71,8 @@ FileAnswer said(Json json) {
   };
   add_recommended("recommended volume", size.volume);
   add_recommended("recommended area", size.area);
-  // The doubt of a single estimator is not an interval that contains the true value; its entry states so.
+  // The half-width of a single estimator is due to digitising alone and does not define an interval for the
+  // true value; the text states this.
   const auto doubtful = [&](const std::optional<double>& value, const std::optional<double>& half_width,
                             const std::string& unit_and_estimator) {
     return number(value, 1) + unit_and_estimator +
@@ -94,7 +95,7 @@ FileAnswer said(Json json) {
   return {std::move(json), std::move(rows)};
 }
 
-/// Requests that cannot be written are refused before any file is read.
+/// Throws before any file is read if the requested file of scalars cannot be written.
 void need_scalars_of(const Measure& asked) {
   if (!asked.thickness && !asked.curvature)
     throw std::runtime_error(asked.out.string() + ": choose the map to write by --thickness or --curvature");
@@ -102,7 +103,8 @@ void need_scalars_of(const Measure& asked) {
   need_folder_of(asked.out);
 }
 
-/// The requested measures of a closed mesh beyond its size, and the file that they are written to.
+/// The requested measures of a closed mesh besides its size, as JSON. Also writes the file of scalars if one
+/// is requested.
 Json asked_of_surface(const Measure& asked, const brep::Solid& solid, const FileBench& bench) {
   const std::filesystem::path& out = asked.out;
   std::optional<brep::Mesh> other;
@@ -120,7 +122,7 @@ Json asked_of_surface(const Measure& asked, const brep::Solid& solid, const File
   return json;
 }
 
-/// The volume along lines through an open surface, where few of them pass holes.
+/// The volume along lines through an open surface, if only few lines pass holes.
 std::optional<double> volume_by_lines_mm3(const brep::Triangles& triangles) {
   constexpr double most_open_share = 0.1;
   const brep::LineVolumes volumes = brep::line_volumes(triangles, {});
@@ -129,7 +131,7 @@ std::optional<double> volume_by_lines_mm3(const brep::Triangles& triangles) {
   return volumes.all.a_mm3 * lines / (lines - open);
 }
 
-/// Measures triangles that enclose nothing: their area and place.
+/// Measures triangles that enclose nothing: their area and position.
 FileAnswer measure_open(const brep::Triangles& triangles, const brep::Health& health) {
   if (health.faces == 0) throw std::runtime_error("there are no triangles to measure");
   const brep::Size size = brep::size_of(triangles);
@@ -138,12 +140,11 @@ FileAnswer measure_open(const brep::Triangles& triangles, const brep::Health& he
   std::vector<std::string> findings{
       is_inside_out
           ? "volume_mm3: none: " + health.findings.front() + "; octotomy repair --solid turns it outward"
-          : "volume_mm3: none, as the surface is not closed, oriented and manifold: " +
+          : "volume_mm3: null, because the surface is not closed, oriented and manifold: " +
                 health.findings.front() + "; octotomy repair --solid closes it"};
   if (by_lines_mm3)
-    findings.push_back(
-        "volume_lines_mm3: an estimate: " + grouped(*by_lines_mm3, 1) +
-        " mm\u00b3 along lines through the surface; lines through its holes count like the others");
+    findings.push_back("volume_lines_mm3: an estimate: " + grouped(*by_lines_mm3, 1) +
+                       " mm\u00b3 along lines through the surface, including lines through its holes");
   return said({{"kind", "mesh"},
                {"volume_mm3", nullptr},
                {"volume_partial_mm3", nullptr},
@@ -160,18 +161,18 @@ FileAnswer measure_open(const brep::Triangles& triangles, const brep::Health& he
                {"findings", findings}});
 }
 
-/// Beyond this number of shells their union by Booleans would take minutes.
+/// With more shells than this, their union by Booleans would take minutes.
 constexpr std::size_t most_united = 1000;
 
-/// A closed surface and the method of its volume. In the given surface, shells may share points and edges,
+/// A closed surface, and how it was made from the given one, in which shells may share points and edges,
 /// overlap, or lie in each other.
 struct OneSurface {
   brep::Triangles triangles;
   std::string how;  ///< of the volume
 };
 
-/// The union of a surface's shells, or their sum where they only touch; none where the surface is open, or a
-/// shell meets itself or faces inward with nothing around it.
+/// The union of a surface's shells; their sum if they only touch. None if the surface stays open, is inside
+/// out or has more than `most_united` shells, or if united_shells() finds no union.
 std::optional<OneSurface> one_surface(const brep::Triangles& given, const brep::Health& health,
                                       const std::stop_token& stop) {
   if (health.closed && health.manifold && health.oriented && health.self_intersections == 0)
@@ -181,13 +182,13 @@ std::optional<OneSurface> one_surface(const brep::Triangles& given, const brep::
   const bool is_split = !health.closed || !health.manifold || is_turned;
   brep::Triangles joined = is_turned ? brep::turned_alike(given).surface : given;
   if (is_split) joined = brep::joined_surface(std::move(joined)).surface;
-  // Shells may touch at merged points.
+  // After points were joined, shells may touch at these points.
   if (is_split) joined = brep::split_fans(joined).surface;
   const brep::Health now = is_split ? brep::health(joined, {.self_intersections = false}) : health;
   if (!now.closed || !now.manifold || now.misoriented_edges > 0 || now.shells > most_united)
     return std::nullopt;
   std::optional<brep::UnitedShells> united = brep::united_shells(joined, stop);
-  // A union whose shells touch in a point is no manifold: the shells stay as they are.
+  // If the union's shells touch in a point, it is not manifold. Then the shells are used unchanged.
   if (!united && is_split && brep::health(joined).self_intersections == 0)
     return OneSurface{std::move(joined), ", of " + std::to_string(now.shells) + " shells that touch"};
   if (!united || united->surface.faces.empty()) return std::nullopt;
@@ -207,7 +208,7 @@ FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked,
   const brep::Health health = brep::health(triangles);
   std::optional<OneSurface> one = one_surface(triangles, health, bench.stop);
   const bool is_sum = !one && health.closed && health.manifold && health.oriented;
-  if (is_sum) one = OneSurface{triangles, ", of shells that may overlap"};
+  if (is_sum) one = OneSurface{triangles, ", summed over shells that may overlap"};
   if (!one) {
     if (asked.asks_surface() || !asked.out.empty())
       throw std::runtime_error(
@@ -220,17 +221,17 @@ FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked,
   size.volume_estimator += one->how;
   size.area_estimator = "triangles" + one->how;
   watch.reset();
-  std::vector<std::string> findings{"volume_partial_mm3: a mesh has no voxels to fill partly"};
+  std::vector<std::string> findings{"volume_partial_mm3: null, because a mesh has no partly filled voxels"};
   if (!is_sum && !one->how.empty())
-    findings.push_back("volume_mm3: the file is no solid (" + health.findings.front() +
-                       "): measured is the union of its closed shells, joined and turned alike; its "
-                       "triangles as they stand enclose " +
+    findings.push_back("volume_mm3: the file is not a solid (" + health.findings.front() +
+                       "), so the union of its closed shells was measured, after their triangles were joined "
+                       "and oriented; the unchanged triangles enclose " +
                        grouped(brep::size_of(triangles).volume_mm3, 1) +
-                       " mm\u00b3; octotomy repair --solid writes it");
+                       " mm\u00b3; octotomy repair --solid writes this union");
   if (is_sum)
     findings.push_back("WARN volume_mm3: " + std::to_string(health.self_intersections) +
-                       " pairs of triangles cross each other, so overlapping parts count twice: octotomy "
-                       "repair --solid joins them in one surface");
+                       " pairs of triangles cross each other, so overlapping parts count twice: unite them "
+                       "by octotomy repair --solid");
   Json json{{"kind", "mesh"}};
   json.update(print_record(size));
   json.update(asked_of_surface(asked, solid, bench));
@@ -241,7 +242,7 @@ FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked,
   return said(std::move(json));
 }
 
-/// Measures an object from its voxels only; also stores the measures in `measures`.
+/// Measures an object from its voxels only. Also stores the measures in `measures`.
 Json of_voxels(const voxel::Octree& octree, Timings& timings, voxel::Measures& measures) {
   const Stopwatch watch(timings, "measure");
   measures = voxel::measure(octree);
@@ -253,13 +254,13 @@ Json of_voxels(const voxel::Octree& octree, Timings& timings, voxel::Measures& m
   return json;
 }
 
-/// Another estimator of the size that was counted in voxels, with its texts.
+/// Another estimate of a size that was counted in voxels, with its texts for findings.
 struct Seen {
   SeenSize size;
   std::string says, advice;
 };
 
-/// Adds the half-width of voxels whose flat parts are known.
+/// Adds the half-width of a count. The areas of flat parts are known.
 void add_half_width(const voxel::Measures& measures, const Digitised& digitised,
                     const voxel::Lattice& lattice, const std::optional<Seen>& seen, Json& json) {
   const std::optional<SeenSize> size = seen ? std::optional(seen->size) : std::nullopt;
@@ -274,7 +275,8 @@ void add_half_width(const voxel::Measures& measures, const Digitised& digitised,
                {"area", print_record(measured(recommended.area_mm2, "mm2"))}});
 }
 
-/// Adds the half-width of voxels whose flat parts are not known, with further knowledge of them as arguments.
+/// Adds the half-width of a count. The areas of flat parts are computed; the further arguments go to
+/// volume_half_width().
 void add_half_width(const voxel::Octree& octree, const voxel::Measures& measures,
                     const std::optional<double>& shift_mm, const std::optional<Seen>& seen, Json& json) {
   const voxel::Lattice lattice = octree.universe().lattice();
@@ -297,7 +299,7 @@ voxel::Window window_of(const voxel::GreyOctree& grey, const std::filesystem::pa
                         const Measure& asked) {
   if (!asked.window)
     throw std::runtime_error(
-        file.string() + ": holds samples: choose a range by --window LOW:HIGH, for example --window 300:");
+        file.string() + ": contains samples: choose a range by --window LOW:HIGH, for example --window 300:");
   return window_on(grey, *asked.window);
 }
 
@@ -307,8 +309,8 @@ void add_thickness(const voxel::Octree& octree, const Measure& asked, const File
   json["thickness"] = thickness_json(octree, bench.progress("thickness"));
 }
 
-/// Advice for an object whose voxels are too coarse.
-constexpr const char* remake = "make the octree with smaller ones, --voxel";
+/// Advice in the finding that an object's voxels are too coarse.
+constexpr const char* remake = "make the octree with smaller voxels, by --voxel";
 
 FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure& asked,
                           const FileBench& bench) {
@@ -328,7 +330,8 @@ FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure&
     add_half_width(inside, measures, window_shift_mm(window), seen, json);
     add_thickness(inside, asked, bench, json);
   } else if (asked.window) {
-    throw std::runtime_error(file_path.string() + ": holds no samples to take a --window of: leave it out");
+    throw std::runtime_error(file_path.string() +
+                             ": contains no samples, so --window does not apply: leave it out");
   } else if (const auto* partial = std::get_if<voxel::PartialOctree>(&file.tree)) {
     const voxel::Octree half = voxel::at_least_half(*partial);
     json = of_voxels(half, timings, measures);
@@ -346,9 +349,8 @@ FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure&
     add_thickness(octree, asked, bench, json);
     json["volume_partial_mm3"] = nullptr;
     json["findings"].push_back(
-        "volume_partial_mm3: voxels that are only inside or outside have no known shares: keep samples "
-        "(--grey) or "
-        "shares (--digitise partial)");
+        "volume_partial_mm3: null, because the filled shares of voxels are unknown: make an octree with "
+        "samples (--grey) or shares (--digitise partial)");
   }
   Json whole{{"kind", "octree"}};
   whole["source"] = file_path.string();
@@ -356,7 +358,7 @@ FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure&
   return said(std::move(whole));
 }
 
-/// A scan and its octree; the octree is built while the scan is read.
+/// A scan and its octree, which is built while the scan is read.
 struct ScanAndOctree {
   voxel::Scene scene;
   voxel::GreyOctree grey;
@@ -366,12 +368,14 @@ ScanAndOctree read_to_octree(const std::filesystem::path& file, const Measure& a
                              const FileBench& bench) {
   std::optional<voxel::GreyOctreeBuild> build;
   std::optional<voxel::GreyOctree> grey;
-  std::optional<double> padding;  // as the build knew it
+  std::optional<double> padding;  // padding as it was known when the build began
   bool has_failed = false;
   voxel::Scene scene = bench.read_scan(file, [&](const voxel::Scene& read, int count) {
     if (count == 0) return build.reset();
-    if (has_failed || asked.voxel_mm) return;  // finer voxels take long; a finding below states so
-    if (!std::holds_alternative<voxel::Int16Samples>(read.samples)) return;  // octree's step not known yet
+    if (has_failed || asked.voxel_mm) return;  // building with finer voxels takes long; a finding states this
+    if (!std::holds_alternative<voxel::Int16Samples>(read.samples))
+      return;  // the octree's step is not known
+               // yet
     try {
       if (!build) {
         build.emplace(universe_of(read.lattice, asked.voxel_mm), read);
@@ -380,7 +384,8 @@ ScanAndOctree read_to_octree(const std::filesystem::path& file, const Measure& a
       build->add(count);
       if (count == read.lattice.dims.z) grey = build->finished();
     } catch (...) {
-      // The error is not the reader's. The build fails again below, after the reader's own errors.
+      // This error of the build is ignored here. The octree is built again below, so that errors of the
+      // reader are reported first.
       has_failed = true;
       build.reset();
     }
@@ -424,12 +429,12 @@ verify::SizeIntervals recommended_of(const WindowShown& shown) {
 FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked, const FileBench& bench) {
   Timings& timings = bench.timings;
   const auto read = read_to_octree(file, asked, bench);
-  // References, which lambdas may capture.
+  // References with short names, which lambdas can capture.
   const voxel::Scene& scene = read.scene;
   const voxel::GreyOctree& grey = read.grey;
   const voxel::Window window = window_of(grey, file, asked);
   const double low = asked.window->low;
-  // Labels are names and are not interpolated: a voxel has the label of its nearest sample, and surfaces lie
+  // Labels are names and are not interpolated. A voxel has the label of its nearest sample, and surfaces lie
   // half-way between samples.
   const bool is_labels = scene.meaning == voxel::Meaning::Label;
   const double high = asked.window->high_or_infinity();
@@ -441,7 +446,8 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
   Json json = of_voxels(inside, timings, measures);
   if (labelled) {
     json["volume_partial_mm3"] = nullptr;
-    json["findings"].push_back("volume_partial_mm3: labels are names, nothing lies between them");
+    json["findings"].push_back(
+        "volume_partial_mm3: null, because labels are names and cannot be interpolated");
   } else {
     add_partial_volume(window, timings, json);
   }
@@ -453,7 +459,7 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
     brep::Triangles triangles =
         labelled ? convert::isosurface(*labelled, 0.5, std::numeric_limits<double>::infinity())
                  : convert::isosurface(scene, low, high);
-    // They run in parallel because both have parts that use only one thread.
+    // These run in parallel, because parts of each use only one thread.
     tbb::parallel_invoke(
         [&] { isosurface = brep::trusted_solid(std::move(triangles), brep::Proof::Construction); },
         [&] {
@@ -467,7 +473,7 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
   add_half_width(measures, digitised, grey.universe().lattice(),
                  Seen{{"isosurface", surface.volume_mm3, surface.area_mm2},
                       "the isosurface of the samples encloses",
-                      "take smaller ones, --voxel"},
+                      "choose smaller voxels by --voxel"},
                  json);
   const bool is_of_phases = phases && !phases->evidence.is_ambiguous;
   const verify::SizeIntervals recommended = recommended_of({scene, low, high, isosurface, phases, digitised});
@@ -496,7 +502,7 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
   return said(std::move(whole));
 }
 
-/// The distance of two points and the angle of three, which need no file.
+/// Measures the distance of two points and the angle of three points, which need no file.
 FileAnswer measure_points(const Measure& asked) {
   Json json{{"kind", "points"}};
   json.update(point_answers({.distance = asked.distance, .angle = asked.angle}));
@@ -512,7 +518,7 @@ FileAnswer measure_file(const Measure& asked, const FileBench& bench) {
                             asked.curvature || asked.window || asked.voxel_mm || !asked.out.empty();
     if (needs_file || (asked.distance.empty() && asked.angle.empty()))
       throw std::runtime_error(
-          "file is required: a scan, an octree or a mesh; only --distance and --angle need none");
+          "file is required: name a scan, an octree or a mesh; only --distance and --angle need no file");
     return measure_points(asked);
   }
   const std::filesystem::path file = asked.object->name;
@@ -520,8 +526,8 @@ FileAnswer measure_file(const Measure& asked, const FileBench& bench) {
   const bool has_walls = is_mesh(file) || is_octree(file);
   if (((asked.asks_mesh() || asked.to) && !is_mesh(file)) || (asked.thickness && !has_walls))
     throw std::runtime_error(file.string() +
-                             ": sections, paths, angles and curvature are measured on a mesh, walls on a "
-                             "mesh or an octree: octotomy mesh makes a mesh");
+                             ": sections, paths, angles and curvature need a mesh, walls a mesh or an "
+                             "octree: make a mesh by octotomy mesh");
   if (is_mesh(file) && (asked.window || asked.voxel_mm))
     throw std::runtime_error(file.string() + ": a mesh has no samples and no voxels: leave " +
                              (asked.window ? "--window" : "--voxel") + " out");

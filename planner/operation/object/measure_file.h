@@ -6,7 +6,8 @@
 
 namespace octotomy::planner {
 
-/// The size of an object, the gap between two, the distance of two points or the angle of three.
+/// Measures the size of an object, the gap between two objects, the distance of two points or the angle of
+/// three.
 struct Measure {
   std::optional<ObjectName> object, to;
   std::vector<Mark> points_mm;
@@ -18,12 +19,13 @@ struct Measure {
   std::optional<double> voxel_mm;
   std::filesystem::path out;
 
-  /// Whether a measure is requested that only a surface has.
+  /// Whether a measure is requested that only a surface has, but voxels do not.
   bool asks_mesh() const {
     return !section.empty() || !along.empty() || !distance.empty() || !angle.empty() || curvature ||
            !out.empty();
   }
-  /// Whether the mesh kernel's surface or the thickness of walls is needed. Voxels have a thickness, too.
+  /// Whether the requested measures need the mesh kernel's surface, or the thickness of walls, which voxels
+  /// also have.
   bool asks_surface() const { return asks_mesh() || thickness; }
 };
 

@@ -45,20 +45,20 @@ bool is_contour_file(const Meshed& asked) {
   return std::filesystem::path(asked.file.name).extension() == ".json";
 }
 
-/// The kind of surface that is made. Contours can only be tiled.
+/// The kind of surface to make. A file of contours can only be tiled.
 std::string surface_of(const Meshed& asked) {
   return is_contour_file(asked) ? "contours" : asked.surface;
 }
 
-/// A surface as it was extracted.
+/// An extracted surface, with what is known about it.
 struct Made {
   Made(brep::Triangles triangles) : surface(std::move(triangles)) {}  // NOLINT(google-explicit-constructor)
-  /// An isosurface of the samples of a lattice.
+  /// Makes an isosurface of a lattice's samples.
   Made(brep::Triangles triangles, const voxel::Lattice& lattice)
       : surface(std::move(triangles)), stays_apart(convert::stays_apart(lattice)) {}
 
   brep::Triangles surface;
-  bool stays_apart = false;  ///< known to be free of self-intersections, which are expensive to search
+  bool stays_apart = false;  ///< known to have no self-intersections, for which a search is expensive
 };
 
 brep::Triangles cuberille_of(const voxel::Octree& octree, const Meshed& asked) {
@@ -66,11 +66,11 @@ brep::Triangles cuberille_of(const voxel::Octree& octree, const Meshed& asked) {
       octree, asked.touching == "apart" ? convert::Touching::Apart : convert::Touching::Together));
 }
 
-/// The window of a file that holds samples: bone where none is requested.
+/// The window of a file with samples; bone if none is requested, with a finding.
 SampleWindow window_of(const Meshed& asked, std::vector<std::string>& findings) {
   if (asked.window) return *asked.window;
   const voxel::Tissue bone = *voxel::tissue("bone");
-  findings.push_back("window: " + voxel::described(bone) + ", as no --window LOW:HIGH was given");
+  findings.push_back("window: " + voxel::described(bone) + ", because no --window LOW:HIGH was stated");
   return {*bone.low, std::nullopt};
 }
 
@@ -90,20 +90,20 @@ brep::Triangles tiled_contours(const voxel::Scene& scene, const SampleWindow& wi
   findings.push_back(
       "contours: " + std::to_string(tiled.strips) + " pairs joined by strips, " +
       std::to_string(tiled.clear_strips) +
-      " of them by spans that cross no contour, because the best strips would cross something, " +
+      " of them by spans that cross no contour, because the best strips would cross other parts, " +
       std::to_string(tiled.narrowed_strips) +
-      " of them nearer to the shortest spans or by least area, because those would cross something, too; " +
+      " of them nearer to the shortest spans or by least area, because these would cross other parts, too; " +
       std::to_string(tiled.crossed_strips) +
-      " pairs by overlay, because every strip would cross something; " + std::to_string(tiled.overlaid) +
-      " branchings, ends and lone contours by overlay");
+      " pairs by overlay, because every strip would cross other parts; " + std::to_string(tiled.overlaid) +
+      " branchings, ends and single contours by overlay");
   return std::move(tiled.surface);
 }
 
 Made of_contours(const FileBench& bench, const Meshed& asked, std::vector<std::string>& findings) {
   const std::string& file = asked.file.name;
-  if (asked.window) throw std::runtime_error(file + ": holds contours already: leave --window out");
+  if (asked.window) throw std::runtime_error(file + ": already contains contours: leave --window out");
   if (asked.surface == "cuberille")
-    throw std::runtime_error(file + ": holds contours, which are tiled: leave --surface out");
+    throw std::runtime_error(file + ": contains contours, which can only be tiled: leave --surface out");
   const voxel::SliceMask mask = read_slices(file, {}, findings);
   const Stopwatch watch(bench.timings, "tile");
   TiledSlices tiled = [&] {
@@ -115,14 +115,16 @@ Made of_contours(const FileBench& bench, const Meshed& asked, std::vector<std::s
     }
   }();
   findings.push_back("contours: " + std::to_string(mask.slices.size()) + " slices tiled by " +
-                     std::to_string(tiled.sections) + " sections, those between them interpolated");
+                     std::to_string(tiled.sections) +
+                     " sections; those between the drawn slices are interpolated");
   return tiled.solid.triangles();
 }
 
 Made of_octree(const FileBench& bench, const Meshed& asked, std::vector<std::string>& findings) {
   if (asked.surface == "contours")
-    throw std::runtime_error(asked.file.name +
-                             ": contours are followed on a scan's slices: give the scan the octree is of");
+    throw std::runtime_error(
+        asked.file.name +
+        ": contours are traced on a scan's slices: name the scan from which the octree was made");
   const voxel::OctreeFile file = octree_named(asked.file.name, bench);
   const bool cubes = asked.surface == "cuberille";
   const Stopwatch watch(bench.timings, asked.surface);
@@ -133,18 +135,19 @@ Made of_octree(const FileBench& bench, const Meshed& asked, std::vector<std::str
     return cuberille_of(voxel::combine(grey->universe(), voxel::Expression(window_on(*grey, window))), asked);
   }
   if (asked.window)
-    throw std::runtime_error(asked.file.name + ": holds no samples to take a --window of: leave it out");
+    throw std::runtime_error(asked.file.name +
+                             ": contains no samples, so --window does not apply: leave it out");
   if (const auto* partial = std::get_if<voxel::PartialOctree>(&file.tree)) {
     if (!cubes) return convert::isosurface(*partial);
-    findings.push_back("surface: the cuberille is made of the voxels that are at least half filled");
+    findings.push_back("surface: the cuberille has the voxels that are at least half filled");
     return cuberille_of(at_least_half(*partial), asked);
   }
   const auto& octree = std::get<voxel::Octree>(file.tree);
   if (cubes) return cuberille_of(octree, asked);
   findings.push_back(
-      "surface: the octree stores voxels only as inside or outside, so that the isosurface runs half way "
-      "between them in steps, and its area is too large, by 9 % on a ball: make a grey or partial octree for "
-      "a smooth surface");
+      "surface: the octree stores voxels only as inside or outside, so the isosurface runs half-way between "
+      "them in steps, and its area is too large, for a ball by 9 %: for a smooth surface, make a grey or "
+      "partial octree");
   return convert::isosurface(octree.universe(), octree);
 }
 
@@ -162,7 +165,7 @@ Made of_scan(const FileBench& bench, const Meshed& asked, std::vector<std::strin
       to_string(window));
 }
 
-/// The surface that is written, and its size.
+/// The surface to write, and its size.
 struct Finished {
   brep::Triangles surface;
   brep::Measures measures;
@@ -184,7 +187,7 @@ Finished finished(Made made, const Meshed& asked, Timings& timings) {
   }
   if (fewer) {
     const Stopwatch watch(timings, "decimate");
-    // The user requested a number of triangles, so no bound on the error may end the decimation earlier.
+    // If the user requests a number of triangles, no bound of the error ends the decimation earlier.
     constexpr double no_bound_mm = std::numeric_limits<double>::infinity();
     surface = brep::decimate(surface,
                              {.max_error_mm = no_bound_mm, .faces = static_cast<std::size_t>(*asked.faces)});
@@ -196,14 +199,15 @@ void check(const Meshed& asked, const FieldLocation& place) {
   if (place.scope == nullptr) return;
   check_output_path(asked.out, {".stl", ".ply", ".obj", ".off", ".vtp", ".glb"}, place.at("path"));
   if (asked.surface == "contours")
-    place.at("surface").refuse("contours are followed on a scan's slices, and an object has no slices");
+    place.at("surface").refuse("does not apply to objects, because contours are traced on a scan's slices");
 }
 
 FileAnswer on_files(const Meshed& asked, const FileBench& bench) {
   need_mesh_extension(asked.out);
   need_folder_of(asked.out);
   if (bench.step == nullptr && is_mesh(asked.file.name))
-    throw std::runtime_error(asked.file.name + ": is a mesh already");
+    throw std::runtime_error(asked.file.name +
+                             ": already is a mesh: copy it, or change it by octotomy smooth or decimate");
   std::vector<std::string> findings;
   Made made = names_octree(asked.file.name, bench) ? of_octree(bench, asked, findings)
               : is_contour_file(asked)             ? of_contours(bench, asked, findings)
@@ -243,28 +247,32 @@ Operation mesh_operation() {
                 "The object; on the command line a scan, an .octree file, or a .json of regions on slices.")
               .required()
               .positional("file"))
-      .verb_takes(field("window", &Meshed::window, "LOW:HIGH or LOW: in sample units, or a tissue."))
-      .takes(field("surface", &Meshed::surface,
-                   "isosurface: where samples or shares cross the bound; cuberille: the voxels' own faces; "
-                   "contours: followed on a scan's slices, or those of a .json, and tiled.")
-                 .one_of({"isosurface", "cuberille", "contours"}))
+      .verb_takes(field("window", &Meshed::window,
+                        "The samples inside the surface: LOW:HIGH or LOW: in sample units, or a tissue."))
+      .takes(
+          field(
+              "surface", &Meshed::surface,
+              "isosurface: the surface where samples or filled shares cross the bound; cuberille: the faces "
+              "of the voxels; contours: a surface tiled from contours on the slices of a scan or in a .json.")
+              .one_of({"isosurface", "cuberille", "contours"}))
       .verb_takes(field("tiling", &Meshed::tiling,
-                        "For contours, the criterion by which strips between them are chosen: shortest-span, "
-                        "least-area, "
-                        "greatest-volume, least-angle; overlay: no strips.")
+                        "For contours: the criterion for the strips between them: shortest-span, least-area, "
+                        "greatest-volume or least-angle; overlay uses no strips.")
                       .one_of({"shortest-span", "least-area", "greatest-volume", "least-angle", "overlay"})
                       .read_if<Meshed>([](const Meshed& meshed) { return surface_of(meshed) == "contours"; },
                                        "applies only to contours: add 'surface' contours"))
       .takes(
           field(
               "touching", &Meshed::touching,
-              "For a cuberille, how to treat voxels that meet only at an edge or corner: apart or together.")
+              "For a cuberille: whether voxels that meet only at an edge or corner are kept apart or joined.")
               .one_of({"apart", "together"})
               .read_if<Meshed>([](const Meshed& meshed) { return meshed.surface == "cuberille"; },
                                "applies only to a cuberille: add 'surface' cuberille"))
-      .takes(field("smooth", &Meshed::smooth, "Removes noise from the surface and keeps its volume."))
-      .takes(field("faces", &Meshed::faces, "Number of triangles to decimate to.").from(4).to(100000000))
-      .takes(field("path", &Meshed::out, "A .stl, .ply, .obj, .off, .vtp or .glb file.")
+      .takes(field("smooth", &Meshed::smooth, "Removes noise from the surface without changing its volume."))
+      .takes(field("faces", &Meshed::faces, "Number of triangles to which the surface is reduced.")
+                 .from(4)
+                 .to(100000000))
+      .takes(field("path", &Meshed::out, "The file of the surface: .stl, .ply, .obj, .off, .vtp or .glb.")
                  .required()
                  .called("out"))
       .reads_scans()

@@ -40,7 +40,7 @@ struct Build {
   std::optional<int> depth, number;
   std::optional<glm::dvec3> seed_face_mm;
   int neighbours = 6;
-  std::vector<ObjectName> with;  ///< further objects of a multivalued code
+  std::vector<ObjectName> with;  ///< the further objects of a multivalued code
 
   fs::path in() const { return file.name; }
   std::vector<std::string> inputs() const {
@@ -65,7 +65,8 @@ std::string content_of(const fs::path& path) {
 voxel::OctreeFile from_representation(const Build& asked, Timings& timings) {
   if (!asked.depth)
     throw std::runtime_error(
-        "--depth: a representation does not state its universe: give --depth N, for 2^N voxels a side");
+        "--depth is missing, because a representation does not state its universe: add --depth N for 2^N "
+        "voxels a side");
   voxel::Universe universe;
   universe.depth = *asked.depth;
   const double edge_mm = asked.voxel_mm.value_or(1.0);
@@ -89,14 +90,15 @@ voxel::OctreeFile from_octree(const FileBench& bench, const Build& asked) {
   if (!asked.window) return file;
   const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree);
   if (grey == nullptr)
-    throw std::runtime_error(asked.file.name + ": holds no samples to take a --window of: leave it out");
+    throw std::runtime_error(asked.file.name +
+                             ": contains no samples, so --window does not apply: leave it out");
   const Stopwatch watch(bench.timings, "octree");
   return {windowed(*grey, *asked.window), file.name, file.metadata};
 }
 
 voxel::OctreeFile from_scan(const FileBench& bench, const Build& asked) {
   if (is_mesh(asked.in()))
-    throw std::runtime_error(asked.file.name + ": is a mesh: octotomy voxelise makes an octree of one");
+    throw std::runtime_error(asked.file.name + ": is a mesh: make an octree of it by octotomy voxelise");
   if (!asked.window && !asked.grey)
     throw std::runtime_error(asked.file.name +
                              ": is a scan: choose --window LOW:HIGH for an object, for example "
@@ -119,7 +121,8 @@ voxel::OctreeFile from_scan(const FileBench& bench, const Build& asked) {
   return {windowed(grey, *window), name, json_text(made)};
 }
 
-/// The connected surface from the face nearest to the seed, as lists of faces. Adds its figures.
+/// The connected surface that contains the face nearest to the seed, as lists of faces. Adds its numbers to
+/// the answer.
 std::string tracked(const Build& asked, const voxel::Octree& octree, Json& json) {
   const glm::dvec3 p_mm = *asked.seed_face_mm;
   const std::optional<voxel::SurfaceFace> seed =
@@ -127,7 +130,7 @@ std::string tracked(const Build& asked, const voxel::Octree& octree, Json& json)
   if (!seed)
     throw std::runtime_error(
         asked.file.name + ": no face of the surface lies within one and a half voxels of " + plain(p_mm.x) +
-        "," + plain(p_mm.y) + "," + plain(p_mm.z) + " mm: choose a point on it");
+        "," + plain(p_mm.y) + "," + plain(p_mm.z) + " mm: choose a point on the surface");
   const voxel::TrackedSurface surface = voxel::track_surface(
       octree, *seed, asked.neighbours == 6 ? voxel::Joined::ByFaces : voxel::Joined::ByEdges);
   json["seed_face"] = {{"voxel", {seed->voxel.x, seed->voxel.y, seed->voxel.z}},
@@ -141,14 +144,15 @@ std::string tracked(const Build& asked, const voxel::Octree& octree, Json& json)
 const voxel::Octree& binary_of(const Build& asked, const std::string& name, const voxel::OctreeFile& file) {
   const auto* octree = std::get_if<voxel::Octree>(&file.tree);
   if (octree == nullptr)
-    throw std::runtime_error(name + ": only a binary octree can be written as " + asked.as +
-                             (std::holds_alternative<voxel::GreyOctree>(file.tree)
-                                  ? ": choose an object by --window LOW:HIGH"
-                                  : ": this one holds fractions, digitise it as centre or half"));
+    throw std::runtime_error(
+        name + ": only a binary octree can be written as " + asked.as +
+        (std::holds_alternative<voxel::GreyOctree>(file.tree)
+             ? ": choose an object by --window LOW:HIGH"
+             : ": this octree stores fractions, so digitise the object as centre or half"));
   return *octree;
 }
 
-/// The object and the further objects in its universe.
+/// The first object, and further objects in the same universe.
 std::vector<voxel::Octree> objects_of(const FileBench& bench, const Build& asked,
                                       const voxel::OctreeFile& file) {
   std::vector<voxel::Octree> objects{binary_of(asked, asked.file.name, file)};
@@ -159,7 +163,7 @@ std::vector<voxel::Octree> objects_of(const FileBench& bench, const Build& asked
     if (objects.back().universe() != objects.front().universe())
       throw std::runtime_error("--with: " + other.name + ": its universe differs from that of " +
                                asked.file.name +
-                               ": build both of one scan, or one of them by octotomy mask --like");
+                               ": make both from the same scan, or one of them by octotomy mask --like");
   }
   return objects;
 }
@@ -199,8 +203,8 @@ FileAnswer export_as(const FileBench& bench, const Build& asked, const voxel::Oc
   return answer;
 }
 
-/// The other forms of octrees have no extension of their own. The extension of another kind of file is a
-/// typing error: the output must not replace a scan or a result.
+/// Throws if the output has the extension of another kind of file. Representations have no extension of their
+/// own, and such an extension is a typing error that would replace a scan or a result.
 void need_form_name(const Build& asked) {
   constexpr std::array others{".json", ".csv", ".dcm",  ".png", ".jpg", ".jpeg",
                               ".webp", ".glb", ".html", ".svg", ".pdf"};
@@ -225,7 +229,7 @@ FileAnswer on_files(const Build& asked, const FileBench& bench) {
   asked.as.empty() ? need_octree_extension(asked.out) : need_form_name(asked);
   if (asked.window && asked.grey)
     throw std::runtime_error(
-        "--grey: an octree holds all samples (--grey) or an object (--window), not both");
+        "--grey and --window exclude each other: an octree has either all samples or an object");
   need_folder_of(asked.out);
   const voxel::OctreeFile file = !asked.from.empty() ? from_representation(asked, bench.timings)
                                  : names_octree(asked.file.name, bench) ? from_octree(bench, asked)
@@ -246,56 +250,57 @@ Operation octree_operation() {
                 "The object; on the command line a scan, an .octree file, or with --from a representation.")
               .required()
               .positional("file"))
-      .takes(
-          field("path", &Build::out, "An .octree file, or with --as the representation's, for example .txt.")
-              .required()
-              .called("out"))
+      .takes(field("path", &Build::out,
+                   "An .octree file, or with --as a file of the representation, for example .txt.")
+                 .required()
+                 .called("out"))
       .verb_takes(
-          field("window", &Build::window, "LOW:HIGH or LOW: in sample units, or a tissue: a binary octree.")
+          field("window", &Build::window,
+                "Makes a binary octree of these samples: LOW:HIGH or LOW: in sample units, or a tissue.")
               .read_if<Build>([](const Build& build) { return build.from.empty(); },
-                              "a representation holds no samples to take a window of: leave it out"))
+                              "does not apply to a representation, which has no samples: leave it out"))
       .verb_takes(
-          field("grey", &Build::grey, "A min-max octree of all samples.")
+          field("grey", &Build::grey, "Makes a min-max octree of all samples.")
               .read_if<Build>([](const Build& build) { return build.from.empty() && !is_octree(build.in()); },
-                              "only a scan has samples to build such a tree of: leave it out"))
+                              "applies only to a scan, which has samples: leave it out"))
       .verb_takes(field("voxel_mm", &Build::voxel_mm,
-                        "Edge of a voxel. Default: as fine as the scan, at most 512 a side; with --from 1.")
+                        "Edge of a voxel. Default: the scan's finest spacing, with at most 512 voxels a "
+                        "side; with --from 1.")
                       .greater_than(0.0)
                       .read_if<Build>(
                           [](const Build& build) { return !build.from.empty() || !is_octree(build.in()); },
-                          "an .octree file keeps its own voxels: leave it out"))
+                          "does not apply to an .octree file, which already has voxels: leave it out"))
       .takes(field("as", &Build::as,
-                   "Writes treecode, linear, explicit, masked, bitree, multivalued, runs, segments, "
-                   "marginal, faces or "
-                   "array (text), packed or bits (bytes).")
+                   "Writes one of these representations: as text treecode, linear, explicit, masked, bitree, "
+                   "multivalued, runs, segments, marginal, faces or array; as bytes packed or bits.")
                  .one_of(representation_names()))
       .takes(field("with", &Build::with,
-                   "Further objects of a multivalued code, from number 2 on, in the universe of the first.")
+                   "For a multivalued code: further objects, numbered from 2, in the universe of the first.")
                  .repeated()
                  .read_if<Build>([](const Build& build) { return build.as == "multivalued"; },
                                  "applies only to multivalued codes: add 'as' multivalued"))
       .takes(field("seed_face_mm", &Build::seed_face_mm,
-                   "Writes only the connected surface from the face nearest to this point, LPS: of one part, "
-                   "without its cavities, or of one cavity.")
+                   "Writes only the connected surface that contains the face nearest to this point, LPS: "
+                   "that of one part without its cavities, or that of one cavity.")
                  .read_if<Build>([](const Build& build) { return build.as == "faces"; },
-                                 "tracks a surface's faces: add 'as' with faces"))
+                                 "applies only to lists of faces: add 'as' with faces"))
       .takes(field("neighbours", &Build::neighbours,
-                   "Voxels of the tracked surface are joined by faces (6) or also by edges (18).")
+                   "Whether voxels of that surface are connected by faces (6) or also by edges (18).")
                  .read_if<Build>([](const Build& build) { return build.seed_face_mm.has_value(); },
                                  "needs 'seed_face_mm': add it"))
-      .verb_takes(field("from", &Build::from, "Reads the file as such a representation.")
+      .verb_takes(field("from", &Build::from, "Reads the file as this representation.")
                       .one_of(representation_names()))
       .verb_takes(
           field("depth", &Build::depth, "With --from: the universe has 2^N voxels a side.")
               .from(2)
               .to(voxel::Universe::max_depth)
               .read_if<Build>([](const Build& build) { return !build.from.empty(); }, "needs 'from': add it"))
-      .verb_takes(
-          field("number", &Build::number, "The object of a multivalued code that is read. Default: 1.")
-              .from(1)
-              .to(254)
-              .read_if<Build>([](const Build& build) { return build.from == "multivalued"; },
-                              "applies only to multivalued codes: add 'from' multivalued"))
+      .verb_takes(field("number", &Build::number,
+                        "The number of the object that is read from a multivalued code. Default: 1.")
+                      .from(1)
+                      .to(254)
+                      .read_if<Build>([](const Build& build) { return build.from == "multivalued"; },
+                                      "applies only to multivalued codes: add 'from' multivalued"))
       .reads_scans()
       .example(R"({"id": "tree", "do": "octree", "object": "skull", "path": "skull.octree"})")
       .on_files(

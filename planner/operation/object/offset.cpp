@@ -28,20 +28,19 @@ struct Offset {
 
 void check(const Offset& offset, const FieldLocation& place) {
   if (offset.by_mm == 0.0)
-    place.at("by_mm").refuse(
-        "0 moves nothing: say how far outward, or inward as a number below 0, or use the object itself");
+    place.at("by_mm").refuse("0 moves nothing: state a distance outward, or a negative number for inward");
 }
 
-/// The cell of the distance lattice. Steps along edges are a quarter of the cell: small enough for the rounding of
-/// edges by the offset, but not below about 1/100 of the solid's extent.
+/// The cell of the lattice of distances: half of the distance, so that rounded edges are resolved; at least
+/// 1/100 of the solid's greatest extent.
 double cell_for(const brep::Solid& solid, double by_mm) {
   const glm::dvec3 extent = solid.size().high_mm - solid.size().low_mm;
   return std::max(0.5 * std::abs(by_mm), std::max({extent.x, extent.y, extent.z}) / 100.0);
 }
 
-/// A lattice's surface without the triangles that flat parts do not need. The remaining points do not move.
-/// The error is 1/50 of a cell: above the error of the offset's points and below that of the chords across
-/// cells.
+/// A lattice's surface without triangles that flat parts do not need. The remaining points do not move. The
+/// allowed error is 1/50 of a cell, which exceeds the error of the offset's points and is less than that of
+/// chords across cells.
 brep::Solid fewer(const brep::Solid& surface, double cell_mm, std::vector<std::string>& findings) {
   if (surface.empty()) return surface;
   brep::DecimateOptions options;
@@ -51,22 +50,23 @@ brep::Solid fewer(const brep::Solid& surface, double cell_mm, std::vector<std::s
     return brep::trusted_solid(brep::decimate(surface, options), brep::Proof::Construction);
   } catch (const brep::Error& error) {
     if (error.code() != brep::ErrorCode::Geometry) throw;
-    findings.push_back(std::string("all triangles of the lattice stay: ") + error.what());
+    findings.push_back(std::string("the number of triangles was not reduced, because this failed: ") +
+                       error.what());
     return surface;
   }
 }
 
-/// Adds a finding on walls or clefts that the lattice missed. Throws where they are more than 1 % of the
-/// surface.
+/// Adds a finding on walls or clefts that are too thin for the lattice. Throws if they are more than 1 % of
+/// the surface.
 void tell_missed(const brep::Solid& solid, const brep::Solid& moved, const brep::OffsetOptions& options,
                  std::vector<std::string>& findings) {
   constexpr double most_share = 0.01;
   const brep::MissedWalls missed = brep::missed_walls(solid, moved, options);
   if (missed.area_share == 0.0) return;
-  const std::string told = "walls or clefts thinner than a cell of " + plain(options.cell_mm) +
-                           " mm were missed, " + three_figures(100.0 * missed.area_share) +
-                           " % of the surface, the first at (" + plain(missed.at_mm.x) + ", " +
-                           plain(missed.at_mm.y) + ", " + plain(missed.at_mm.z) + ") mm: take smaller cells";
+  const std::string told =
+      "walls or clefts thinner than a cell of " + plain(options.cell_mm) + " mm were missed, " +
+      three_figures(100.0 * missed.area_share) + " % of the surface, the first at (" + plain(missed.at_mm.x) +
+      ", " + plain(missed.at_mm.y) + ", " + plain(missed.at_mm.z) + ") mm: choose smaller cells";
   if (missed.area_share > most_share) throw brep::Error(brep::ErrorCode::Geometry, told);
   findings.push_back(told);
 }
@@ -83,12 +83,12 @@ void voxels(const Offset& offset, const VoxelBench& bench, VoxelSide& made) {
   }();
   made.octree = bench.combined(moved);
   made.symbol = bench.within_universe(moved);
-  made.lineage = "distances to where the surface passes between voxels";
+  made.lineage = "distances to the points where the surface passes between voxels";
 }
 
-/// A level set, the cells with which it was made, and the half-width of its volume: the change of volume with
-/// cells of twice the size, which is three times the error at second order, plus the tolerance of flat parts
-/// times the area.
+/// A level set with its cells, and the half-width of its volume. That is the change of the volume with cells
+/// twice as large, which is three times the error at second order, plus the tolerance of flat parts times the
+/// area.
 struct LevelSet {
   brep::Solid moved;
   brep::OffsetOptions options;
@@ -112,7 +112,7 @@ LevelSet level_set(const brep::Solid& solid, const brep::OffsetOptions& options,
     try {
       found = {brep::offset(solid, finer), finer};
     } catch (const brep::TooLarge&) {
-      return found;  // the lattice can be no finer; the half-width states the remaining error
+      return found;  // the lattice cannot be finer; the half-width states the remaining error
     }
     coarse_mm3 = mm3;
   }
@@ -135,7 +135,7 @@ void triangles(const Offset& offset, const MeshBench& bench, MeshSide& made) {
                         {"sources", {"rounding"}}}},
                       {"volume_change_mm3", mm3 - brep::volume_mm3(solid)}};
       made.whole = *inset;
-      made.lineage = "half-spaces of the convex mesh's sides, moved";
+      made.lineage = "moved half-spaces of the convex mesh's sides";
       return;
     }
   }
@@ -160,8 +160,8 @@ void triangles(const Offset& offset, const MeshBench& bench, MeshSide& made) {
   made.lineage = "level set of the distance to the mesh";
 }
 
-/// The cell that the mesh was made with. If the user chose none, it may be finer than cell_for(), because the
-/// volume required it.
+/// The cell with which the mesh was made. Unless the user chose one, it may be finer than cell_for(), because
+/// the volume required this.
 double cell_of(const Offset& offset, const brep::Solid& operand, const MeshSide& made) {
   const auto cell = made.details.find("cell_mm");
   return cell != made.details.end() && cell->is_number()
@@ -189,15 +189,18 @@ void bound(const Offset& offset, const BoundBench& bench, Object& made) {
 }  // namespace
 
 Operation offset_operation() {
-  return Describe<Offset>("offset", "Moves an object's surface outward, or inward: margins and clearances.",
+  return Describe<Offset>("offset",
+                          "Moves an object's surface outward or inward, for margins and clearances.",
                           Makes::Object)
       .takes(field("object", &Offset::object, "The object.").required().positional("solid"))
-      .takes(
-          field("by_mm", &Offset::by_mm, "The distance outward; below 0 it goes inward. Not 0.").required())
+      .takes(field("by_mm", &Offset::by_mm,
+                   "The distance by which the surface moves outward, or inward if it is negative. It must "
+                   "not be 0.")
+                 .required())
       .takes(field("cell_mm", &Offset::cell_mm,
-                   "Cell size, about the edge of the smallest triangles. Default: half of the distance, or a "
-                   "100th of the object, whichever is larger, and halved up to three times until the volume "
-                   "is known to 1 %; a convex object moves inward exactly, without cells.")
+                   "Cell size, about the edge of the smallest triangles. Default: half of the distance or a "
+                   "100th of the object, whichever is larger, then halved up to three times until the volume "
+                   "is known to 1 %. A convex object moves inward exactly, without cells.")
                  .greater_than(0.0))
       .example(R"({"id": "margin", "do": "offset", "object": "tumour", "by_mm": 5})")
       .on_files(

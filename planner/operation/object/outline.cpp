@@ -51,18 +51,18 @@ void check(const Outline& outline, const FieldLocation& place) {
     place.at("view").refuse(error.what());
   }
   if (outline.from_mm && outline.to_mm && !(*outline.from_mm < *outline.to_mm))
-    place.at("to_mm").refuse("does not lie beyond 'from_mm': swap them");
+    place.at("to_mm").refuse("must be larger than 'from_mm': exchange the two");
   if (!outline.at_mm.empty() && (outline.from_mm || outline.to_mm))
-    place.at("at_mm").refuse("are the planes themselves: leave 'from_mm' and 'to_mm' out");
+    place.at("at_mm").refuse("already states all planes: leave 'from_mm' and 'to_mm' out");
   if (place.scope == nullptr) return;
   check_output_path(outline.out, {".json"}, place.at("path"));
 }
 
-/// The cuts of an object by planes across a view, and the range of positions in which the object may lie.
+/// Cuts an object by planes perpendicular to a view, within the range of positions in which the object lies.
 struct Cutter {
   std::function<PlaneContours(const ViewPlane& plane)> cut;
   double low_mm = std::numeric_limits<double>::infinity(), high_mm = -low_mm;
-  /// The number of contours so far that ended at the border of an open surface.
+  /// The number of contours in all planes so far that ended at the border of an open surface.
   std::shared_ptr<std::size_t> open = std::make_shared<std::size_t>(0);
 
   void add(double position_mm) {
@@ -91,7 +91,8 @@ brep::Triangles surface_of(const std::string& file, const FileBench& bench,
           "above)");
     return convert::isosurface(*grey, window->low, window->high_or_infinity());
   }
-  if (window) throw std::runtime_error(file + ": holds no samples to take a --window of: leave it out");
+  if (window)
+    throw std::runtime_error(file + ": contains no samples, so --window does not apply: leave it out");
   if (const auto* partial = std::get_if<voxel::PartialOctree>(&octree.tree))
     return convert::isosurface(*partial);
   const auto& binary = std::get<voxel::Octree>(octree.tree);
@@ -102,7 +103,8 @@ Cutter cutter_of(const Outline& outline, const FileBench& bench, const voxel::Vi
                  std::vector<std::string>& findings) {
   const std::string& file = outline.file.name;
   if (bench.step != nullptr || is_mesh(file)) {
-    if (outline.window) throw std::runtime_error(file + ": is a mesh: leave --window out");
+    if (outline.window)
+      throw std::runtime_error(file + ": is a mesh, to which --window does not apply: leave it out");
     return cutter_of(bench.step != nullptr ? brep::mesh_of(triangles_named(file, bench))
                                            : read_surface(file, bench.timings, &findings),
                      view);
@@ -127,8 +129,8 @@ Cutter cutter_of(const Outline& outline, const FileBench& bench, const voxel::Vi
   return cutter;
 }
 
-/// The planes' positions: those given, or multiples of the distance, so that stacks of several objects lie in common
-/// planes.
+/// The positions of the planes: the stated ones, or multiples of the distance, so that the planes of several
+/// objects coincide.
 std::vector<double> positions_of(const Outline& outline, const Cutter& cutter) {
   if (!outline.at_mm.empty()) {
     std::vector<double> positions = outline.at_mm;
@@ -142,13 +144,13 @@ std::vector<double> positions_of(const Outline& outline, const Cutter& cutter) {
   const double first = std::ceil(low_mm / outline.every_mm), last = std::floor(high_mm / outline.every_mm);
   if (last - first >= static_cast<double>(most_planes))
     throw std::runtime_error("every_mm: makes more than " + std::to_string(most_planes) +
-                             " planes: choose a larger distance, or 'from_mm' and 'to_mm'");
+                             " planes: choose a larger distance, or state 'from_mm' and 'to_mm'");
   std::vector<double> positions;
   for (double k = first; k <= last; ++k) positions.push_back(k * outline.every_mm);
   return positions;
 }
 
-/// The slices with contours, and an empty slice beyond either end, where the object ends.
+/// The slices with contours. At either end an empty slice marks where the object ends.
 voxel::SliceMask cut_in(const Outline& outline, const Cutter& cutter, const voxel::View& view) {
   voxel::SliceMask mask;
   mask.view = view;
@@ -161,7 +163,7 @@ voxel::SliceMask cut_in(const Outline& outline, const Cutter& cutter, const voxe
     throw std::runtime_error(outline.file.name + ": no plane meets the object, which reaches from " +
                              plain(std::round(100.0 * cutter.low_mm) / 100.0) + " to " +
                              plain(std::round(100.0 * cutter.high_mm) / 100.0) +
-                             " mm along the view: choose planes there, nearer together");
+                             " mm along the view: choose planes within this range, nearer together");
   const double end_mm =
       mask.slices.size() > 1 ? mask.slices[1].position_mm - mask.slices[0].position_mm : outline.every_mm;
   mask.slices.insert(mask.slices.begin(), {mask.slices.front().position_mm - end_mm, {}});
@@ -180,8 +182,9 @@ FileAnswer on_files(const Outline& outline, const FileBench& bench) {
     return cut_in(outline, cutter, view);
   }();
   if (*cutter.open > 0)
-    findings.push_back(outline.file.name + ": the surface is open, and " + std::to_string(*cutter.open) +
-                       " contours that end at its border are left out: close it by octotomy repair --solid");
+    findings.push_back(
+        outline.file.name + ": the surface is open, and " + std::to_string(*cutter.open) +
+        " contours that end at its border were left out: close the surface by octotomy repair --solid");
   Refinement thinning;
   thinning.thin_mm = outline.thin_mm;
   if (outline.thin_mm > 0.0) mask = refined(mask, thinning, findings);
@@ -225,25 +228,31 @@ Operation outline_operation() {
                    "The object; of the verb a mesh, an .octree file, or a scan with a window.")
                  .required()
                  .positional("file"))
-      .takes(field("view", &Outline::view, "The view across the planes: its name, or AZ,EL in degrees."))
-      .takes(field("at_mm", &Outline::at_mm, "The planes' places along the view's direction of sight, mm.")
-                 .comma_separated())
-      .takes(field("from_mm", &Outline::from_mm,
-                   "In place of at_mm: where planes begin. Default: where the object does."))
-      .takes(field("to_mm", &Outline::to_mm, "Where planes end. Default: where the object does."))
-      .takes(field("every_mm", &Outline::every_mm, "The distance of planes, which lie at multiples of it.")
+      .takes(field("view", &Outline::view,
+                   "The view perpendicular to the planes: its name, or AZ,EL in degrees."))
+      .takes(
+          field("at_mm", &Outline::at_mm, "Positions of the planes along the view's direction of sight, mm.")
+              .comma_separated())
+      .takes(field(
+          "from_mm", &Outline::from_mm,
+          "Instead of at_mm: the position at which planes begin. Default: the beginning of the object."))
+      .takes(field("to_mm", &Outline::to_mm,
+                   "The position at which planes end. Default: the end of the object."))
+      .takes(field("every_mm", &Outline::every_mm,
+                   "The distance between planes, which lie at multiples of this distance.")
                  .greater_than(0.0)
                  .to(1000.0)
                  .read_if<Outline>([](const Outline& outline) { return outline.at_mm.empty(); },
-                                   "applies only without named planes: leave 'at_mm' out"))
+                                   "applies only if 'at_mm' states no planes: leave 'at_mm' out"))
       .takes(field("thin_mm", &Outline::thin_mm, "Removes points within this distance of a straight piece.")
                  .from(0.0)
                  .to(1e6))
-      .takes(field("path", &Outline::out, "A .json of regions on slices, as masks and tile read it.")
+      .takes(field("path", &Outline::out,
+                   "A .json file of regions on slices, in the form that masks and tile read.")
                  .required()
                  .called("out"))
-      .verb_takes(
-          field("window", &Outline::window, "For samples: LOW:HIGH or LOW: in their unit, or a tissue."))
+      .verb_takes(field("window", &Outline::window,
+                        "For a scan or grey octree: LOW:HIGH or LOW: in sample units, or a tissue."))
       .reads_scans()
       .example(
           R"({"id": "lines", "do": "outline", "object": "skull", "view": "left", "every_mm": 5, "path": "skull.json"})")

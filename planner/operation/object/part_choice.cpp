@@ -37,12 +37,13 @@ voxel::Octree without(const voxel::Octree& a, const voxel::Octree& b) {
   return voxel::combine(a.universe(), voxel::Expression(a) - voxel::Expression(b));
 }
 
-/// The pieces of a set that share no voxel with another.
+/// The pieces of `set` that share no voxel with `other`.
 voxel::Octree pieces_apart(const voxel::Octree& set, const voxel::Octree& other) {
   return without(set, voxel::components_that_meet(set, common_of(set, other), voxel::Neighbours::Corners));
 }
 
-/// The least corner of a component. It identifies the component: selecting among components does not move it.
+/// The least corner of a component. It identifies the component, because selecting components does not move
+/// them.
 using Corner = std::array<double, 3>;
 Corner corner_of(const brep::Triangles& triangles, const brep::Component& component) {
   Corner least{std::numeric_limits<double>::infinity()};
@@ -54,7 +55,8 @@ Corner corner_of(const brep::Triangles& triangles, const brep::Component& compon
   return least;
 }
 
-/// Copies the component's own points, because a solid may have thousands of components.
+/// The voxels of one component. Only the component's points are copied, because a solid may have thousands of
+/// components.
 voxel::Octree digitised_part(const brep::Solid& solid, const brep::Component& component,
                              const voxel::Universe& universe) {
   const brep::Triangles& whole = solid.triangles();
@@ -74,8 +76,8 @@ voxel::Octree digitised_part(const brep::Solid& solid, const brep::Component& co
       universe, brep::trusted_solid(brep::mesh_of(part), brep::proof_of_part(solid.proof())).linked());
 }
 
-/// Components of a solid that contain a voxel of a set. Components smaller than a quarter of the set's
-/// smallest part, or larger than four times its largest part, are left out.
+/// The components of a solid that contain a voxel of a set. Components below a quarter of the set's smallest
+/// part or above four times its largest part are skipped.
 std::vector<std::size_t> components_in(const brep::Solid& solid, const voxel::Octree& set) {
   if (set.is_empty()) return {};
   const std::vector<std::uint64_t> counts = voxel::components(set).voxel_counts;
@@ -102,7 +104,7 @@ brep::Solid solid_of(const brep::Solid& whole, const std::vector<std::size_t>& c
                        : brep::trusted_solid(brep::part_of(whole, faces), brep::proof_of_part(whole.proof()));
 }
 
-/// Whether the voxels and the mesh are the same parts.
+/// Whether the voxels and the mesh pass as the same parts: their certificate does not fail.
 bool is_same(const voxel::Octree& voxels, const brep::Solid& mesh, const verify::Witness& parts,
              const Object& made) {
   verify::BoundInputs inputs;
@@ -119,14 +121,15 @@ std::string size_and_place(const voxel::Octree& parts) {
   return voxel::rounded(measures.volume_mm3) + " mm\u00b3 about " + voxel::rounded(*measures.centroid_mm);
 }
 
-/// Parts that only one of the kernels selected, as voxels and as components of the whole mesh.
+/// Parts that only one of the kernels selected. `wanted` and `unwanted` are such parts as components of the
+/// whole mesh.
 struct Differing {
-  voxel::Octree by_voxels, passed_over;  ///< selected by the voxels only, and by the mesh only
+  voxel::Octree by_voxels, passed_over;  ///< selected only by the voxels; and selected only by the mesh
   std::vector<std::size_t> wanted, unwanted;
 };
 
-/// Whether each kernel selected correctly by its own volumes: the parts that reach `least_mm3`. Components are
-/// sorted by volume.
+/// Whether each kernel was right by its own volumes in which parts reach `least_mm3`. Components are sorted
+/// by volume.
 bool is_by_measure(const Differing& parts, const std::vector<brep::Component>& all, double least_mm3) {
   const double voxel_mm3 = parts.by_voxels.universe().lattice().voxel_mm3();
   return parts.wanted.empty() == parts.by_voxels.is_empty() &&
@@ -139,7 +142,7 @@ bool is_by_measure(const Differing& parts, const std::vector<brep::Component>& a
                least_mm3));
 }
 
-/// Each connected piece of a set; the whole set as one piece where there are more than 32.
+/// Each connected piece of a set; if there are more than 32, the whole set as one piece.
 std::vector<voxel::Octree> pieces_of(voxel::Octree set) {
   constexpr std::size_t most = 32;
   if (set.is_empty()) return {};
@@ -152,7 +155,8 @@ std::vector<voxel::Octree> pieces_of(voxel::Octree set) {
   return pieces;
 }
 
-/// The places of parts, the largest first: "120 mm3 about (1, 2, 3)".
+/// The sizes and positions of the three largest parts, such as "120 mm3 about (1, 2, 3)", and the number of
+/// the others.
 std::string sizes_and_places(const voxel::Octree& parts) {
   constexpr std::size_t most_named = 3;
   const std::vector<voxel::Octree> pieces = pieces_of(parts);
@@ -163,7 +167,7 @@ std::string sizes_and_places(const voxel::Octree& parts) {
   return text;
 }
 
-/// Whether two parts, one of each set, differ by less than a tenth in volume.
+/// Whether each set is a single part and the two differ by less than a tenth in volume.
 bool are_nearly_equal(const voxel::Octree& a, const voxel::Octree& b) {
   constexpr double least_share = 0.9;
   if (a.is_empty() || b.is_empty()) return false;
@@ -176,15 +180,16 @@ std::string doubt_of_rank(const Differing& parts, std::size_t count) {
   if (are_nearly_equal(parts.by_voxels, parts.passed_over))
     return "Two parts have nearly the same size: " + size_and_place(parts.by_voxels) + " is kept, " +
            size_and_place(parts.passed_over) +
-           " is not, although it is larger in the mesh kernel. Choose the right one by 'parts' with 'at_mm'.";
+           " is not, although it is larger in the mesh kernel. Choose the right part by 'parts' with "
+           "'at_mm'.";
   std::string kept, left;
   if (!parts.by_voxels.is_empty()) kept = "both keep " + sizes_and_places(parts.by_voxels);
   if (!parts.passed_over.is_empty()) left = "both leave out " + sizes_and_places(parts.passed_over);
-  return "The kernels have different parts " +
+  return "The kernels select different parts " +
          (count == 1 ? std::string("as the largest") : "among the " + std::to_string(count) + " largest") +
-         ", because the sizes of parts are nearly equal or one kernel alone joins some by a neck: " + kept +
+         ", because some parts have nearly equal sizes or only one kernel joins them by a neck: " + kept +
          (kept.empty() || left.empty() ? "" : ", ") + left +
-         ", as the voxels rank them. Choose the right parts by 'parts' with 'at_mm'.";
+         ", following the voxels. Choose the right parts by 'parts' with 'at_mm'.";
 }
 
 std::string doubt_of_bound(const std::vector<Differing>& settled) {
@@ -195,10 +200,10 @@ std::string doubt_of_bound(const std::vector<Differing>& settled) {
   }
   return "The kernels find " + std::to_string(settled.size()) + (settled.size() == 1 ? " part" : " parts") +
          " on different sides of 'at_least_mm3': " + kept + (kept.empty() || left.empty() ? "" : ", ") +
-         left + ", as the voxels have it. Choose a volume that is not so close to a part's.";
+         left + ", following the voxels. Choose a volume that is farther from that of any part.";
 }
 
-/// Whether a test holds at all voxels of a set. It gets the voxel and its centre, LPS.
+/// Whether a test holds at all voxels of a set. Its arguments are the voxel and its centre, LPS.
 template <typename Test>
 bool at_all(const voxel::Octree& set, const Test& test) {
   if (set.is_empty()) return true;
@@ -220,7 +225,7 @@ bool at_all(const voxel::Octree& set, const Test& test) {
   return true;
 }
 
-/// The voxels whose centres lie in the box of a component.
+/// The range of voxels whose centres lie in the bounding box of a component.
 voxel::VoxelRange voxels_in_box(const brep::Solid& solid, const brep::Component& component,
                                 const voxel::Universe& universe) {
   const voxel::Lattice lattice = universe.lattice();
@@ -246,7 +251,7 @@ bool has_voxel_in(const voxel::Octree& set, const voxel::VoxelRange& set_range,
   return false;
 }
 
-/// Components of a solid that contain a voxel of a set, as voxels.
+/// The components of a solid that contain a voxel of a set: their numbers and their voxels.
 std::vector<std::pair<std::size_t, voxel::Octree>> components_of(const brep::Solid& solid,
                                                                  const voxel::Octree& set) {
   std::vector<std::pair<std::size_t, voxel::Octree>> found;
@@ -261,20 +266,21 @@ std::vector<std::pair<std::size_t, voxel::Octree>> components_of(const brep::Sol
   return found;
 }
 
-/// The largest parts that only one kernel selected. None where a kernel did not select the largest of its own
-/// parts, or where one object lacks a part of the other that the witness demands.
+/// The largest parts that only one kernel selected. None if a kernel did not select the largest of its own
+/// parts, or if one object lacks a part of the other that must be there according to the witness.
 std::optional<Differing> ranked(const WholeObject& whole, const brep::Solid& solid,
                                 const voxel::Octree& chosen, const voxel::Octree& by_voxels,
                                 const voxel::Octree& apart_in_mesh) {
   const voxel::Octree voxels = whole.voxels();
   const auto counts = [](const voxel::Octree& set) { return voxel::components(set).voxel_counts; };
-  // Without a witness either side is allowed here, because settle_choice() certifies the parts afterwards.
+  // Without a witness, both sides are allowed at every point here, because settle_choice() certifies the
+  // parts afterwards.
   const auto words = [&](const glm::dvec3& p_mm) {
     return whole.witness ? whole.witness.allowed_sides(p_mm)
                          : verify::Reading{verify::either_side, verify::either_side};
   };
-  // A component that passes between the voxels' centres may be several pieces of voxels. It stays if the
-  // voxels keep one of them.
+  // A thin component between voxels' centres may be several pieces of voxels. It stays if the voxels'
+  // selection contains one of them.
   std::vector<std::size_t> unwanted;
   voxel::Octree by_mesh = voxel::Octree::empty(by_voxels.universe());
   for (const auto& [i, digitised] : components_of(solid, apart_in_mesh)) {
@@ -291,7 +297,7 @@ std::optional<Differing> ranked(const WholeObject& whole, const brep::Solid& sol
   if (!is_whole || (!by_voxels.is_empty() && counts(by_voxels).back() < last) ||
       (!parts.passed_over.is_empty() && counts(parts.passed_over).front() > last))
     return std::nullopt;
-  // The certificate compares the parts that stay with the witness. The mesh's parts that are left out are
+  // The certificate compares the parts that stay with the witness. Parts of the mesh that are left out are
   // compared here.
   voxel::Octree of_mesh = voxel::Octree::empty(by_voxels.universe());
   for (auto& [i, digitised] : components_of(solid, by_voxels)) {
@@ -321,7 +327,8 @@ std::optional<Differing> ranked(const WholeObject& whole, const brep::Solid& sol
   return is_right ? std::optional(std::move(parts)) : std::nullopt;
 }
 
-/// The parts on different sides of a least volume, one group each. `chosen` are the parts that the voxels keep.
+/// The parts whose volumes lie on different sides of a least volume in the two kernels, one group each.
+/// `chosen` are the parts that the voxels keep.
 std::vector<Differing> differing(const WholeObject& whole, const brep::Solid& solid,
                                  const voxel::Octree& chosen, const voxel::Octree& by_voxels,
                                  const voxel::Octree& by_mesh, double least_mm3) {
@@ -333,8 +340,7 @@ std::vector<Differing> differing(const WholeObject& whole, const brep::Solid& so
     std::vector<std::size_t> wanted = components_in(solid, piece);
     all.push_back({std::move(piece), none, std::move(wanted), {}});
   }
-  // A thin part of the mesh may be several parts of voxels, each of which is too small. Components are sorted
-  // by volume.
+  // A thin part of the mesh may be several parts of voxels, each too small. Components are sorted by volume.
   const double most_mm3 =
       4.0 * by_mesh.universe().lattice().voxel_mm3() * static_cast<double>(by_mesh.voxel_count());
   const std::vector<brep::Component>& components = solid.components();
@@ -342,8 +348,7 @@ std::vector<Differing> differing(const WholeObject& whole, const brep::Solid& so
     if (components[i].volume_mm3 > most_mm3) continue;
     const voxel::Octree digitised = digitised_part(solid, components[i], by_mesh.universe());
     const voxel::Octree own = common_of(digitised, by_mesh);
-    // If the voxels keep a piece of a part, the part is held together by a thin neck and is not listed
-    // here.
+    // If the voxels keep a piece of a part, a thin neck holds the part together, so it is not listed here.
     if (!own.is_empty() && common_of(digitised, chosen).is_empty()) all.push_back({none, over(own), {}, {i}});
   }
   return all;
@@ -392,7 +397,7 @@ void settle_choice(const WholeObject& whole, const voxel::Universe& universe,
                           least_mm3 ? doubt_of_bound(settled) : doubt_of_rank(settled.front(), whole.count),
                           false});
   made.findings.push_back(made.caveats.back().reason);
-  made.shared_values.push_back(made.kind + ": the choice of parts at its limit, by the voxels");
+  made.shared_values.push_back(made.kind + ": the choice of parts at its limit, made by the voxels");
 }
 
 }  // namespace octotomy::planner

@@ -46,7 +46,7 @@ void check(const BridgeDecisions& bridges, const FieldLocation& place) {
   for (const glm::dvec3& p_mm : bridges.cut_mm)
     if (std::find(bridges.keep_mm.begin(), bridges.keep_mm.end(), p_mm) != bridges.keep_mm.end())
       place.refuse("'keep_bridges_mm' and 'cut_bridges_mm' both have (" + plain(p_mm.x) + ", " +
-                   plain(p_mm.y) + ", " + plain(p_mm.z) + "): a bridge is kept or cut");
+                   plain(p_mm.y) + ", " + plain(p_mm.z) + "): delete it from one of the two");
 }
 
 voxel::Expression cut_bridges(voxel::Expression symbol, const BridgeDecisions& bridges) {
@@ -189,7 +189,7 @@ std::string definition(const Parts& parts, const Objects&) {
 
 [[noreturn]] void refuse_point(const Parts& parts, const glm::dvec3& p_mm) {
   throw std::runtime_error("no part of '" + parts.object.name + "' holds (" + plain(p_mm.x) + ", " +
-                           plain(p_mm.y) + ", " + plain(p_mm.z) + ") mm: give a point within it");
+                           plain(p_mm.y) + ", " + plain(p_mm.z) + ") mm: choose a point within a part");
 }
 
 voxel::Octree parts_at(const Parts& parts, const voxel::Octree& octree, const Objects& objects) {
@@ -216,7 +216,7 @@ void voxels(const Parts& parts, const VoxelBench& bench, VoxelSide& made) {
     made.lineage = "voxels that touch by faces";
   };
   if (!parts.at_mm.empty()) return choose(parts_at(parts, whole, bench.objects));
-  if (whole.is_empty()) throw std::runtime_error("'" + parts.object.name + "' is empty: it has no parts");
+  if (whole.is_empty()) throw std::runtime_error("'" + parts.object.name + "' is empty, so it has no parts");
   if (parts.largest) return choose(largest_parts(whole, static_cast<std::size_t>(*parts.largest)));
   const double voxel_mm3 = bench.universe.lattice().voxel_mm3();
   const voxel::Octree chosen = voxel::components_of_at_least(
@@ -262,7 +262,7 @@ void triangles(const Parts& parts, const MeshBench& bench, MeshSide& made) {
   made.details = {{"parts", kept.kept}, {"of", kept.of}};
   made.whole = brep::trusted_solid(kept.mesh, brep::proof_of_part(solid.proof()));
   made.lineage = "triangles that share vertices";
-  // What was cut belongs neither to the object nor to the parts that are left out.
+  // Necks that were cut belong neither to the object nor to the omitted parts.
   if (!bridges.cut_mm.empty()) return;
   std::vector<std::uint32_t> others;
   for (std::uint32_t face = 0, next = 0; face < solid.triangles().faces.size(); ++face)
@@ -319,7 +319,7 @@ KeptParts kept_parts(const brep::Mesh& mesh, std::optional<int> largest, std::op
 
 voxel::Expression symbol_of_parts(const voxel::Expression& symbol, const voxel::Octree& object,
                                   const voxel::Octree& parts) {
-  // The parts, widened by one voxel, without the voxels of other parts.
+  // The parts widened by one voxel, without the voxels of other parts.
   const double reach_mm = glm::length(parts.universe().lattice().spacing_mm());
   return symbol & (voxel::Expression(voxel::dilate(parts, reach_mm)) -
                    (voxel::Expression(object) - voxel::Expression(parts)));
@@ -336,26 +336,27 @@ voxel::Expression symbol_of_filled(const voxel::Expression& symbol, const voxel:
 }
 
 Operation parts_operation() {
-  return Describe<Parts>("parts",
-                         "Keeps the connected parts of an object that are large enough or hold a point.",
-                         Makes::Object)
+  return Describe<Parts>(
+             "parts",
+             "Keeps the connected parts of an object that are large enough or contain a stated point.",
+             Makes::Object)
       .takes(field("object", &Parts::object, "The object.").required().positional("solid"))
-      .takes(field("largest", &Parts::largest, "Number of the largest parts to keep.").from(1).to(1000000))
-      .takes(field("at_least_mm3", &Parts::at_least_mm3, "Keep the parts of at least this volume.")
+      .takes(field("largest", &Parts::largest, "Keeps this number of the largest parts.").from(1).to(1000000))
+      .takes(field("at_least_mm3", &Parts::at_least_mm3, "Keeps the parts of at least this volume.")
                  .greater_than(0.0))
-      .takes(field("at_mm", &Parts::at_mm, "Keep the parts that hold these points, LPS, or landmarks.")
+      .takes(field("at_mm", &Parts::at_mm, "Keeps the parts that contain these points, LPS, or landmarks.")
                  .from(1)
                  .in_plans_only())
       .takes(field("keep_bridges_mm", &Parts::keep_bridges_mm,
-                   "Keep the parts beyond thin necks at these points, LPS, as certificates list them.")
+                   "Keeps the parts beyond thin necks at these points, LPS, which certificates list.")
                  .in_plans_only())
       .takes(field("cut_bridges_mm", &Parts::cut_bridges_mm,
-                   "Cut thin necks at these points, LPS: removes everything in a cube about each.")
+                   "Cuts thin necks at these points, LPS: removes everything in a cube around each point.")
                  .in_plans_only())
-      .takes(
-          field("bridge_mm", &Parts::bridge_mm, "Edge of the cube about each kept or cut neck's point, mm.")
-              .greater_than(0.0)
-              .in_plans_only())
+      .takes(field("bridge_mm", &Parts::bridge_mm,
+                   "Edge of the cube around the point of a kept or cut neck, mm.")
+                 .greater_than(0.0)
+                 .in_plans_only())
       .example(R"({"id": "bone", "do": "parts", "object": "skull", "largest": 1})")
       .on_files("octotomy parts skull.stl --largest 1 -o bone.stl")
       .check(check)

@@ -16,68 +16,70 @@
 #include "voxel/space/lattice.h"
 #include "voxel/tree/octree.h"
 
-// Selects connected parts in each kernel, for every operation that does so.
+// Selects connected parts in each kernel. Every operation that selects parts uses these functions.
 namespace octotomy::planner {
 
-/// Decisions on thin necks between parts. Each neck is a point, LPS: the centre of a cube along the axes.
+/// Decisions on thin necks between parts. A neck is stated by a point, LPS: the centre of a cube along the
+/// axes.
 struct BridgeDecisions {
-  std::vector<glm::dvec3> keep_mm;  ///< the parts that reach into the cube stay, also small ones
-  std::vector<glm::dvec3> cut_mm;   ///< the object loses its part within the cube
+  std::vector<glm::dvec3> keep_mm;  ///< parts that reach into the cube stay, even small ones
+  std::vector<glm::dvec3> cut_mm;   ///< the object's part within the cube is removed
   double edge_mm = 5.0;             ///< of the cubes
-  /// Points of further parts that stay: parts that only one of the kernels connects, by a neck too thin to
-  /// measure.
+  /// Points of further parts that stay: parts that only one of the kernels connects, by a neck that is too
+  /// thin to be measured.
   std::vector<glm::dvec3> agreed_mm = {};
 
   bool any() const { return !keep_mm.empty() || !cut_mm.empty(); }
   bool keeps() const { return !keep_mm.empty() || !agreed_mm.empty(); }
-  /// The points of all kept and cut necks.
+  /// The points of all necks that are kept or cut.
   std::vector<glm::dvec3> decided_mm() const;
 };
 
-/// Refuses a point that is listed both as kept and as cut.
+/// Refuses a point that is both in `keep_mm` and in `cut_mm`.
 void check(const BridgeDecisions& bridges, const FieldLocation& place);
 
-/// The object without the cubes of the cut necks: as voxels, as an expression, as a solid and as a witness.
+/// The object without the cubes of cut necks, as voxels, expression, solid or witness.
 voxel::Octree cut_bridges(const voxel::Octree& whole, const BridgeDecisions& bridges);
 voxel::Expression cut_bridges(voxel::Expression symbol, const BridgeDecisions& bridges);
-/// Adds to `shift_mm` how far operands were moved. Throws as brep::boolean().
+/// Adds the distance by which operands were moved to `shift_mm`. Throws as brep::boolean().
 brep::Solid cut_bridges(brep::Solid whole, const BridgeDecisions& bridges, const std::stop_token& stop,
                         double& shift_mm);
 verify::Witness cut_bridges(verify::Witness whole, const BridgeDecisions& bridges);
 
-/// The chosen parts, together with the parts that the decisions keep.
+/// The chosen parts and the parts of `whole` that the decisions keep.
 voxel::Octree with_kept_parts(const voxel::Octree& chosen, const voxel::Octree& whole,
                               const BridgeDecisions& bridges, voxel::Neighbours neighbours);
-/// Whether the decisions keep a part, which is given by its triangles' indices. `triangles` is not read where
-/// no decision keeps a part.
+/// Whether the decisions keep a part, which is stated by the indices of its triangles. `triangles` is read
+/// only if the decisions keep any part.
 bool stays(const brep::Triangles& triangles, const std::vector<std::uint32_t>& faces,
            const BridgeDecisions& bridges);
 
-/// The `count` largest parts of voxels. Of parts of the same size as the last selected one, those with the
-/// lowest first voxel are selected, x fastest; where more than 64 such parts are needed, all of them stay.
-/// Precondition: the object is not empty, `count` is positive.
+/// The `count` largest parts of voxels. If several parts have the size of the last one, those with the lowest
+/// first voxel, x fastest, are selected; if more than 64 of these would be needed, all of them. Precondition:
+/// the object is not empty, and `count` is positive.
 voxel::Octree largest_parts(const voxel::Octree& whole, std::size_t count,
                             voxel::Neighbours neighbours = voxel::Neighbours::Faces);
 
-/// The parts that stay, as a mesh.
+/// The parts that stay, as a mesh, with their triangles in the whole mesh, their number, and the number of
+/// all parts.
 struct KeptParts {
   brep::Mesh mesh;
   std::vector<std::uint32_t> faces;  ///< of the whole, ascending
   std::size_t kept = 0, of = 0;
 };
 
-/// The parts of a closed mesh that are among the `largest` largest and have at least a volume, each with its
-/// cavities; and the parts that the decisions keep.
+/// The parts of a closed mesh that are among the `largest` largest and have at least the volume, each with
+/// its cavities; and also the parts that the decisions keep.
 KeptParts kept_parts(const brep::Mesh& mesh, std::optional<int> largest, std::optional<double> at_least_mm3,
                      const BridgeDecisions& bridges = {});
 
-/// The expression of the parts that were selected from an object's voxels. The samples around the parts
-/// remain in it: they place the surface within a voxel, and a motion samples that surface.
+/// The expression of selected parts of an object. It keeps the samples around the parts, because these place
+/// the surface within a voxel, and a motion interpolates them.
 voxel::Expression symbol_of_parts(const voxel::Expression& symbol, const voxel::Octree& object,
                                   const voxel::Octree& parts);
 
-/// The expression of an object whose cavities were filled. The filling extends into the voxels around it, so
-/// that a motion leaves no gap between the filling and the surface of the samples.
+/// The expression of an object with filled cavities. The filling extends into the voxels around it, so that a
+/// motion leaves no gap between the filling and the surface from the samples.
 voxel::Expression symbol_of_filled(const voxel::Expression& symbol, const voxel::Octree& object,
                                    const voxel::Octree& filled);
 

@@ -15,14 +15,14 @@
 namespace octotomy::planner {
 namespace {
 
-/// The distance that rounding may put between a plane and a vertex on it, after motions of coordinates as large
-/// as `reach_mm`: a few roundings of a dot product of three terms.
+/// The distance that rounding may put between a plane and a vertex on it, after motions of coordinates up to
+/// `reach_mm`: a few roundings of a dot product with three terms.
 double on_plane_mm(double reach_mm) {
   return 64.0 * std::numeric_limits<double>::epsilon() * reach_mm;
 }
 
-/// Planes under a motion. A map that scales or shears carries normals by its inverse transpose, and puts parallel
-/// planes farther apart by a factor, by which the error of a cut between them grows.
+/// The planes after a map. A map that scales or shears transforms normals by its inverse transpose. It may
+/// also increase the distance of parallel planes by a factor, by which the error of a cut between them grows.
 std::vector<CutPlane> moved_planes(std::vector<CutPlane> planes, const glm::dmat4& moved_from_still) {
   const bool is_deforming = !keeps_lengths(moved_from_still);
   const glm::dmat3 of_normals = is_deforming ? glm::inverse(glm::transpose(glm::dmat3(moved_from_still)))
@@ -40,7 +40,7 @@ std::vector<CutPlane> moved_planes(std::vector<CutPlane> planes, const glm::dmat
   return planes;
 }
 
-/// Whether a mesh lies within a box, up to the rounding of its points.
+/// Whether a mesh lies within a box, except for the rounding of its points.
 bool is_within(const brep::Solid& mesh, const voxel::Box& box) {
   if (mesh.empty()) return true;
   const brep::Size& size = mesh.size();
@@ -49,8 +49,8 @@ bool is_within(const brep::Solid& mesh, const voxel::Box& box) {
          glm::all(glm::lessThanEqual(size.high_mm, box.high_mm + rounding_mm));
 }
 
-/// The object that `made` is an image of, and the motion. A later motion of the image starts from the whole
-/// still object, including the part that the image has outside of the universe.
+/// The object of which `made` is an image, and the motion. A later motion of the image starts from the still
+/// object, because that also contains what the image has outside of the universe.
 Object::Image image_of(const Object& still, const glm::dmat4& moved_from_still, const BoundBench& bench,
                        const Object& made) {
   const Object& first = still_of(bench.objects, still);
@@ -103,7 +103,7 @@ bool on_samples(const voxel::Lattice& scan, const voxel::Lattice& universe) {
     glm::dvec3 step(0.0);
     step[axis] = 1.0;
     const glm::dvec3 next = scan.voxel(universe.lps_mm(step)) - first;
-    // A dot product of three terms, in voxels of the largest universe.
+    // The rounding of a dot product with three terms, in voxels of the largest universe.
     constexpr double rounding = 4096.0 * 64.0 * std::numeric_limits<double>::epsilon();
     if (glm::distance(next, step) > rounding / 4096.0) return false;
     if (std::abs(first[axis] - std::round(first[axis])) > rounding) return false;
@@ -148,7 +148,7 @@ void inherit(const Object& operand, Object& made) {
 
 namespace {
 
-/// Whether an expression has whole voxels as a leaf.
+/// Whether an expression contains an object of whole voxels.
 bool has_whole_voxels(const voxel::Expression& symbol) {
   std::vector<const voxel::Expression::Term*> left{&symbol.term()};
   while (!left.empty()) {
@@ -161,11 +161,12 @@ bool has_whole_voxels(const voxel::Expression& symbol) {
   return false;
 }
 
-/// The witness of a moved object. A smoothed or decimated surface has voxels only as it was digitised. A motion
-/// reads the nearest one of these, whose centre is up to half a voxel's diagonal away.
+/// The witness of a moved object. If the object only has voxels that were digitised, as a smoothed or
+/// decimated surface has, a motion reads the nearest of these, whose centre may be half a voxel's diagonal
+/// away.
 verify::Witness witness_of_moved(const Object& still, const glm::dmat4& moved_from_still) {
   verify::Witness moved = verify::carried(still.witness, moved_from_still);
-  // A chain of motions reads the first object's voxels once.
+  // A chain of motions reads the voxels of the first object only once.
   const bool is_digitised = !still.bound.reshaped.empty() && !still.moved && still.voxel.symbol &&
                             has_whole_voxels(*still.voxel.symbol);
   if (!is_digitised) return moved;
@@ -186,7 +187,7 @@ void carry(const std::string& object, const glm::dmat4& moved_from_still, const 
   for (CutWall& wall : made.walls) wall.moved_from_still = moved_from_still * wall.moved_from_still;
   made.shown = still.shown;
   if (made.shown) made.shown->moved_from_still = moved_from_still * made.shown->moved_from_still;
-  // The axes of the scan may be turned already: a stretch in any direction widens all spacings.
+  // The scan's axes may already be rotated, so a stretch in any direction widens all spacings.
   const double stretch = stretch_of(moved_from_still);
   made.bound.spacing_mm = stretch * still.bound.spacing_mm;
   made.bound.planes = still.bound.planes;
@@ -208,8 +209,9 @@ double outside_mm3(const voxel::Octree& still, const glm::dmat4& image_from_stil
   const voxel::Universe universe = still.universe();
   const voxel::Box box = voxel::bounds(universe.lattice());
   const glm::dmat3 turn = glm::transpose(glm::dmat3(image_from_still));
-  // The universe's sides in the frame of the still object. A half-space needs unit vectors to full precision;
-  // a typed matrix has them to a few decimals, and one that scales or shears has none.
+  // The sides of the universe in the frame of the still object. The normals are normalised, because
+  // half-spaces need exact unit vectors. A typed matrix has only a few decimals, and a map that scales or
+  // shears does not preserve lengths.
   voxel::Expression outside = voxel::Octree::empty(universe);
   for (int axis = 0; axis < 3; ++axis) {
     const double length = glm::length(turn[axis]), shift_mm = image_from_still[3][axis];
@@ -250,7 +252,7 @@ std::optional<std::string> border_finding_of(const Object& object) {
   double cut_mm2 = 0.0;
   for (int axis = 0; axis < 3; ++axis)
     for (const bool is_low : {true, false}) {
-      // A layer as thick as a voxel contains the centres of one layer of voxels.
+      // A layer that is as thick as a voxel contains the centres of one layer of voxels.
       voxel::Box layer = scan;
       (is_low ? layer.high_mm : layer.low_mm)[axis] =
           is_low ? scan.low_mm[axis] + voxel_mm[axis] : scan.high_mm[axis] - voxel_mm[axis];
@@ -268,7 +270,7 @@ glm::dvec3 area_on_planes(const brep::Triangles& triangles, const std::vector<Cu
     const glm::dvec3 &a = triangles.points_mm[face[1]], &b = triangles.points_mm[face[2]],
                      &c = triangles.points_mm[face[0]];
     const auto sum = [](const glm::dvec3& p) { return std::abs(p.x) + std::abs(p.y) + std::abs(p.z); };
-    // An upper bound of the sum of the lengths that needs no square root. It decides nearly all triangles.
+    // An upper bound of the sum of lengths that needs no square root. It decides almost all triangles.
     const double surely_off_mm = on_plane_mm(sum(a) + sum(b) + sum(c));
     for (const CutPlane& plane : planes) {
       const auto is_off = [&](const glm::dvec3& p) {

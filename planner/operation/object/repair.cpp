@@ -33,15 +33,15 @@ void check(const Repair& repair, const FieldLocation& place) {
   if (!repair.weld_mm && !repair.duplicates && !repair.orient && !repair.flat && !repair.holes &&
       !repair.intersections && !repair.solid)
     place.refuse(
-        "does only the requested repairs: add 'solid' for all, or 'weld_mm', 'duplicates', 'flat', 'orient', "
-        "'holes' or 'intersections'; octotomy info lists a mesh's defects");
+        "makes only repairs that are requested: add 'solid' for all, or 'weld_mm', 'duplicates', 'flat', "
+        "'orient', 'holes' or 'intersections'; octotomy info lists a mesh's defects");
   if (repair.wall_mm && repair.hull)
-    place.at("hull").refuse("fills the inside that a wall leaves hollow: give either 'hull' or 'wall_mm'");
+    place.at("hull").refuse("fills the inside, but 'wall_mm' leaves it hollow: state only one of them");
   if ((repair.hull || repair.cell_mm || repair.wall_mm) && !repair.solid)
     place.at(repair.hull      ? "hull"
              : repair.cell_mm ? "cell_mm"
                               : "wall_mm")
-        .refuse("applies only to a surface that is rebuilt: add 'solid'");
+        .refuse("applies only to a surface that is built anew: add 'solid'");
 }
 
 Json changes_json(const std::vector<brep::Change>& changes) {
@@ -51,7 +51,7 @@ Json changes_json(const std::vector<brep::Change>& changes) {
   return list;
 }
 
-/// The surface before and after.
+/// The surface before and after the repair.
 struct Mended {
   brep::Triangles read;
   brep::Repair repaired;
@@ -83,7 +83,7 @@ Mended mended(const Repair& repair, const std::filesystem::path& path, const vox
   return made;
 }
 
-/// The repairs and the resulting mesh as JSON.
+/// The repairs and the repaired mesh, as JSON.
 Json told(const Mended& made, const brep::RepairEffect& effect, const brep::KnownSolids& solids) {
   const auto estimator = [](bool is_solid) {
     return is_solid ? "divergence theorem over the mesh"
@@ -104,7 +104,8 @@ Json told(const Mended& made, const brep::RepairEffect& effect, const brep::Know
           {"largest_distance_at_mm", to_json(effect.largest_at_mm)}};
 }
 
-/// Reports sheets that were taken out as shells without content, if they were more than a little of the surface.
+/// Adds a finding on sheets that were removed because, as shells, they enclose nothing; none if they were
+/// only a small share of the surface.
 void add_lost_sheets(const Mended& made, const brep::RepairEffect& effect,
                      std::vector<std::string>& findings) {
   constexpr double little = 0.05;
@@ -112,9 +113,9 @@ void add_lost_sheets(const Mended& made, const brep::RepairEffect& effect,
                                    [](const brep::Change& change) { return change.step == "films"; });
   const double lost_share = 1.0 - effect.area_after_mm2 / std::max(effect.area_before_mm2, 1e-300);
   if (films == 0 || lost_share < little) return;
-  findings.push_back("WARN films: shells that enclose nothing were taken out, " + std::to_string(films) +
+  findings.push_back("WARN films: shells that enclose nothing were removed, " + std::to_string(films) +
                      " triangles; the surface lost " + three_figures(100.0 * lost_share) +
-                     " % of its area; octotomy repair --solid --wall MM keeps sheets as walls");
+                     " % of the area: to keep sheets as walls, use octotomy repair --solid --wall MM");
 }
 
 std::string definition(const Repair& repair, const Objects&) {
@@ -138,7 +139,7 @@ void triangles(const Repair& repair, const MeshBench& bench, MeshSide& made) {
 
 void bound(const Repair&, const BoundBench&, Object&) {}
 
-/// The triangles whose points are finite. brep::health() accepts no others.
+/// The triangles with finite points, because brep::health() accepts no others.
 brep::Triangles without_wild_points(brep::Triangles triangles) {
   std::erase_if(triangles.faces, [&](const auto& face) {
     return std::any_of(face.begin(), face.end(), [&](std::uint32_t v) {
@@ -149,7 +150,7 @@ brep::Triangles without_wild_points(brep::Triangles triangles) {
   return triangles;
 }
 
-/// glTF files are written for viewers; the product does not read them.
+/// The program does not read glTF files, which are written for viewers.
 bool readable(const std::filesystem::path& path) {
   return path.extension() != ".glb";
 }
@@ -161,7 +162,7 @@ FileAnswer on_files(const Repair& repair, const FileBench& bench) {
   const brep::Triangles& read = made.read;
   const brep::Repair& repaired = made.repaired;
   if (repaired.surface.faces.empty())
-    throw std::runtime_error(repair.path.string() + ": no triangle is left of it, so nothing is written");
+    throw std::runtime_error(repair.path.string() + ": no triangle remains, so nothing is written");
   const auto timed = [&](const char* stage, const auto& run) {
     const Stopwatch watch(bench.timings, stage);
     return run();
@@ -171,8 +172,8 @@ FileAnswer on_files(const Repair& repair, const FileBench& bench) {
   brep::Health after;
   outputs.write(repair.out, [&](const std::filesystem::path& file) {
     write_surface(brep::mesh_of(repaired.surface), file, bench.timings);
-    // The health of the written file: formats round points, and some do not store which triangles share a
-    // point.
+    // The health of the written file, which may differ, because formats round points and some do not store
+    // which triangles share a point.
     after = timed("health", [&] {
       return readable(file) ? brep::health(brep::read_triangles(file)) : brep::health(repaired.surface);
     });
@@ -186,8 +187,9 @@ FileAnswer on_files(const Repair& repair, const FileBench& bench) {
   for (const brep::Change& left : repaired.left) answer.findings.push_back(left.step + ": " + left.what);
   add_lost_sheets(made, effect, answer.findings);
   if (!after.solid() && solids.after)
-    answer.findings.push_back("the surface is a solid, but rounded for " + repair.out.extension().string() +
-                              " it is none: write .ply, .off or .vtp");
+    answer.findings.push_back("the surface is a solid, but after rounding for " +
+                              repair.out.extension().string() +
+                              " it is not: write .ply, .off or .vtp instead");
   answer.json = {{"path", repair.out.string()}};
   answer.json.update(told(made, effect, solids));
   answer.json["before"] = to_json(before);
@@ -223,45 +225,49 @@ Operation repair_operation() {
                  .positional("mesh")
                  .a_file())
       .takes(field("frame", &Repair::frame,
-                   "Directions of x, y and z in the file, in place of the file's statement: LPS, RAS, or "
-                   "three other letters. "
-                   "Default: the file's statement, else LPS."))
+                   "Directions of x, y and z in the file: LPS, RAS, or three other letters. It overrides the "
+                   "file's statement. Default: the file's statement, or LPS if there is none."))
       .takes(field("unit", &Repair::unit,
-                   "The unit of the file's lengths, in place of the file's statement. Default: the file's "
-                   "statement, else mm.")
+                   "The unit of the file's lengths. It overrides the file's statement. Default: the file's "
+                   "statement, or mm if there is none.")
                  .one_of({"um", "mm", "cm", "m", "inch", "foot"}))
-      .takes(field("weld_mm", &Repair::weld_mm,
-                   "Points no further apart than this become one; 0 joins equal points.")
-                 .from(0.0)
-                 .to(1e6))
+      .takes(
+          field("weld_mm", &Repair::weld_mm, "Joins points up to this distance apart; 0 joins equal points.")
+              .from(0.0)
+              .to(1e6))
       .takes(field("duplicates", &Repair::duplicates,
                    "Keeps the first of several triangles with the same points."))
-      .takes(field("orient", &Repair::orient,
-                   "Turns triangles so that neighbours agree, shells face outward and cavities inward."))
+      .takes(
+          field("orient", &Repair::orient,
+                "Turns triangles so that neighbours agree, outer shells face outward and cavities inward."))
       .takes(field("flat", &Repair::flat, "Removes triangles without area."))
       .takes(field("holes", &Repair::holes, "Closes holes."))
-      .takes(field("longest_hole_mm", &Repair::longest_hole_mm, "Leaves holes open whose border is longer.")
+      .takes(field("longest_hole_mm", &Repair::longest_hole_mm,
+                   "Leaves holes open if their border is longer than this.")
                  .greater_than(0.0))
       .takes(field("intersections", &Repair::intersections,
-                   "Removes triangles that intersect and closes the gaps, which moves the surface there."))
+                   "Removes triangles that intersect, and closes the gaps. This moves the surface there."))
       .takes(field("solid", &Repair::solid,
-                   "Makes a closed solid of any surface: all of the above; if the result is no solid, a new "
-                   "surface around the region that the triangles wind around."))
+                   "Makes a closed solid of any surface by all repairs above. If the result is not a solid, "
+                   "builds a new surface around the region that the triangles wind around."))
       .takes(field("cell_mm", &Repair::cell_mm,
-                   "For a surface made anew: the cells' edge. Default: the triangles' mean side.")
+                   "For a surface that is built anew: the edge of its cells. Default: the mean side of the "
+                   "triangles.")
                  .greater_than(0.0))
-      .takes(field("hull", &Repair::hull,
-                   "For a surface made anew: keeps only the outermost shells, so that cavities are filled."))
+      .takes(field(
+          "hull", &Repair::hull,
+          "For a surface that is built anew: keeps only the outermost shells, so that cavities are filled."))
       .takes(field("wall_mm", &Repair::wall_mm,
-                   "Makes a wall of this thickness of the surface as given, with its holes: for sheets, "
+                   "Makes a wall of this thickness of the unchanged surface, with its holes; for sheets, "
                    "which enclose nothing.")
                  .greater_than(0.0))
-      .takes(
-          field("max_volume_share", &Repair::max_volume_share,
-                "The share of the volume that may be gained or lost where triangles intersect; beyond it the "
-                "repair is refused.")
-              .greater_than(0.0))
-      .verb_takes(field("out", &Repair::out, "A .stl, .ply, .obj, .off, .vtp or .glb file.").required())
+      .takes(field("max_volume_share", &Repair::max_volume_share,
+                   "The largest share of the volume that may be gained or lost where triangles intersect. If "
+                   "more would change, the repair is refused.")
+                 .greater_than(0.0))
+      .verb_takes(
+          field("out", &Repair::out, "The file of the repaired mesh: .stl, .ply, .obj, .off, .vtp or .glb.")
+              .required())
       .example(R"({"id": "plate", "do": "repair", "path": "plate.stl", "weld_mm": 0.001, "holes": true})")
       .on_files(
           "octotomy repair scan.stl --solid -o solid.ply\n"

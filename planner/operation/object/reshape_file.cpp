@@ -19,26 +19,27 @@
 namespace octotomy::planner {
 namespace {
 
-/// A surface as read, and whether it has no inside.
+/// A surface that was read, and whether it is open and thus has no inside.
 struct Read {
   brep::Mesh mesh;
   bool is_open = false;
 };
 
-/// The surface of a file that holds no solid, if its only fault is that it is open.
+/// The surface in a file that contains no solid. Throws unless its only fault is that it is open.
 Read read_open(const std::filesystem::path& path, Timings& timings, std::vector<std::string>& findings) {
   brep::Mesh mesh = read_surface(path, timings, &findings);
   const brep::Health health = brep::health(mesh);
   if (health.closed || health.self_intersections > 0 || health.degenerate_faces > 0)
     return {brep::Mesh(), false};
   findings.push_back(path.filename().string() + " is open (" + health.findings.front() +
-                     "): its borders stay where they are, and it has no volume");
+                     "): its borders do not move, and it has no volume");
   return {std::move(mesh), true};
 }
 
 Read read(const ReshapeFile& asked, const FileBench& bench, std::vector<std::string>& findings) {
   if (is_octree(asked.mesh))
-    throw std::runtime_error(asked.mesh.string() + ": is an octree: make its mesh first by octotomy mesh");
+    throw std::runtime_error(asked.mesh.string() +
+                             ": is an octree: make a mesh of it first by octotomy mesh");
   if (asked.mend) {
     const voxel::Progress progress = bench.progress("repair");
     return {read_mended_solid(asked.mesh, bench.timings, findings, {progress.stop, progress.report}).mesh(),
@@ -82,12 +83,13 @@ FileAnswer reshaped_file(const ReshapeFile& asked, const FileBench& bench, const
   if (!to_octree) need_mesh_extension(asked.out);
   need_folder_of(asked.out);
   if (!to_octree && asked.voxel_mm)
-    throw std::runtime_error("--voxel applies only to an .octree: a mesh has none: leave it out");
+    throw std::runtime_error(
+        "--voxel applies only to an .octree output, because a mesh has no voxels: leave it out");
   std::vector<std::string> findings;
   const Read given = read(asked, bench, findings);
   if (to_octree && given.is_open)
     throw std::runtime_error(asked.mesh.string() +
-                             ": is open, so that no voxel is inside: write a mesh, or take --mend");
+                             ": is open, so no voxel is inside: write a mesh, or add --mend");
   Json details = Json::object();
   brep::Mesh made;
   {

@@ -27,9 +27,9 @@ voxel::SawLine line_of(const Saw& saw) {
 
 void check(const Saw& saw, const FieldLocation& place) {
   if (saw.line_mm.empty() == saw.plane.empty())
-    place.at("line_mm").refuse(saw.plane.empty()
-                                   ? "is missing: add it, or 'plane'"
-                                   : "states the cut a second time, with 'plane': keep one of them");
+    place.at("line_mm").refuse(
+        saw.plane.empty() ? "is missing: add it, or 'plane'"
+                          : "states the cut a second time, in addition to 'plane': keep one of them");
   if (saw.plane.empty() && !saw.direction) place.at("direction").refuse("is missing: add it");
   if (saw.plane.empty()) {
     try {
@@ -104,7 +104,7 @@ Saw with_plane_read(const Saw& saw, const std::filesystem::path& folder, std::ve
   if (!plane.low_mm)
     throw std::runtime_error(
         saw.plane.string() +
-        ": the plane states no bounds, so the saw has no depth: give it a size in Slicer");
+        ": the plane states no bounds, so the saw's depth is unknown: set the plane's size in Slicer");
   const glm::dvec2 low = *plane.low_mm, high = *plane.high_mm;
   Saw read = saw;
   const glm::dvec3 entry_mm = plane.origin_mm + low.y * plane.up;
@@ -120,22 +120,24 @@ Saw with_plane_read(const Saw& saw, const std::filesystem::path& folder) {
 }
 
 Operation saw_operation() {
-  const char* const of_plane = "follows from 'plane': leave it out";
-  return Describe<Saw>("saw", "Cuts an object along a line swept in one direction, as wide as the saw.",
+  const char* const of_plane = "is determined by 'plane': leave it out";
+  return Describe<Saw>("saw",
+                       "Cuts an object by a saw of some width that moves along a line and in one direction.",
                        Makes::Object)
       .takes(field("object", &Saw::object, "The object that is cut.").required().positional("solid"))
       .takes(field("line_mm", &Saw::line_mm, "Two or more points of the line, LPS.").from(2))
-      .takes(field("direction", &Saw::direction, "The direction in which the blade goes in, LPS.")
+      .takes(field("direction", &Saw::direction, "The direction in which the blade enters, LPS.")
                  .direction()
                  .read_if<Saw>([](const Saw& saw) { return saw.plane.empty(); }, of_plane))
       .takes(field("depth_mm", &Saw::depth_mm,
-                   "The depth of the cut, from the first point of the line that the blade meets.")
+                   "The depth of the cut along the direction, from the point of the line that the blade "
+                   "reaches first.")
                  .greater_than(0.0)
                  .read_if<Saw>([](const Saw& saw) { return saw.plane.empty(); }, of_plane))
       .takes(field("kerf_mm", &Saw::kerf_mm, "The width of the cut.").greater_than(0.0))
       .takes(field("plane", &Saw::plane,
-                   "A plane of 3D Slicer, .mrk.json, in place of line, direction and depth: the blade goes "
-                   "in along the plane's second axis, across its rectangle.")
+                   "A plane of 3D Slicer, .mrk.json, instead of line, direction and depth. The blade enters "
+                   "along the plane's second axis and crosses its rectangle.")
                  .a_file())
       .example(
           R"({"id": "sawn", "do": "saw", "object": "skull", "line_mm": [[-60, -120, -20], [60, -120, -20]],

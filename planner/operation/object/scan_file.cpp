@@ -33,15 +33,15 @@ void write(const ScanFile& wanted, const AnswerBench& bench, Exported& made) {
 }  // namespace
 
 Operation scan_file_operation() {
-  return Describe<ScanFile>(
-             "scan_file",
-             "Writes a scan of the plan, such as the operated one. For DICOM: octotomy convert "
-             "operated.nrrd -o folder --source CT-FOLDER.",
-             Makes::File)
-      .takes(field("scan", &ScanFile::scan, "The scan, also one that a step made.").required())
-      .takes(
-          field("path", &ScanFile::path, "The file within the result's folder: .nrrd, .nii, .nii.gz or .mha.")
-              .required())
+  return Describe<ScanFile>("scan_file",
+                            "Writes a scan of the plan, such as the operated scan. To convert it to DICOM: "
+                            "octotomy convert operated.nrrd -o folder --source CT-FOLDER.",
+                            Makes::File)
+      .takes(field("scan", &ScanFile::scan, "The scan: one of the plan's scans, or one that a step made.")
+                 .required())
+      .takes(field("path", &ScanFile::path,
+                   "Path of the file within the result's folder: .nrrd, .nii, .nii.gz or .mha.")
+                 .required())
       .example(R"({"id": "file", "do": "scan_file", "scan": "ct", "path": "operated.nrrd"})")
       .check(check)
       .write(write);

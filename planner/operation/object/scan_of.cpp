@@ -35,14 +35,14 @@ void check(const ScanOf& step, const FieldLocation& place) {
   check_expression(step.expression, place.at("expression"));
 }
 
-/// The kind of a scan's samples in words: "MR samples in no known unit", "labels".
+/// The kind of a scan's samples in words, such as "MR samples in no known unit" or "labels".
 std::string kind_of(const voxel::Scene& scene) {
   if (scene.meaning == voxel::Meaning::Label) return "labels";
   const std::string samples = scene.modality.empty() ? "samples" : scene.modality + " samples";
   return samples + (scene.meaning == voxel::Meaning::Hounsfield ? " in HU" : " in no known unit");
 }
 
-/// The samples that lie where an object lies, moved along with it.
+/// The samples at an object's place before its motions, and the motion that moves them along with the object.
 struct OwnSamples {
   const Shown* scan = nullptr;
   glm::dmat4 moved_from_still{1.0};
@@ -54,7 +54,7 @@ struct OwnSamples {
   }
 };
 
-/// The own samples that all parts have in common; none if they differ.
+/// The samples that all parts have in common; none if the parts have different ones.
 template <typename Parts, typename Of>
 OwnSamples in_common(const Parts& parts, const Of& of) {
   OwnSamples common;
@@ -66,8 +66,8 @@ OwnSamples in_common(const Parts& parts, const Of& of) {
   return common;
 }
 
-/// The samples of the one scan from which an object derives; none if there is no such scan, or several, or if
-/// the object does not rest in its scan, such as a warped one.
+/// The samples of the scan from which an object derives. None if no scan or several do, or if the object is
+/// not a rigid image of its scan, such as a warped object.
 OwnSamples own_samples(const Objects& objects, const Object& object) {
   if (object.shown) return {&*object.shown, object.shown->moved_from_still};
   if (!object.bound.windows.empty())
@@ -88,7 +88,8 @@ OwnSamples own_samples(const Objects& objects, const Object& object) {
   return in_common(parts, [&](const Object* part) { return own_samples(objects, *part); });
 }
 
-/// An object's voxels with the samples of its windows, and elsewhere with those of its own scan.
+/// An object's voxels, with the samples of its windows where there are any, and elsewhere with those of its
+/// scan.
 voxel::Expression sampled(const Objects& objects, const Object& object) {
   const VoxelSide& side = object.voxel;
   const voxel::Expression voxels = side.symbol ? *side.symbol : voxel::Expression(side.octree);
@@ -98,12 +99,12 @@ voxel::Expression sampled(const Objects& objects, const Object& object) {
 }
 
 bool is_one_grey(const voxel::GreyOctree& a, const voxel::GreyOctree& b) {
-  // Grey octrees are immutable and shared: one storage holds one universe.
+  // Grey octrees are immutable and shared, so the address of the storage identifies the universe.
   return &a.universe() == &b.universe();
 }
 
-/// Refuses samples that differ from the frame's in meaning, such as a label map's beside Hounsfield units,
-/// or in their step.
+/// Throws if samples have another meaning than those of the frame, such as a label map's beside Hounsfield
+/// units, or another step.
 void need_one_meaning(const ScanOf& step, const ScanBench& bench, const voxel::Expression& expression) {
   const LoadedScan& loaded = (*bench.scans)(step.scan.name);
   const voxel::Scene& frame = loaded.scene();
@@ -122,7 +123,7 @@ void need_one_meaning(const ScanOf& step, const ScanBench& bench, const voxel::E
           !other.modality.empty() && !frame.modality.empty() && other.modality != frame.modality;
       std::string why;
       if (other.meaning != frame.meaning || is_other_device)
-        why = "have another meaning than those of '" + step.scan.name + "' (" + kind_of(other) + " beside " +
+        why = "differ in meaning from those of '" + step.scan.name + "' (" + kind_of(other) + " beside " +
               kind_of(frame) + ")";
       else if (window.grey.step() != loaded.grey.step())
         why = "have steps of " + plain(window.grey.step()) + ", those of '" + step.scan.name + "' steps of " +
@@ -135,10 +136,10 @@ void need_one_meaning(const ScanOf& step, const ScanBench& bench, const voxel::E
   }
 }
 
-// The second reading decides samples drawn at random by the objects' witnesses and by an interpolation of its own.
-// Neither shares code with the voxel kernel.
+// The second reading computes randomly drawn samples by the objects' witnesses and by separate code for
+// interpolation. Neither shares code with the voxel kernel.
 
-/// Whether an expression contains a place, and the object whose sample the place has.
+/// Whether an expression contains a point, and the object from which the point's sample comes.
 struct Owned {
   bool is_inside = false;
   bool is_known = true;  ///< no surface is near
@@ -163,7 +164,7 @@ class SecondReading {
       return {word.in, word.in != word.out && !word.near, object.is_tool ? nullptr : &object};
     }
     Owned made = read(tree.parts.front(), p_mm);
-    // The voxel kernel defines the sample of a complement. It is not checked here.
+    // The voxel kernel determines the sample in a complement, which the second reading cannot check.
     if (tree.symbol == '~') return {!made.is_inside, made.is_known && made.is_inside, nullptr};
     for (std::size_t i = 1; i < tree.parts.size(); ++i)
       made = joined(tree.symbol, made, read(tree.parts[i], p_mm));
@@ -184,16 +185,16 @@ class SecondReading {
   std::vector<const Object*> objects_;
 };
 
-/// The voxel kernel's share of the progress; the second reading has the rest.
+/// The voxel kernel's share of the progress; the rest is for the second reading.
 constexpr double kernel_share = 0.6;
 
 struct Compared {
   int drawn = 0, compared = 0, differing = 0;
-  double largest = 0.0;  ///< difference of a sample, in the scan's unit
+  double largest = 0.0;  ///< largest difference of a sample, in the scan's unit
 };
 
-/// What the second reading expects at a place; none where it cannot decide. Where the expression contains
-/// nothing, padding of the frame stays.
+/// The sample that the second reading expects at a point; none if it cannot decide. At points outside of the
+/// expression, padding of the frame is not checked.
 std::optional<double> expected(const Owned& owned, const glm::dvec3& p_mm, const Objects& objects,
                                bool frame_is_padding, const voxel::ExpressionScan& made) {
   if (!owned.is_known) return std::nullopt;
@@ -206,7 +207,8 @@ std::optional<double> expected(const Owned& owned, const glm::dvec3& p_mm, const
   return scan.holds(at) ? std::optional(scan.at(at)) : std::nullopt;
 }
 
-/// Compares drawn samples of the made scan. Cost: `drawn` readings of the witnesses.
+/// Compares randomly drawn samples of the made scan with the second reading. Cost: `drawn` readings of the
+/// witnesses.
 Compared compare(const ScanOf& step, const ScanBench& bench, const voxel::ExpressionScan& made) {
   constexpr int drawn = 20000;
   const voxel::Lattice& lattice = made.scene.lattice;
@@ -214,7 +216,7 @@ Compared compare(const ScanOf& step, const ScanBench& bench, const voxel::Expres
   const glm::dvec3 spacing = lattice.spacing_mm();
   const convert::ScanSampler before(frame.scene()), after(made.scene);
   const SecondReading reading(step.expression, *bench.objects, std::max({spacing.x, spacing.y, spacing.z}));
-  // A sample is rounded to a step of its scan.
+  // Samples are rounded to a step of their scan.
   const double allowed = 0.5 * frame.grey.step() * (1.0 + 1e-6) + 1e-6;
   Compared result;
   std::mt19937_64 random(1);
@@ -237,15 +239,16 @@ Compared compare(const ScanOf& step, const ScanBench& bench, const voxel::Expres
   return result;
 }
 
-/// The windows of an object whose samples enter the made scan; the distances of offset surfaces do not.
+/// The windows whose samples become part of the made scan. The distances of offset surfaces are not samples,
+/// so they are left out.
 std::vector<voxel::Window> giving_of(const Objects& objects, const Object& object, const LoadedScan& frame) {
   std::vector<voxel::Window> giving = voxel::positive_windows(sampled(objects, object));
   std::erase_if(giving, [&](const voxel::Window& window) { return window.grey.step() != frame.grey.step(); });
   return giving;
 }
 
-/// The objects of the expression that no scan gives samples to, as " ('plate', 'screw')"; empty if each has
-/// some.
+/// The objects of the expression without samples from a scan, such as " ('plate', 'screw')"; empty if there
+/// are none.
 std::string without_samples(const ScanOf& step, const Objects& objects, const LoadedScan& frame) {
   std::string names;
   for (const std::string& name : uses(step)) {
@@ -292,48 +295,50 @@ MadeScan made(const ScanOf& step, const ScanBench& bench) {
     if (is_other)
       findings.push_back("the samples of '" + name + "' come from " +
                          (own ? "'" + own.scan->scan + "'" : std::string("another scan")) +
-                         " and are put beside those of '" + step.scan.name +
+                         " and are combined with those of '" + step.scan.name +
                          "' unchanged: their units and scanners may differ");
   }
   if (result.filled_samples > 0)
-    findings.push_back(std::to_string(result.filled_samples) + " samples lie in objects without samples" +
+    findings.push_back(std::to_string(result.filled_samples) +
+                       " samples lie in objects that come from no scan" +
                        without_samples(step, *bench.objects, frame) + " and have the value " +
-                       plain(result.filled) + ": nothing was scanned there");
+                       plain(result.filled) + ": these places were not scanned");
   if (result.hole_samples == frame.scene().lattice.sample_count())
     findings.push_back("no sample of the scan lies in '" + step.expression +
-                       "': all have the value of holes; correct the expression");
+                       "', so all samples would have the value of holes: correct the expression");
   else if (compared.compared == 0)
-    findings.emplace_back("no sample could be read a second time: nothing confirms this scan");
+    findings.emplace_back("no sample could be checked by a second reading, so nothing confirms this scan");
   if (compared.differing > 0)
     findings.push_back(std::to_string(compared.differing) + " of " + std::to_string(compared.compared) +
-                       " samples that were read a second time differ, by up to " +
+                       " checked samples differ from a second reading, by up to " +
                        std::to_string(compared.largest) + ": do not rely on this scan, and please report it");
   if (step.hole_value && result.hole_samples > 0)
-    findings.push_back(std::to_string(result.hole_samples) + " samples where no object is have the value " +
-                       plain(*step.hole_value) + ", as chosen: nothing was scanned there");
+    findings.push_back(std::to_string(result.hole_samples) +
+                       " samples outside of all objects have the value " + plain(*step.hole_value) +
+                       ", as requested: these places were not scanned");
   return {std::move(result.scene), std::move(details), std::nullopt, std::move(findings)};
 }
 
 }  // namespace
 
 Operation scan_of_operation() {
-  return Describe<ScanOf>(
-             "scan_of",
-             "Makes the scan of an expression of objects, such as the operated head: each sample "
-             "from the object that owns its place, moved along with it.",
-             Makes::Scan)
-      .takes(field("scan", &ScanOf::scan, "The scan whose lattice, unit and patient the made one takes over.")
+  return Describe<ScanOf>("scan_of",
+                          "Makes a scan of an expression of objects, such as the operated head. Each sample "
+                          "comes from the object at its place and moves with it.",
+                          Makes::Scan)
+      .takes(field("scan", &ScanOf::scan,
+                   "The scan that determines the lattice, unit and patient of the new scan.")
                  .required())
       .takes(field("expression", &ScanOf::expression,
-                   "Names of objects under & | - ^ ~ and parentheses. Where two overlap, the sample of the "
-                   "one named first is kept.")
+                   "Names of objects with & | - ^ ~ and parentheses. Where two objects overlap, the sample "
+                   "of the one named first is used.")
                  .required())
       .takes(field("hole_value", &ScanOf::hole_value,
-                   "Sample where no object is. Default: the scan's padding, or a value below all its "
-                   "samples; it counts as not scanned."))
+                   "Sample at places outside of all objects, which count as not scanned. Default: the scan's "
+                   "padding, or a value below all its samples."))
       .takes(field("filled_value", &ScanOf::filled_value,
-                   "Sample of objects that come from no scan, such as a plate. Default: 3071 of Hounsfield "
-                   "units, otherwise the scan's largest sample."))
+                   "Sample in objects that come from no scan, such as a plate. Default: 3071 for a scan in "
+                   "HU, else the scan's largest sample."))
       .example(R"({"id": "operated", "do": "scan_of", "scan": "ct", "expression": "advanced | rest"})")
       .check(check)
       .scan(made)

@@ -37,7 +37,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// The text of a window: the tissue's name and its numbers.
+/// The text of a window: the tissue's name, if it is one, and the numbers.
 std::string words_of(const SampleWindow& window) {
   const std::optional<voxel::Tissue> tissue = voxel::tissue(window.tissue);
   return tissue ? voxel::described(*tissue) : to_string(window);
@@ -69,7 +69,7 @@ std::vector<glm::ivec3> seed_voxels(const Segment& segment, const voxel::Univers
   return seeds;
 }
 
-/// The labels of a scan; none where its samples are not labels. A label can be selected by number in any
+/// The labels in a scan; none if its samples are not labels. A label can be selected by its number in any
 /// scan.
 std::vector<voxel::Label> labels_or_none(const voxel::Scene& scene) {
   try {
@@ -79,7 +79,7 @@ std::vector<voxel::Label> labels_or_none(const voxel::Scene& scene) {
   }
 }
 
-/// The number of samples that are not whole numbers, by the rule of label_of().
+/// The number of samples that are not whole numbers, as label_of() decides.
 std::size_t samples_between_labels(const voxel::Scene& scene) {
   const auto* samples = std::get_if<voxel::FloatSamples>(&scene.samples);
   if (samples == nullptr) return 0;
@@ -88,7 +88,7 @@ std::size_t samples_between_labels(const voxel::Scene& scene) {
   }));
 }
 
-/// Makes one object, step by step.
+/// Selects the voxels of one object, step by step.
 class Segmenter {
  public:
   Segmenter(const Segment& segment, const SegmentSource& source) : segment_(segment), source_(source) {}
@@ -101,7 +101,7 @@ class Segmenter {
     return std::move(made_);
   }
 
-  /// The selection before the further steps.
+  /// The selection before the steps that refine it.
   const voxel::Octree& base() {
     begin();
     if (!segment_.regions.empty())
@@ -128,12 +128,12 @@ class Segmenter {
     return std::move(drawn.mask);
   }
 
-  /// Advice for a refusal of an object without voxels.
+  /// Advice for the error that an object has no voxels.
   std::string advice() const {
     if (made_.steps.size() > 1)
       return " after its " + std::to_string(made_.steps.size()) + " steps: leave some out";
     if (source_.scene.meaning != voxel::Meaning::Label && !segment_.label)
-      return ": choose another window, or see the bounds that --otsu 3 suggests";
+      return ": choose another window; --otsu 3 suggests bounds";
     for (const voxel::Finding& finding : source_.scene.audit)
       if (finding.check == "fractions") return ": " + finding.detail;
     return ": choose another label";
@@ -158,8 +158,8 @@ class Segmenter {
         if (label.number == *segment_.label) made_.findings = findings_of_labels({label});
       if (const std::size_t between = samples_between_labels(source_.scene); between > 0)
         made_.findings.push_back(std::to_string(between) + (between == 1 ? " sample lies" : " samples lie") +
-                                 " between labels and belong to none, as where a label map was resampled by "
-                                 "interpolation: resample it by the nearest sample");
+                                 " between labels and belong to none, for example because the label map was "
+                                 "resampled by interpolation: resample it by the nearest sample");
       return become(voxel::octree_of_label(source_.universe, source_.scene, *segment_.label),
                     {{"do", "label"}, {"label", *segment_.label}});
     }
@@ -182,7 +182,7 @@ class Segmenter {
                     {{"do", "grow"}, {"tolerance", *segment_.tolerance}});
     }
     const SampleWindow& window = *segment_.window;
-    // No window selects what lies outside of the scan.
+    // Samples outside of the scan are in no window.
     const voxel::Octree within = voxel::combine(source_.universe, voxel::bounds(source_.scene.lattice));
     become(
         voxel::combine(source_.universe,
@@ -246,23 +246,22 @@ void check(const Segment& segment, const FieldLocation& place) {
         "needs exactly one of 'window', 'otsu', 'clusters', 'label', 'named', or 'tolerance' together with "
         "'seeds_mm'");
   if (!segment.names.empty() && !segment.named)
-    place.at("names").refuse("applies only to a label that 'named' chooses");
+    place.at("names").refuse("applies only to 'named': add 'named', or leave it out");
   if (segment.regions.empty() && !segment.structure.empty())
-    place.at("structure").refuse("chooses one of a structure set's structures: add the set as 'regions'");
+    place.at("structure").refuse("applies only to a structure set: add the set as 'regions'");
   if (segment.regions.empty() && segment.other_identity)
     place.at("other_identity").refuse("applies only to a structure set: add the set as 'regions'");
   if (segment.tolerance && segment.seeds_mm.empty())
-    place.at("tolerance").refuse("grows from seeds: add 'seeds_mm'");
+    place.at("tolerance").refuse("needs seeds from which the object grows: add 'seeds_mm'");
   const std::optional<int>& classes = segment.otsu ? segment.otsu : segment.clusters;
   if (segment.otsu_class && (!classes || *segment.otsu_class > *classes))
-    place.at("class").refuse(classes
-                                 ? "must be from 1, the darkest, to " + std::to_string(*classes) +
-                                       ", one of the classes of 'otsu' or 'clusters'"
-                                 : "chooses one of the classes of 'otsu' or 'clusters': add one of these");
+    place.at("class").refuse(classes ? "must be from 1, the darkest, to " + std::to_string(*classes) +
+                                           ", one of the classes of 'otsu' or 'clusters'"
+                                     : "applies only to 'otsu' or 'clusters': add one of these");
   if (bridges_of(segment).any() && !chooses_parts(segment))
     place.refuse(
-        "has 'keep_bridges_mm' or 'cut_bridges_mm', which decide among connected parts: add "
-        "'largest', 'components' or 'at_least_mm3'");
+        "has 'keep_bridges_mm' or 'cut_bridges_mm', which apply only to a choice of parts: add 'largest', "
+        "'components' or 'at_least_mm3'");
   check(bridges_of(segment), place);
   if (segment.neighbours != 6 && segment.neighbours != 18 && segment.neighbours != 26)
     place.at("neighbours").refuse("must be 6 (faces), 18 (edges) or 26 (corners)");
@@ -310,15 +309,16 @@ std::string definition(const Segment& segment, const Objects&) {
   return segment.fill ? text + ", filled" : text;
 }
 
-/// The reason why the object has no mesh; null where the mesh kernel can make one.
+/// The reason why the object has no mesh; null if the mesh kernel can make one.
 const char* why_voxels_alone(const Segment& segment) {
-  if (segment.label || segment.named) return "a label map has no samples for an isosurface to run between";
+  if (segment.label || segment.named)
+    return "a label map has no samples between which an isosurface could run";
   if (segment.clusters) return "classes by density and gradient exist for voxels only";
-  if (segment.tolerance) return "growing from seeds goes from voxel to voxel";
-  if (!segment.regions.empty()) return "regions on slices choose voxels";
-  if (segment.open_mm || segment.close_mm) return "opening and closing go by voxels";
-  if (!segment.seeds_mm.empty()) return "seeds choose parts of voxels";
-  return segment.neighbours != 6 ? "edges and corners join voxels" : nullptr;
+  if (segment.tolerance) return "growing from seeds selects voxels only";
+  if (!segment.regions.empty()) return "regions on slices select voxels only";
+  if (segment.open_mm || segment.close_mm) return "opening and closing exist for voxels only";
+  if (!segment.seeds_mm.empty()) return "seeds select parts of voxels only";
+  return segment.neighbours != 6 ? "connection by edges and corners exists for voxels only" : nullptr;
 }
 
 std::optional<Segment> with_parts(const Segment& segment, const std::vector<glm::dvec3>& also_mm) {
@@ -342,7 +342,8 @@ void voxels(const Segment& segment, const VoxelBench& bench, VoxelSide& made) {
     made.lineage = "voxels chosen in the scan";
     return;
   }
-  // The window stays in the expression: it places the surface more finely than a voxel, and a motion samples it.
+  // The window stays in the expression, because it places the surface within a voxel, and a motion
+  // interpolates its samples.
   made.symbol = bench.within_universe(window_on(scan.grey, *segment.window)) &
                 voxel::Expression(voxel::bounds(scan.scene().lattice));
   made.symbol = cut_bridges(*made.symbol, bridges_of(segment));
@@ -353,8 +354,7 @@ void voxels(const Segment& segment, const VoxelBench& bench, VoxelSide& made) {
   if (segment.fill) made.symbol = symbol_of_filled(*made.symbol, kept, made.octree);
 }
 
-/// The mesh kernel's window, with bridges cut, before parts are selected. Adds to `shift_mm` as
-/// cut_bridges().
+/// The mesh of the window with cut bridges, before parts are selected. Adds to `shift_mm` as cut_bridges().
 brep::Solid window_mesh(const Segment& segment, const voxel::Scene& scene, const std::stop_token& stop,
                         double& shift_mm) {
   const brep::Solid whole = brep::trusted_solid(
@@ -387,7 +387,7 @@ void triangles(const Segment& segment, const MeshBench& bench, MeshSide& made) {
   made.lineage = "isosurface of the scan's own samples";
 }
 
-/// Reconciles the parts that the kernels selected, as settle_choice().
+/// Makes the kernels' selections of parts agree, by settle_choice().
 void settle_parts(const Segment& segment, const LoadedScan& scan, const voxel::Universe& universe,
                   Object& made) {
   const auto voxels = [&] {
@@ -417,8 +417,8 @@ void bound(const Segment& segment, const BoundBench& bench, Object& made) {
       voxels_are_samples && !(segment.window && on_both_sides(scan.scene(), segment.window->low,
                                                               segment.window->high_or_infinity()));
   made.witness = witness_of_samples(segment, scan, voxels_are_samples);
-  // The depth is interpolated where samples cross the lower bound. An upper bound inside the object would
-  // make it wrong.
+  // Pictures interpolate the depth where samples cross the lower bound, which would be wrong inside an object
+  // with an upper bound.
   if (!segment.window || why_voxels_alone(segment) != nullptr) return;
   made.bound.windows = {{.grey = scan.grey,
                          .threshold = segment.window->low,
@@ -451,7 +451,7 @@ voxel::Octree on_own_samples(const Segment& segment, const SegmentSource& source
   const voxel::Lattice& lattice = source.scene.lattice;
   if (made.base)
     return voxel::chosen_samples(lattice, Segmenter(segment, source).base(), *made.base, made.octree);
-  // A grown object has no base: only its voxels define where it ends.
+  // A grown object has no `base`: only its voxels determine where it ends.
   return voxel::chosen_samples(lattice, voxel::Octree::empty(source.universe),
                                voxel::Octree::empty(made.octree.universe()), made.octree);
 }
@@ -496,115 +496,112 @@ int label_of_name(const Segment& segment, const std::filesystem::path& label_map
 }
 
 Operation segment_operation() {
-  return Describe<Segment>("segment", "Makes an object of a scan, then chooses its parts.", Makes::Object)
+  return Describe<Segment>("segment", "Makes an object from a scan, and can choose its parts.", Makes::Object)
       .takes(
           field("scan", &Segment::scan, "The scan; with a label, a label map.").required().positional("scan"))
-      .takes(field("window", &Segment::window, "LOW:HIGH or LOW: in the scan's unit, or a tissue.")
+      .takes(field("window", &Segment::window,
+                   "The samples of the object: LOW:HIGH or LOW: in the scan's unit, or a tissue.")
                  .for_example("\"bone\"")
                  .in_plans_only())
-      .takes(
-          field("otsu", &Segment::otsu,
-                "Number of classes of least variance into which the samples are divided; the object is one "
-                "of them.")
-              .from(2)
-              .to(8))
-      .takes(
-          field("clusters", &Segment::clusters,
-                "Number of clusters of the samples by density and gradient; the object is one of them. Edges "
-                "between tissues are classes of their own: three tissues need five.")
-              .from(2)
-              .to(8))
+      .takes(field("otsu", &Segment::otsu,
+                   "Divides the samples into this number of classes of least variance. The object is one of "
+                   "them, see 'class'.")
+                 .from(2)
+                 .to(8))
+      .takes(field("clusters", &Segment::clusters,
+                   "Divides the samples into this number of clusters by density and gradient. The object is "
+                   "one of them. Edges between tissues form separate clusters, so three tissues need five.")
+                 .from(2)
+                 .to(8))
       .takes(field("class", &Segment::otsu_class, "The class, from 1, the darkest. Default: the brightest.")
                  .from(1)
                  .to(8))
       .takes(field("tolerance", &Segment::tolerance,
-                   "Grows from the seeds through samples that lie within the range of the seeds' samples, "
-                   "widened by this.")
+                   "The object grows from the seeds through neighbouring samples within the range of the "
+                   "seeds' samples, widened by this tolerance.")
                  .from(0)
                  .to(65535))
       .takes(field("running_mean", &Segment::running_mean,
-                   "Grows in rounds through samples within the tolerance of the mean of the region so far.")
+                   "The tolerance is measured from the mean of the region, which is computed anew in rounds.")
                  .read_if<Segment>([](const Segment& segment) { return segment.tolerance.has_value(); },
                                    "applies only to growing: add 'tolerance' and 'seeds_mm'"))
-      .takes(field("label", &Segment::label, "The object of that number in a label map.")
+      .takes(field("label", &Segment::label, "The object with this number in a label map.")
                  .from(1)
                  .to(voxel::most_label))
-      .takes(
-          field("named", &Segment::named,
-                "The object of that name in a label map with names: DICOM's or 3D Slicer's segmentations, or "
-                "a table beside it."))
+      .takes(field("named", &Segment::named,
+                   "The object with this name in a label map with names: a segmentation of DICOM or 3D "
+                   "Slicer, or a label map with a table beside it."))
       .takes(field("names", &Segment::names,
-                   "The table of names, in place of the one found: .json, .csv, .tsv, ITK-SNAP's .txt, 3D "
-                   "Slicer's .ctbl.")
+                   "A table of names to use instead of the label map's own: .json, .csv, .tsv, ITK-SNAP's "
+                   ".txt, 3D Slicer's .ctbl.")
                  .a_file())
       .takes(field("regions", &Segment::regions,
-                   "Keeps the voxels within regions drawn on slices, a JSON file or a DICOM structure set.")
+                   "Keeps the voxels within regions on slices, from a JSON file or a DICOM structure set.")
                  .a_file())
       .takes(field("structure", &Segment::structure,
-                   "If the regions are a structure set: the name or ROI number of the structure to use."))
-      .takes(
-          field("other_identity", &Segment::other_identity,
-                "Accepts a structure set that states another patient, study or frame of reference than the "
-                "scan, and reports a FAIL."))
+                   "For a structure set: the name or ROI number of the structure to use."))
+      .takes(field("other_identity", &Segment::other_identity,
+                   "Accepts a structure set that states another patient, study or frame of reference than "
+                   "the scan; a finding then begins with FAIL."))
       .takes(field("open_mm", &Segment::open_mm,
-                   "Removes parts that a ball of that radius inside the object does not reach.")
+                   "Removes parts of the object that a ball of this radius inside the object does not reach.")
                  .greater_than(0.0))
-      .takes(field("seeds_mm", &Segment::seeds_mm, "Keeps the parts that hold these points, LPS.")
+      .takes(field("seeds_mm", &Segment::seeds_mm, "Keeps the parts that contain these points, LPS.")
                  .repeated()
                  .called("seed"))
       .takes(field("largest", &Segment::largest, "Keeps the largest part."))
-      .takes(field("components", &Segment::components, "Number of the largest parts to keep.")
+      .takes(field("components", &Segment::components, "Keeps this number of the largest parts.")
                  .from(1)
                  .to(1000000))
       .takes(field("at_least_mm3", &Segment::at_least_mm3, "Keeps the parts of at least this volume.")
                  .greater_than(0.0))
       .takes(field("keep_bridges_mm", &Segment::keep_bridges_mm,
-                   "Keeps the parts beyond thin necks at these points, LPS, as certificates list them.")
+                   "Keeps the parts beyond thin necks at these points, LPS, which certificates list.")
                  .in_plans_only())
       .takes(field("cut_bridges_mm", &Segment::cut_bridges_mm,
-                   "Cuts thin necks at these points, LPS: removes everything in a cube about each.")
+                   "Cuts thin necks at these points, LPS: removes everything in a cube around each point.")
                  .in_plans_only())
-      .takes(
-          field("bridge_mm", &Segment::bridge_mm, "Edge of the cube about each kept or cut neck's point, mm.")
-              .greater_than(0.0)
-              .in_plans_only())
-      .takes(field("close_mm", &Segment::close_mm, "Closes gaps that a ball of that radius does not pass.")
+      .takes(field("bridge_mm", &Segment::bridge_mm,
+                   "Edge of the cube around the point of a kept or cut neck, mm.")
+                 .greater_than(0.0)
+                 .in_plans_only())
+      .takes(field("close_mm", &Segment::close_mm,
+                   "Closes gaps through which a ball of this radius does not pass.")
                  .greater_than(0.0))
       .takes(field("fill", &Segment::fill, "Fills cavities."))
-      .takes(
-          field("neighbours", &Segment::neighbours, "Parts touch by faces (6), edges (18) or corners (26).")
-              .read_if<Segment>(
-                  [](const Segment& segment) {
-                    return chooses_parts(segment) || segment.tolerance || !segment.seeds_mm.empty();
-                  },
-                  "applies only where parts are chosen: add 'largest', 'components', 'at_least_mm3' or "
-                  "'seeds_mm'"))
+      .takes(field("neighbours", &Segment::neighbours,
+                   "Whether parts are connected by faces (6), edges (18) or corners (26).")
+                 .read_if<Segment>(
+                     [](const Segment& segment) {
+                       return chooses_parts(segment) || segment.tolerance || !segment.seeds_mm.empty();
+                     },
+                     "applies only where parts are chosen: add 'largest', 'components', 'at_least_mm3' or "
+                     "'seeds_mm'"))
       .verb_takes(field("windows", &Segment::windows,
                         "LOW:HIGH or LOW: in sample units, or a tissue: " + names_of_tissues() +
                             "; again for more objects.")
                       .repeated()
                       .called("window"))
       .verb_takes(field("out", &Segment::out,
-                        "An .octree file for one object; a label map (.nrrd, .nii.gz, .mha) or a DICOM "
-                        "segmentation (.dcm) on the scan's lattice."))
+                        "The output: an .octree file for one object; or a label map (.nrrd, .nii.gz, .mha) "
+                        "or a DICOM segmentation (.dcm) on the scan's lattice."))
       .verb_takes(field("objects", &Segment::objects,
-                        "An .octree file to be put into the label map; may be repeated.")
+                        "An .octree file that becomes a further object of the label map; may be repeated.")
                       .repeated()
                       .called("object")
                       .a_file())
-      .verb_takes(field(
-          "contours", &Segment::contours,
-          "A .json file of regions to write: the contours of the first window's lower bound on every slice."))
+      .verb_takes(field("contours", &Segment::contours,
+                        "A .json file to which the contours of the first window's lower bound are written, "
+                        "for every slice."))
       .verb_takes(field("voxel_mm", &Segment::voxel_mm,
-                        "Edge of the voxels that choose parts, and of an octree's. Default: as fine as the "
-                        "scan, at most 512 a side.")
+                        "Edge of an octree's voxels, which also determine the parts. Default: the scan's "
+                        "finest spacing, with at most 512 voxels a side.")
                       .greater_than(0.0))
       .verb_takes(
-          field(
-              "identity", &Segment::identity,
-              "The patient and study of a DICOM segmentation: keep the scan's; remove them by the Basic "
-              "Application Level Confidentiality Profile of PS3.15, also names from files; or new, a patient "
-              "without a name in a study of its own.")
+          field("identity", &Segment::identity,
+                "The patient and study of a DICOM segmentation: keep uses the scan's; remove applies the "
+                "Basic Application Level Confidentiality Profile of PS3.15, and also removes names from "
+                "files; new states a patient without a name in a new study.")
               .one_of({"keep", "remove", "new"})
               .read_if<Segment>([](const Segment& segment) { return segment.out.extension() == ".dcm"; },
                                 "applies only to a DICOM segmentation: leave it out, or write a .dcm"))

@@ -25,12 +25,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// An object and a record of the operations on it; for a label map also the object on the scan's own samples.
+/// An object, with a record of the operations on it; for a label map also the object on the scan's own
+/// samples.
 struct Named {
   std::string name;
   Segmented made;
   std::optional<voxel::Octree> on_samples = std::nullopt;
-  bool is_of_file = false;  ///< the name is stated in a file, or is a file's own
+  bool is_of_file = false;  ///< the name comes from a file: it is stated there, or is the file's name
   bool is_named = true;     ///< the name is a word, not the two numbers of a window
 };
 
@@ -46,9 +47,9 @@ SampleWindow window_of(const std::string& text) {
   }
 }
 
-/// An object for each window, or the one of the class, seeds or label; then the octrees. Both kinds of file
-/// contain the same set: parts are chosen on the octree's voxels, and a label map has the samples inside
-/// them.
+/// Makes an object for each window, or the object of the class, seeds or label; then those of the octrees. An
+/// octree and a label map then contain the same set: parts are chosen among the octree's voxels, and the
+/// label map has the samples inside them.
 std::vector<Named> segments_of(const FileBench& bench, Segment asked, const voxel::Scene& scene) {
   Timings& timings = bench.timings;
   const voxel::Universe universe = universe_of(scene, asked.voxel_mm, asked.label.has_value());
@@ -56,7 +57,7 @@ std::vector<Named> segments_of(const FileBench& bench, Segment asked, const voxe
     return [&]() -> const voxel::GreyOctree& {
       if (kept) return *kept;
       const Stopwatch watch(timings, "octree");
-      // Outside the scan, samples are lower than any sample of it, so that no window includes them.
+      // Samples outside of the scan are lower than all its samples, so no window contains them.
       const double low = std::max(-32768.0, std::floor(std::min(voxel::range(scene).low - 1.0, -1024.0)));
       return kept.emplace(
           voxel::grey_octree_of(where, scene, static_cast<std::int16_t>(low), bench.progress("octree")));
@@ -69,7 +70,7 @@ std::vector<Named> segments_of(const FileBench& bench, Segment asked, const voxe
   const auto add = [&](const std::string& name, bool is_named) {
     const Stopwatch watch(timings, "segment");
     segments.push_back({name, segmented(asked, source), {}, asked.named.has_value(), is_named});
-    // If the voxels are the scan's samples, the label map uses them directly.
+    // If the voxels are the scan's samples, they are used for the label map directly.
     if (is_octree(asked.out)) return;
     if (!is_dicom_seg(asked.out) && on_samples(scene.lattice, universe.lattice())) return;
     const voxel::Universe own = voxel::universe_on(scene.lattice);
@@ -83,14 +84,14 @@ std::vector<Named> segments_of(const FileBench& bench, Segment asked, const voxe
   if (asked.tolerance) add("grown", false);
   for (const std::string& window : asked.windows) {
     asked.window = window_of(window);
-    add(window, window.find(':') == std::string::npos);  // a tissue's name, not two numbers
+    add(window, window.find(':') == std::string::npos);  // whether the name is a tissue's, not two numbers
   }
   for (const std::string& object : asked.objects) {
     const fs::path path = object;
     const voxel::OctreeFile file = read_timed(path, timings);
     const auto* octree = std::get_if<voxel::Octree>(&file.tree);
     if (octree == nullptr)
-      throw std::runtime_error(path.string() + ": only a binary octree is an object of a label map");
+      throw std::runtime_error(path.string() + ": only a binary octree can become an object of a label map");
     if (octree->is_empty()) throw std::runtime_error(path.string() + ": holds no voxel");
     segments.push_back(
         {path.stem().string(),
@@ -101,14 +102,14 @@ std::vector<Named> segments_of(const FileBench& bench, Segment asked, const voxe
   return segments;
 }
 
-/// Writes the contours at a threshold, in the format of mask --slices and segment --regions.
+/// Writes the contours at a threshold, in the form that mask --slices and segment --regions read.
 Json write_contours(const FileBench& bench, const Segment& asked, const voxel::Scene& scene, double threshold,
                     Outputs& outputs) {
   const Stopwatch watch(bench.timings, "contours");
   const glm::dvec3 spacing_mm = scene.lattice.spacing_mm();
   voxel::ContourOptions options;
   options.threshold = threshold;
-  options.least_mm2 = spacing_mm.x * spacing_mm.y;  // the area of a pixel; smaller contours are noise
+  options.least_mm2 = spacing_mm.x * spacing_mm.y;  // the area of a pixel, because smaller contours are noise
   options.progress.stop = bench.stop;
   const voxel::SliceMask mask = voxel::contour_regions(scene, options);
   std::size_t contours = 0, points = 0;
@@ -124,7 +125,7 @@ Json write_contours(const FileBench& bench, const Segment& asked, const voxel::S
           {"points", points}};
 }
 
-/// The JSON of the written object and, for a label map's samples, of the octree of the same set.
+/// The JSON of the written object. For a label map's samples, it also describes the octree of the same set.
 Json said_of(const Named& segment) {
   const auto put = [](Json& json, const voxel::Octree& octree) {
     json["voxels"] = octree.voxel_count();
@@ -137,7 +138,7 @@ Json said_of(const Named& segment) {
   return said;
 }
 
-/// Writes the objects as named segments on the scan's own slices.
+/// Writes the objects as named segments of a DICOM segmentation on the scan's own slices.
 void write_seg(const FileBench& bench, const Segment& asked, const voxel::Scene& scene,
                const std::vector<Named>& segments, Outputs& outputs, Json& json) {
   const Stopwatch watch(bench.timings, "write");
@@ -155,7 +156,7 @@ void write_seg(const FileBench& bench, const Segment& asked, const voxel::Scene&
              : voxel::chosen_samples(scene.lattice, none, voxel::Octree::empty(voxels.universe()), voxels)});
     const voxel::Octree& object = written.back().object;
     if (object.is_empty())
-      throw std::runtime_error("'" + segment.name + "' holds none of the scan's samples: leave it out");
+      throw std::runtime_error("'" + segment.name + "' contains none of the scan's samples: leave it out");
     json["labels"].push_back(
         {{"label", written.size()}, {"name", segment.name}, {"samples", object.voxel_count()}});
   }
@@ -172,8 +173,8 @@ void write_seg(const FileBench& bench, const Segment& asked, const voxel::Scene&
   outputs.write(asked.out, [&](const fs::path& file) { voxel::write_dicom_seg(written, file, options); });
 }
 
-/// Writes the objects: one as an octree, any number as a label map on the scan's own lattice. Returns the
-/// names of a label map's labels.
+/// Writes the objects: one as an octree, or any number as a label map on the scan's own lattice. Returns the
+/// names of the label map's labels.
 std::map<int, std::string> write_segments(const FileBench& bench, const Segment& asked,
                                           const voxel::Scene& scene, const std::vector<Named>& segments,
                                           Outputs& outputs, Json& json) {
@@ -210,36 +211,40 @@ std::map<int, std::string> write_segments(const FileBench& bench, const Segment&
     json["overlaps"] = map.overlaps;
     if (map.overlaps > 0)
       json["findings"].push_back(std::to_string(map.overlaps) +
-                                 " samples lie in several objects: they have the first one's label");
+                                 " samples lie in several objects and have the label of the first of them");
   }
   json["path"] = asked.out.string();
   return names;
 }
 
-/// Refuses contradictory options before anything is read.
+/// Throws before anything is read if options contradict each other.
 void check_asked(const Segment& asked) {
   const int ways = (asked.windows.empty() ? 0 : 1) + (asked.otsu ? 1 : 0) + (asked.clusters ? 1 : 0) +
                    (asked.tolerance ? 1 : 0) + (asked.label ? 1 : 0) + (asked.named ? 1 : 0);
   if (ways > 1)
     throw std::runtime_error(
-        "--window: give one of --window, --otsu, --clusters, --tolerance with --seed, --label, --named");
+        "--window: state only one of --window, --otsu, --clusters, --tolerance with --seed, --label, "
+        "--named");
   if (ways == 0 && asked.objects.empty())
     throw std::runtime_error(
-        "--window: choose the objects: --window bone, --otsu 3, --clusters 4, --seed X,Y,Z --tolerance T, "
+        "no object is selected: add --window bone, --otsu 3, --clusters 4, --seed X,Y,Z --tolerance T, "
         "--label N, --named NAME or --object FILE");
   if (asked.out.empty() && asked.contours.empty() && !asked.otsu && !asked.clusters)
-    throw std::runtime_error("--out is missing: only --otsu, --clusters and --contours work without it");
+    throw std::runtime_error(
+        "--out is missing: add it; only --otsu, --clusters and --contours work without it");
   if (is_octree(asked.out) && asked.windows.size() + asked.objects.size() > 1)
-    throw std::runtime_error("--out: an .octree holds one object: write several as a label map, .nrrd");
+    throw std::runtime_error(
+        "--out: an .octree can contain only one object: write several as a label map, .nrrd");
   if (!asked.out.empty() && !is_octree(asked.out) && !is_dicom_seg(asked.out) &&
       !voxel::volume_format(asked.out))
     throw std::runtime_error(asked.out.string() +
-                             ": write an .octree, a label map as .nrrd, .nii.gz or .mha, or a DICOM "
-                             "segmentation, .dcm");
+                             ": has an unknown extension: write an .octree, a label map as .nrrd, .nii.gz or "
+                             ".mha, or a DICOM segmentation, .dcm");
   if (!asked.contours.empty()) {
     need_extension(asked.contours, {".json"}, "contours are");
     if (asked.windows.empty() && !asked.otsu)
-      throw std::runtime_error("--contours: contours follow the lower bound of a --window: add --window");
+      throw std::runtime_error(
+          "--contours applies only to a --window, whose lower bound the contours follow: add --window");
   }
   std::vector<fs::path> read{asked.scan.name, asked.names, asked.regions};
   read.insert(read.end(), asked.objects.begin(), asked.objects.end());

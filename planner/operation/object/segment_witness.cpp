@@ -14,8 +14,8 @@
 namespace octotomy::planner {
 namespace {
 
-/// The largest rounding of a sample by a grey octree of this step: 0 where all samples are whole multiples of
-/// it.
+/// The largest rounding of a sample in a grey octree of this step; 0 if all samples are whole multiples of
+/// the step.
 double rounding_of(const voxel::Scene& scene, double step) {
   const auto* const samples = std::get_if<voxel::FloatSamples>(&scene.samples);
   if (samples == nullptr) return 0.0;
@@ -34,7 +34,8 @@ verify::Witness witness_of_seeds(const Segment& segment, const LoadedScan& scan)
     from.high = segment.window->high_or_infinity();
   }
   from.neighbours = segment.neighbours;
-  // The flood runs when the witness is first read: an evaluation without certificates does not need it.
+  // The flood runs only when the witness is first read, because an evaluation without certificates does not
+  // need it.
   struct Flood {
     std::once_flag once;
     verify::Witness witness;

@@ -26,7 +26,8 @@ struct Separate {
 void check(const Separate& separate, const FieldLocation& place) {
   if (place.scope != nullptr && !separate.piece)
     place.at("piece").refuse(
-        "is missing: give the number of the piece, 1 the largest; each piece needs a step of its own");
+        "is missing: state the number of the piece, where 1 is the largest; use a separate step for each "
+        "piece");
 }
 
 std::string definition(const Separate& separate, const Objects&) {
@@ -51,16 +52,16 @@ void bound(const Separate& separate, const BoundBench& bench, Object& made) {
   inherit(bench.objects.at(separate.object.name), made);
 }
 
-/// A piece of a surface of any triangles.
+/// A piece of a surface that consists of any triangles.
 struct SeparatedPart {
   std::vector<std::uint32_t> faces;
   double area_mm2 = 0.0;
-  std::optional<double> volume_mm3;  ///< of a closed surface, without its cavities
+  std::optional<double> volume_mm3;  ///< for a closed surface: volume without the piece's cavities
   std::size_t cavities = 0;
 };
 
-/// The pieces of a closed surface are its bodies with their cavities, sorted by volume. Those of an open one
-/// are the sets of triangles that are connected by edges, sorted by area.
+/// The pieces of a surface. For a closed surface these are its bodies with their cavities, sorted by volume.
+/// For an open one they are the sets of triangles that are connected by edges, sorted by area.
 std::vector<SeparatedPart> pieces_of(const brep::Mesh& surface) {
   std::vector<SeparatedPart> pieces;
   const auto edges = surface.edges();
@@ -142,10 +143,10 @@ FileAnswer on_files(const Separate& asked, const FileBench& bench) {
   }
   if (small > 0)
     answer.findings.push_back(std::to_string(small) + " pieces under " + plain(asked.least_mm2) +
-                              " mm\u00b2, " + three_figures(small_mm2) + " mm\u00b2 together, are left out");
+                              " mm\u00b2, " + three_figures(small_mm2) + " mm\u00b2 together, were left out");
   if (written.empty())
     throw std::runtime_error(asked.object.name + ": no piece has " + plain(asked.least_mm2) +
-                             " mm\u00b2, so nothing is written");
+                             " mm\u00b2, so nothing is written: choose a smaller least area");
   outputs.commit();
   answer.json = {{"pieces", pieces.size()}, {"written", written}, {"findings", answer.findings}};
   return answer;
@@ -154,20 +155,22 @@ FileAnswer on_files(const Separate& asked, const FileBench& bench) {
 }  // namespace
 
 Operation separate_operation() {
-  return Describe<Separate>("separate", "Takes a surface apart into its pieces.", Makes::Object)
+  return Describe<Separate>("separate", "Separates a surface into its connected pieces.", Makes::Object)
       .takes(field("object", &Separate::object, "The object, or the mesh file, open or closed.")
                  .required()
                  .positional("mesh"))
       .takes(field("piece", &Separate::piece,
-                   "Which piece: 1 the largest, by volume, or by area where the surface is open.")
+                   "The number of the piece: 1 is the largest by volume, or by area if the surface is open.")
                  .from(1)
                  .to(1000000))
+      .verb_takes(field("least_mm2", &Separate::least_mm2, "Leaves out pieces with a smaller area than this.")
+                      .from(0.0)
+                      .to(1e9))
       .verb_takes(
-          field("least_mm2", &Separate::least_mm2, "Leaves out pieces of a smaller area.").from(0.0).to(1e9))
-      .verb_takes(field("out", &Separate::out,
-                        "A .stl, .ply, .obj, .off, .vtp or .glb file; without --piece each piece's file is "
-                        "numbered, parts-1.ply, and replaces only a file that Octotomy wrote.")
-                      .required())
+          field("out", &Separate::out,
+                "A .stl, .ply, .obj, .off, .vtp or .glb file. Without --piece there is a numbered file for "
+                "each piece, such as parts-1.ply, which only replaces a file that Octotomy wrote.")
+              .required())
       .example(R"({"id": "condyle", "do": "separate", "object": "rest", "piece": 2})")
       .on_files("octotomy separate scan.vtp --least 10 -o parts.ply", on_files)
       .check(check)

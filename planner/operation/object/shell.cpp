@@ -31,13 +31,15 @@ double cell_for(const Shell& shell) {
   return 0.25 * shell.thickness_mm;
 }
 
-/// The cell with which the mesh was made: larger than cell_for() if the object is too large for that cell.
+/// The cell with which the inner surface was made. It is larger than cell_for() if the object is too large
+/// for that cell.
 double cell_of(const Shell& shell, const MeshSide& made) {
   const auto cell = made.details.find("cell_mm");
   return cell != made.details.end() && cell->is_number() ? cell->get<double>() : cell_for(shell);
 }
 
-/// The points deeper than the thickness, from a lattice whose cells are doubled until it is small enough.
+/// The points that lie deeper than the thickness. The cells of their lattice are doubled until the lattice is
+/// small enough.
 brep::Solid core_of(const brep::Solid& solid, const Shell& shell, const brep::Progress& progress,
                     MeshSide& made) {
   constexpr int most_rounds = 4;
@@ -50,8 +52,8 @@ brep::Solid core_of(const brep::Solid& solid, const Shell& shell, const brep::Pr
         made.details = {{"cell_mm", cell_mm}};
         made.findings.push_back("the object is too large for cells of " + plain(cell_for(shell)) +
                                 " mm: its inner surface was made with cells of " + plain(cell_mm) +
-                                " mm, so parts of the inside thinner than that may remain: cut off the part "
-                                "that matters, for which smaller cells are possible");
+                                " mm, so parts of the inside that are thinner may remain: cut out the part "
+                                "of interest, for which smaller cells are possible");
       }
       return core;
     } catch (const brep::TooLarge&) {
@@ -69,7 +71,8 @@ void voxels(const Shell& shell, const VoxelBench& bench, VoxelSide& made) {
   }();
   made.octree = bench.combined(voxel::Expression(object.octree) - core);
   made.symbol = bench.within_universe(*object.symbol - core);
-  made.lineage = "the octree without the points deeper than the thickness below its surface between voxels";
+  made.lineage =
+      "the octree without the points that lie deeper than the thickness below its surface between voxels";
 }
 
 void triangles(const Shell& shell, const MeshBench& bench, MeshSide& made) {
@@ -93,7 +96,7 @@ void bound(const Shell& shell, const BoundBench& bench, Object& made) {
                                         is_whole_voxels(object.voxel)};
     const verify::WitnessedOffset asked{-shell.thickness_mm, cell_of(shell, made.mesh)};
     made.witness = verify::without(object.witness, verify::witness_of_offset(operand, asked));
-    // The outer surface is the operand's; only the inner surface was computed from distances.
+    // The outer surface is that of the operand. Only the inner surface is computed from distances.
     const double area_mm2 = made.mesh.whole->measures().area_mm2,
                  inner_mm2 = area_mm2 - object.mesh.whole->measures().area_mm2;
     if (inner_mm2 > 0.0)
@@ -106,7 +109,7 @@ void bound(const Shell& shell, const BoundBench& bench, Object& made) {
 }  // namespace
 
 Operation shell_operation() {
-  return Describe<Shell>("shell", "Keeps the outer layer of an object.", Makes::Object)
+  return Describe<Shell>("shell", "Keeps the outer layer of an object and removes the rest.", Makes::Object)
       .takes(field("object", &Shell::object, "The object.").required().positional("solid"))
       .takes(field("thickness_mm", &Shell::thickness_mm, "The thickness of the layer.").greater_than(0.0))
       .example(R"({"id": "crust", "do": "shell", "object": "skull", "thickness_mm": 2})")

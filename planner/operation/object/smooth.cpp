@@ -25,8 +25,8 @@ struct Smooth {
   bool mend = false;
 };
 
-/// An upper bound of the distance between both surfaces, in either direction. Smoothing moves points and
-/// keeps triangles, so every place of a triangle moves by at most the largest move of its corners.
+/// An upper bound in mm of the distance between both surfaces, in either direction. Smoothing moves points
+/// but keeps triangles, so every point of a triangle moves by at most the largest movement of its corners.
 double largest_move_mm(const brep::Mesh& mesh, const brep::Mesh& smoothed) {
   const std::vector<glm::dvec3> before = brep::triangles_of(mesh).points_mm,
                                 after = brep::triangles_of(smoothed).points_mm;
@@ -75,30 +75,31 @@ FileAnswer on_files(const Smooth& asked, const FileBench& bench) {
 }  // namespace
 
 Operation smooth_operation() {
-  return Describe<Smooth>("smooth", "Removes noise from an object's surface and keeps its volume.",
+  return Describe<Smooth>("smooth", "Removes noise from an object's surface without changing its volume.",
                           Makes::Object)
       .takes(field("object", &Smooth::object, "The object.").required().positional("mesh"))
-      .takes(field("rounds", &Smooth::rounds, "Number of rounds, each a step inward and a step outward.")
+      .takes(field("rounds", &Smooth::rounds, "Number of rounds; each is a step inward and a step outward.")
                  .from(1)
                  .to(1000))
       .takes(field("pass_band", &Smooth::pass_band,
-                   "Waves below this frequency stay: 0.1 keeps those longer than about 10 edges.")
+                   "Waves of the surface below this frequency are preserved: 0.1 preserves waves longer than "
+                   "about 10 edges.")
                  .from(0.001)
                  .to(0.999))
       .takes(field("max_volume_share", &Smooth::max_volume_share,
-                   "The share of the volume that may be gained or lost; beyond it the step is refused.")
+                   "The largest share of the volume that may be gained or lost. If more would change, the "
+                   "step is refused.")
                  .greater_than(0.0))
-      .verb_takes(
-          field("out", &Smooth::out,
-                "The answer: a .stl, .ply, .obj, .off, .vtp or .glb file, or an .octree of the voxels "
-                "inside that surface.")
-              .required())
+      .verb_takes(field("out", &Smooth::out,
+                        "The file of the smoothed surface: .stl, .ply, .obj, .off, .vtp or .glb; or an "
+                        ".octree of the voxels inside it.")
+                      .required())
       .verb_takes(field("voxel_mm", &Smooth::voxel_mm,
-                        "Edge of an octree's voxels. Default: a 128th of the answer's extent.")
+                        "Edge of an octree's voxels. Default: a 128th of the smoothed surface's extent.")
                       .greater_than(0.0))
       .verb_takes(field("mend", &Smooth::mend,
-                        "Mends a mesh that is no solid first, as repair --solid does. Without it an open "
-                        "mesh keeps its borders."))
+                        "Mends a mesh that is not a solid first, as repair --solid does. Default: an open "
+                        "mesh stays open."))
       .example(R"({"id": "even", "do": "smooth", "object": "skull", "rounds": 10})")
       .on_files("octotomy smooth skull.stl -o smooth.stl --rounds 10 --json", on_files)
       .object(definition, nullptr, triangles, bound);

@@ -45,7 +45,7 @@ Operation surface_operation() {
   return Describe<Surface>("surface", "Writes an object's surface as a mesh.", Makes::File)
       .takes(field("object", &Surface::object, "The object.").required())
       .takes(field("path", &Surface::path,
-                   "The file within the result's folder: .stl, .ply, .obj, .off, .vtp or .glb.")
+                   "Path of the file within the result's folder: .stl, .ply, .obj, .off, .vtp or .glb.")
                  .required())
       .example(R"({"id": "piece", "do": "surface", "object": "advanced", "path": "maxilla.stl"})")
       .check(check)

@@ -41,7 +41,7 @@ struct Tile {
   bool has_file() const { return !slices.empty(); }
 };
 
-/// Adds an empty slice at either end, so that the object reaches this far beyond its contours.
+/// Adds an empty slice at either end, so that the object ends at this distance beyond its contours.
 void add_ends(voxel::SliceMask& mask, double end_mm) {
   const auto is_empty = [](const voxel::SliceMask::Slice& slice) { return slice.polygons_mm.empty(); };
   auto& slices = mask.slices;
@@ -52,7 +52,7 @@ void add_ends(voxel::SliceMask& mask, double end_mm) {
   slices.push_back({slices.back().position_mm + 2.0 * end_mm, {}});
 }
 
-/// Contours typed in a plan.
+/// The mask of contours that are stated in the plan.
 voxel::SliceMask mask_of(const Tile& tile) {
   voxel::SliceMask mask;
   mask.view = voxel::parse_view(tile.view);
@@ -73,7 +73,7 @@ voxel::SliceMask drawn_in(const Tile& tile, const std::filesystem::path& folder,
   return mask;
 }
 
-/// Refuses contours that bound no area of an object: those that cross themselves or each other.
+/// Refuses contours that cross themselves or each other, because they bound no area of an object.
 void need_uncrossed(const Tile& tile, const FieldLocation& place) {
   for (std::size_t i = 0; i < tile.contours.size(); ++i) {
     const FieldLocation at = place.at("contours[" + std::to_string(i) + "]");
@@ -82,12 +82,12 @@ void need_uncrossed(const Tile& tile, const FieldLocation& place) {
     const std::vector<std::size_t> again = voxel::repeated_polygons(polygons, off_plane_mm());
     if (!again.empty())
       at.at("polygons_mm[" + std::to_string(again.front()) + "]")
-          .refuse("repeats another contour of its slice: leave one of them out");
+          .refuse("repeats another contour of its slice: leave out one of them");
     const voxel::CrossingPolygons crossing = voxel::crossing_polygons(polygons, off_plane_mm());
     if (!crossing.all.empty())
       at.at("polygons_mm[" + std::to_string(crossing.all.front().polygon) + "]")
           .refuse("crosses itself or another contour of its slice near " + told(crossing.all.front().at_mm) +
-                  ": draw one outline around both");
+                  ": draw one outline around both parts");
   }
 }
 
@@ -96,20 +96,23 @@ void check(const Tile& tile, const FieldLocation& place) {
   if (tile.has_file() && !tile.contours.empty())
     place.at("slices").refuse("names a file of contours: leave 'contours' out, or the file");
   if (!tile.has_file() && tile.contours.empty())
-    place.refuse("'contours' is missing: add 'contours', or 'slices', a file that holds contours");
+    place.refuse("'contours' is missing: add 'contours', or a file of contours as 'slices'");
   if (tile.has_file()) return;
   if (tile.contours.size() == 1 && !tile.end_mm)
-    place.at("contours").refuse("are of one slice: add 'end_mm', how far it reaches on either side");
+    place.at("contours")
+        .refuse(
+            "lie in one slice, so the object's thickness is unknown: add 'end_mm', the distance to which it "
+            "extends on either side");
   const auto has_none = [](const Tile::Slice& slice) { return slice.polygons_mm.empty(); };
   if (std::all_of(tile.contours.begin(), tile.contours.end(), has_none))
-    place.at("contours").refuse("have no polygon: draw one");
+    place.at("contours").refuse("have no polygon: draw at least one");
   for (std::size_t i = 0; i < tile.contours.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (tile.contours[i].position_mm == tile.contours[j].position_mm)
         place.at("contours[" + std::to_string(i) + "]")
             .at("position_mm")
             .refuse("is that of contours[" + std::to_string(j) +
-                    "] too: draw all polygons of a slice in one record");
+                    "], too: state all polygons of a slice in one record");
   try {
     voxel::check(mask_of(tile));
   } catch (const std::invalid_argument& error) {
@@ -132,15 +135,15 @@ std::string definition(const Tile& tile, const Objects&) {
 void voxels(const Tile& tile, const VoxelBench& bench, VoxelSide& made) {
   voxel::SliceMask mask = drawn_in(tile, bench.folder, made.findings);
   if (const auto cut = cut_at_cube(mask, bench.universe, "the object"))
-    made.findings.push_back(*cut + ": draw within the plan's cube, which holds its scans");
+    made.findings.push_back(*cut + ": draw within the plan's cube, which contains its scans");
   const voxel::Expression slices = std::move(mask);
   made.octree = bench.combined(slices);
   made.symbol = bench.within_universe(slices);
   made.lineage = "distances to the contours at voxel centres";
   if (made.octree.is_empty())
     throw std::runtime_error(
-        "the contours hold no voxel's centre: draw them within the universe, which spans " +
-        plain(bench.box_mm()) + ", or take smaller voxels");
+        "the contours enclose no voxel's centre: draw them within the universe, which spans " +
+        plain(bench.box_mm()) + ", or choose smaller voxels");
 }
 
 void triangles(const Tile& tile, const MeshBench& bench, MeshSide& made) {
@@ -177,7 +180,7 @@ voxel::Box tile_box(const Action& action, const std::filesystem::path& folder) {
   constexpr double far = std::numeric_limits<double>::infinity();
   voxel::Box box{glm::dvec3(far), glm::dvec3(-far)};
   for (std::size_t s = 0; s <= last; ++s) {
-    // Half way to the neighbours, or as far beyond an end.
+    // Half-way to the neighbouring slice, or as far beyond the end.
     const double below_mm = slices[s == 0 ? 1 : s].position_mm - slices[s == 0 ? 0 : s - 1].position_mm;
     const double above_mm =
         slices[s == last ? last : s + 1].position_mm - slices[s == last ? last - 1 : s].position_mm;
@@ -195,41 +198,38 @@ voxel::Box tile_box(const Action& action, const std::filesystem::path& folder) {
 Operation tile_operation() {
   return Describe<Tile>(tile_name, "Makes an object from contours on parallel slices.", Makes::Object)
       .takes(field("view", &Tile::view,
-                   "The view of the scan as it lies in which the contours are drawn; it looks across their "
-                   "slices.")
+                   "The view, in the scan's frame, in which the contours are drawn. It looks along the "
+                   "normal of their slices.")
                  .read_if<Tile>([](const Tile& tile) { return !tile.has_file(); },
-                                "is the file's: leave it out"))
+                                "is stated by the file: leave it out"))
       .takes(records("contours", &Tile::contours, "The slices with their contours, in any order.",
                      {field("position_mm", &Tile::Slice::position_mm,
-                            "The slice's place along the view's direction of sight, mm.")
+                            "Position of the slice along the view's direction of sight, mm.")
                           .required(),
                       field("polygons_mm", &Tile::Slice::polygons_mm,
-                            "Closed polygons of points [u, v] in the view's millimetres; one in another is a "
-                            "hole. None: the object ends half way to this slice.")
+                            "Closed polygons of points [u, v] in the view's millimetres. A polygon within "
+                            "another is a hole. Without polygons, the object ends half-way to this slice.")
                           .required()})
                  .from(1)
                  .to(5000)
                  .in_plans_only())
-      .takes(
-          field("slices", &Tile::slices,
-                "In place of contours: a .json of regions on slices, as the operation contours writes it, or "
-                "a DICOM structure set.")
-              .a_file())
+      .takes(field("slices", &Tile::slices,
+                   "Instead of 'contours': a .json of regions on slices, which the operation contours "
+                   "writes, or a DICOM structure set.")
+                 .a_file())
       .takes(field("structure", &Tile::structure,
-                   "For a structure set: the name or ROI number of the structure.")
+                   "For a structure set: the name or ROI number of the structure to use.")
                  .read_if<Tile>([](const Tile& tile) { return tile.has_file(); },
-                                "is about a structure set: add the set as 'slices'"))
-      .takes(
-          field(
-              "between", &Tile::between,
-              "Between two slices: shape_based interpolates the distances to both outlines; nearest extends "
-              "either outline unchanged to half way.")
-              .one_of({"shape_based", "nearest"})
-              .read_if<Tile>([](const Tile& tile) { return !tile.has_file(); },
-                             "is the file's: leave it out"))
+                                "applies only to a structure set: add the set as 'slices'"))
+      .takes(field("between", &Tile::between,
+                   "The object between two slices: shape_based interpolates the distances to both outlines; "
+                   "nearest extends each outline unchanged to half-way.")
+                 .one_of({"shape_based", "nearest"})
+                 .read_if<Tile>([](const Tile& tile) { return !tile.has_file(); },
+                                "is stated by the file: leave it out"))
       .takes(field("end_mm", &Tile::end_mm,
-                   "How far the object reaches beyond its first and last contour, mm. Default: half of the "
-                   "distance to the next slice.")
+                   "The distance to which the object extends beyond its first and last contour, mm. Default: "
+                   "half of the distance to the next slice.")
                  .greater_than(0.0)
                  .to(1000.0))
       .example(R"({"id": "tumour", "do": "tile", "view": "inferior", "contours": [

@@ -8,11 +8,11 @@
 
 namespace octotomy::planner {
 
-/// Whether the action tiles contours, which makes an object without a scan.
+/// Whether the step tiles contours, which makes an object without a scan.
 bool is_tile(const Action& action);
 
-/// A box that holds the object, LPS mm; relative paths are relative to `folder`. Reads the file of contours if there
-/// is one, and throws as its reader. Precondition: is_tile().
+/// A box around the object, LPS mm. Relative paths are relative to `folder`. If the step names a file of
+/// contours, reads it and throws as its reader. Precondition: is_tile().
 voxel::Box tile_box(const Action& action, const std::filesystem::path& folder);
 
 }  // namespace octotomy::planner

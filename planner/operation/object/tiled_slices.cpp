@@ -27,7 +27,7 @@ std::vector<brep::Section> sections_of(const voxel::SliceMask& mask) {
   for (const voxel::SliceMask::Slice& slice : mask.slices) {
     sections.push_back({slice.position_mm, {}});
     for (const auto& polygon : slice.polygons_mm) {
-      // Two equal points in a row would make a side without length.
+      // Removes repeated neighbouring points, which would make sides without length.
       brep::Contour contour;
       for (const glm::dvec2& p : polygon)
         if (contour.points_mm.empty() || contour.points_mm.back() != p) contour.points_mm.push_back(p);
@@ -39,7 +39,8 @@ std::vector<brep::Section> sections_of(const voxel::SliceMask& mask) {
   return sections;
 }
 
-/// Runs before the tiles' own check, which would name the position of a section that nobody drew.
+/// Throws if contours of a slice cross. This check precedes that of tiling, whose message would state the
+/// position of an interpolated section that nobody drew.
 void need_uncrossed_slices(const voxel::SliceMask& mask) {
   for (const voxel::SliceMask::Slice& slice : mask.slices) {
     const voxel::CrossingPolygons crossing = voxel::crossing_polygons(slice.polygons_mm, off_plane_mm());
@@ -49,11 +50,11 @@ void need_uncrossed_slices(const voxel::SliceMask& mask) {
                                                      " mm: polygon " + std::to_string(first.polygon + 1) +
                                                      " crosses itself or another one near [" +
                                                      plain(first.at_mm.x) + ", " + plain(first.at_mm.y) +
-                                                     "] mm: draw one outline around both");
+                                                     "] mm: draw one outline around both parts");
   }
 }
 
-/// Ten metres of drawn slices, with sections between them: longer stacks are in another unit.
+/// The limit is ten metres of drawn slices, because longer stacks are in another unit.
 void need_few_sections(const voxel::SliceMask& mask) {
   if (!is_interpolated(mask)) return;
   constexpr double most_mm = 10'000.0;
@@ -62,10 +63,10 @@ void need_few_sections(const voxel::SliceMask& mask) {
     if (!mask.slices[s].polygons_mm.empty() && !mask.slices[s + 1].polygons_mm.empty())
       joined_mm += mask.slices[s + 1].position_mm - mask.slices[s].position_mm;
   if (joined_mm > most_mm)
-    throw brep::Error(brep::ErrorCode::Geometry, "the joined slices span " + plain(joined_mm) +
-                                                     " mm, but at most " + plain(most_mm) +
-                                                     " mm can be tiled, by sections every " +
-                                                     plain(tile_step_mm()) + " mm: state positions in mm");
+    throw brep::Error(brep::ErrorCode::Geometry,
+                      "the joined slices span " + plain(joined_mm) + " mm, but at most " + plain(most_mm) +
+                          " mm can be tiled, with a section every " + plain(tile_step_mm()) +
+                          " mm: check that positions are in mm");
 }
 
 }  // namespace
@@ -81,7 +82,7 @@ TiledSlices tiled_slices(const voxel::SliceMask& mask, std::optional<brep::TileC
   brep::TiledBetween tiled = brep::tile_between(sections_of(mask), between, cost);
   for (glm::dvec3& p : tiled.surface.points_mm)
     p = p.x * mask.view.right + p.y * mask.view.up + p.z * mask.view.look;
-  // (right, up, look) is left-handed, because right = look x up. So triangles are reversed.
+  // Triangles are reversed, because (right, up, look) is left-handed: right = look x up.
   for (auto& face : tiled.surface.faces) std::swap(face[1], face[2]);
   const brep::Proof proof = tiled.is_apart ? brep::Proof::Health : brep::Proof::Rounded;
   return {brep::trusted_solid(std::move(tiled.surface), proof), tiled.sections};

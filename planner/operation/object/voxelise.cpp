@@ -47,8 +47,8 @@ struct Subject {
   brep::Health health;
 };
 
-/// Turns triangles that wind against their neighbours. Otherwise joining would cut the surface between
-/// them, and opposite windings would cancel in the winding numbers.
+/// Turns triangles that wind against their neighbours, because joining would cut the surface between them,
+/// and opposite windings would cancel in winding numbers.
 void turn_alike(const std::filesystem::path& path, brep::Triangles& triangles,
                 std::vector<std::string>& findings) {
   if (triangles.faces.empty()) return;
@@ -58,11 +58,11 @@ void turn_alike(const std::filesystem::path& path, brep::Triangles& triangles,
   triangles = std::move(alike.surface);
   findings.push_back("orient: " + path.string() + " has " + std::to_string(contrary) +
                      " edges whose triangles wind against each other: " + std::to_string(alike.turned) +
-                     " triangles were turned, so that shells face outward and cavities inward");
+                     " triangles were turned, so that outer shells face outward and cavities inward");
 }
 
-/// Reads a subject. Throws if it has no triangles, or if it is to be digitised exactly but is no solid.
-/// Reports guesses.
+/// Reads a mesh or object. Throws if it has no triangles, or if it is not a solid but must be digitised
+/// exactly. Adds findings on guesses.
 Subject read_subject(const FileBench& bench, const std::filesystem::path& path, const std::string& digitise,
                      std::vector<std::string>& findings) {
   Subject subject{path, {}, {}};
@@ -70,7 +70,7 @@ Subject read_subject(const FileBench& bench, const std::filesystem::path& path, 
     const Stopwatch watch(bench.timings, "read");
     subject.triangles = triangles_named(path.string(), bench);
     turn_alike(path, subject.triangles, findings);
-    // Joined, because each open edge would be a rim, and rims cost time.
+    // The surface is joined, because each open edge would be a rim, and rims are slow.
     subject.triangles = brep::joined_surface(std::move(subject.triangles)).surface;
   }
   if (subject.triangles.faces.empty()) throw std::runtime_error(path.string() + ": holds no triangles");
@@ -81,11 +81,11 @@ Subject read_subject(const FileBench& bench, const std::filesystem::path& path, 
   if (subject.health.solid()) return subject;
   if (digitise != "centre")
     throw std::runtime_error(path.string() + ": is not a solid (" + subject.health.findings.front() +
-                             "), so that the share of a voxel it fills is not known: mend it, or take the "
-                             "voxels' centres by --digitise centre");
+                             "), so the filled share of a voxel is unknown: mend it, or use the voxels' "
+                             "centres by --digitise centre");
   findings.push_back("method: " + path.string() + " is not a solid (" + subject.health.findings.front() +
-                     "); voxels are those whose centres have a generalised winding number above 1/2, which "
-                     "guesses the surface across holes");
+                     "), so the surface across holes is a guess: voxels are those whose centres have a "
+                     "generalised winding number above 1/2");
   return subject;
 }
 
@@ -99,7 +99,7 @@ voxel::Box box_of(const std::vector<Subject>& subjects) {
   return box;
 }
 
-/// Adds findings on meshes whose size or position does not fit the universe.
+/// Adds findings on meshes that do not fit the universe in size or position.
 void add_findings_beside(const ObjectName& like, const std::vector<Subject>& subjects, Timings& timings,
                          std::vector<std::string>& findings) {
   const voxel::Box all = voxel::bounds(voxel::universe(read_timed(like.name, timings)).lattice());
@@ -119,7 +119,7 @@ voxel::Universe universe_of(const FileBench& bench, const Voxelise& asked,
     return voxel::universe_around(box_of(subjects), asked.voxel_mm.value_or(1.0));
   } catch (const voxel::TooLarge& error) {
     throw std::runtime_error(subjects.front().path.string() + ": " + error.what() +
-                             ": is its unit millimetres? Give larger voxels by --voxel");
+                             ": check that its unit is millimetres, or choose larger voxels by --voxel");
   }
 }
 
@@ -147,8 +147,8 @@ decltype(voxel::OctreeFile::tree) voxelised(const FileBench& bench, const Voxeli
                              : convert::voxelise_by_winding_number(universe, subject.triangles, progress);
   if (is_nothing(tree))
     throw std::runtime_error(subject.path.string() +
-                             ": encloses no voxel: take smaller voxels by --voxel; where the mesh is inside "
-                             "out, octotomy repair --orient turns it");
+                             ": encloses no voxel: choose smaller voxels by --voxel; if the mesh is inside "
+                             "out, turn it by octotomy repair --orient");
   return tree;
 }
 
@@ -163,7 +163,7 @@ FileAnswer write_octree(const FileBench& bench, const Voxelise& asked, const Sub
   return octree_written(file, asked.out, bench.stop, bench.timings, findings);
 }
 
-/// The voxels of a universe that a box touches, as a separate lattice.
+/// The voxels of a universe that touch a box, as a separate lattice.
 voxel::Lattice lattice_of(const voxel::Universe& universe, const voxel::Box& box) {
   voxel::Lattice lattice = universe.lattice();
   const glm::ivec3 last = lattice.dims - 1;
@@ -185,7 +185,7 @@ FileAnswer write_labels(const FileBench& bench, const Voxelise& asked, const std
   const voxel::LabelMap map = voxel::label_map(lattice, octrees, {bench.stop, {}});
   if (map.overlaps > 0)
     findings.push_back(std::to_string(map.overlaps) +
-                       " voxels lie in several meshes: they have the first one's label");
+                       " voxels lie in several meshes and have the label of the first of them");
   std::map<int, std::string> names;
   for (std::size_t i = 0; i < subjects.size(); ++i)
     names.emplace(static_cast<int>(i) + 1, subjects[i].path.stem().string());
@@ -222,7 +222,7 @@ void check(const Voxelise& asked, const FieldLocation& place) {
   else if (labels && !voxel::volume_format(asked.out))
     need_octree_extension(asked.out);
   if (!labels && asked.meshes.size() > 1)
-    place.at("path").refuse("an .octree holds one object: write several as a label map, .nrrd");
+    place.at("path").refuse("an .octree can contain only one object: write several as a label map, .nrrd");
   if (labels && asked.digitise == "partial")
     place.at("digitise").refuse("a label map cannot store shares of voxels: write an .octree");
 }
@@ -230,7 +230,7 @@ void check(const Voxelise& asked, const FieldLocation& place) {
 FileAnswer on_files(const Voxelise& asked, const FileBench& bench) {
   need_folder_of(asked.out);
   if (asked.like && asked.voxel_mm)
-    throw std::runtime_error("--like has voxels of its own: leave --voxel out");
+    throw std::runtime_error("--like already determines the voxels: leave --voxel out");
   std::vector<std::string> findings;
   std::vector<Subject> subjects;
   for (const ObjectName& path : asked.meshes)
@@ -243,31 +243,27 @@ FileAnswer on_files(const Voxelise& asked, const FileBench& bench) {
 }  // namespace
 
 Operation voxelise_operation() {
-  return Describe<Voxelise>("voxelise", "Makes an octree of a mesh, or a label map of several.", Makes::File)
-      .takes(
-          field(
-              "meshes", &Voxelise::meshes,
-              "Objects; on the command line mesh files (.stl, .ply, .obj, .vtp, .glb, ...); where one is no "
-              "solid, its "
-              "holes and "
-              "crossings are bridged by the winding number.")
-              .required()
-              .from(1)
-              .positional("mesh"))
-      .takes(field("path", &Voxelise::out, "An .octree file, or a label map: .nrrd, .nii.gz, .mha.")
+  return Describe<Voxelise>("voxelise", "Makes an octree of a mesh, or a label map of several meshes.",
+                            Makes::File)
+      .takes(field("meshes", &Voxelise::meshes,
+                   "Objects; on the command line mesh files (.stl, .ply, .obj, .vtp, .glb, ...). If one is "
+                   "not a solid, the winding number bridges its holes and crossings.")
+                 .required()
+                 .from(1)
+                 .positional("mesh"))
+      .takes(field("path", &Voxelise::out,
+                   "The output: an .octree file, or a label map as .nrrd, .nii.gz or .mha.")
                  .required()
                  .called("out"))
       .takes(field("voxel_mm", &Voxelise::voxel_mm,
-                   "Edge of a voxel. Default: 1; in a plan, that of the plan's universe.")
+                   "Edge of a voxel. Default: 1 mm; in a plan, that of the plan's universe.")
                  .greater_than(0.0))
-      .verb_takes(
-          field("like", &Voxelise::like, "Takes the universe of this .octree file, to combine with it."))
-      .takes(
-          field(
-              "digitise", &Voxelise::digitise,
-              "Which voxels: inside (D1), touching (D2), centre (D3), half (D4), or partial, with the share "
-              "of each that is filled.")
-              .one_of({"inside", "touching", "centre", "half", "partial"}))
+      .verb_takes(field("like", &Voxelise::like,
+                        "Uses the universe of this .octree file, so that both can be combined."))
+      .takes(field("digitise", &Voxelise::digitise,
+                   "Which voxels the object has: inside (D1), touching (D2), centre (D3), half (D4); or "
+                   "partial, with the filled share of each.")
+                 .one_of({"inside", "touching", "centre", "half", "partial"}))
       .example(R"({"id": "plate", "do": "voxelise", "meshes": ["skull"], "path": "plate.octree"})")
       .on_files(
           "octotomy voxelise maxilla.stl -o maxilla.octree --voxel 0.5\n"

@@ -23,7 +23,7 @@ struct Window {
 
 void check(const Window& window, const FieldLocation& place) {
   if (window.high && *window.high < window.low)
-    place.at("high").refuse("is below 'low': nothing would be in the window, swap them");
+    place.at("high").refuse("is below 'low', so the window would be empty: exchange the two");
 }
 
 std::string unit_of(const voxel::Scene& scene) {
@@ -57,9 +57,9 @@ void voxels(const Window& window, const VoxelBench& bench, VoxelSide& made) {
   if (!made.octree.is_empty()) return;
   if (has_samples_in(scan.scene(), window))
     throw std::runtime_error("no voxel of scan '" + window.scan.name +
-                             "' is in the window, but samples are: voxels of " +
+                             "' is in the window, although samples are: voxels of " +
                              plain(bench.universe.lattice().spacing_mm().x) +
-                             " mm miss them: take smaller ones, 'voxel_mm' of the universe");
+                             " mm miss them: choose smaller voxels by 'voxel_mm' of the universe");
   const voxel::Range range = voxel::range(scan.scene());
   throw std::runtime_error("no voxel of scan '" + window.scan.name +
                            "' is in the window; its samples are from " + plain(range.low) + " to " +
@@ -83,8 +83,8 @@ void bound(const Window& window, const BoundBench& bench, Object& made) {
   made.bound.voxels_are_samples =
       on_samples(lattice, bench.universe.lattice()) &&
       !on_both_sides(scan.scene(), window.low, window.high.value_or(std::numeric_limits<double>::infinity()));
-  // The depth is interpolated where samples cross the lower bound. An upper bound inside the object would
-  // make it wrong.
+  // Pictures interpolate the depth where samples cross the lower bound, which would be wrong inside an object
+  // with an upper bound.
   made.witness = verify::witness_of_window(scan.shared, window.low,
                                            window.high.value_or(std::numeric_limits<double>::infinity()),
                                            bench.universe, scan.grey.step());
@@ -99,12 +99,13 @@ void bound(const Window& window, const BoundBench& bench, Object& made) {
 }  // namespace
 
 Operation window_operation() {
-  return Describe<Window>("window", "Makes an object of a scan's samples from one value to another.",
+  return Describe<Window>("window", "Makes an object of the samples of a scan that lie between two values.",
                           Makes::Object)
       .takes(field("scan", &Window::scan, "The scan.").required())
       .takes(field("low", &Window::low, "The lowest sample that belongs to the object, in the scan's unit.")
                  .required())
-      .takes(field("high", &Window::high, "The highest sample that belongs to it. Default: no upper limit."))
+      .takes(field("high", &Window::high,
+                   "The highest sample that belongs to the object. Default: no upper limit."))
       .example(R"({"id": "skull", "do": "window", "scan": "ct", "low": 300})")
       .check(check)
       .object(definition, voxels, triangles, bound);

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double curve_step_mm = 0.5;
 
-/// A point of the centripetal Catmull-Rom spline between b and c, at `share` of the way.
+/// A point of the centripetal Catmull-Rom spline between b and c, at `share` of the way; a and d are the
+/// neighbouring points.
 glm::dvec2 on_spline(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, const glm::dvec2& d,
                      double share) {
   const auto knot = [](double from, const glm::dvec2& p, const glm::dvec2& q) {
@@ -27,8 +28,8 @@ glm::dvec2 on_spline(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2&
   return between(between(ab, bc, t0, t2), between(bc, cd, t1, t3), t1, t2);
 }
 
-/// A spline through the points, in steps of at most curve_step_mm. At either end it is computed with a
-/// further point, which continues the outermost segment straight.
+/// A spline through the points as a polyline, with steps of at most curve_step_mm. Beyond either end a
+/// further point is assumed that continues the outermost segment straight.
 std::vector<glm::dvec2> curve_through(const std::vector<glm::dvec2>& points_mm) {
   std::vector<glm::dvec2> p{2.0 * points_mm[0] - points_mm[1]};
   p.insert(p.end(), points_mm.begin(), points_mm.end());
@@ -43,9 +44,9 @@ std::vector<glm::dvec2> curve_through(const std::vector<glm::dvec2>& points_mm) 
   return curve;
 }
 
-/// Whether a point half a width beside the curve's point `i` lies beyond the centre of a bend: it is nearer
-/// to another point of the curve. For points farther along the curve than half the width, a distance that is
-/// larger by up to a hundredth counts as nearer, too, so that the two sides of a bend do not cross.
+/// Whether a point half a width beside the curve's point `i` lies beyond the centre of a bend, because it is
+/// nearer to another point of the curve. For points more than half the width away along the curve, distances
+/// that are larger by up to a hundredth also count as nearer, so that the two sides of a bend do not cross.
 bool is_beyond_bend(const std::vector<glm::dvec2>& curve, std::size_t i, const glm::dvec2& p_mm,
                     double half_mm) {
   constexpr double rounding = 1e-6;
@@ -57,8 +58,8 @@ bool is_beyond_bend(const std::vector<glm::dvec2>& curve, std::size_t i, const g
   return false;
 }
 
-/// Adds the inner points of a half disc's arc, which begins on the curve's left or, for the curve's first
-/// point, on its right.
+/// Adds the inner points of a half disc's arc. The arc begins on the left of the curve's last point or on the
+/// right of its first point.
 void add_arc(const glm::dvec2& middle_mm, const glm::dvec2& from, std::vector<glm::dvec2>& outline_mm) {
   constexpr int sides = 24;
   for (int i = 1; i < sides; ++i) {
@@ -101,7 +102,7 @@ ArchFrame arch_frame(const std::vector<glm::dvec3>& points_mm, const glm::dvec3&
   }
   if (!(glm::length(doubled_area) > length_mm * length_mm / 50.0))
     throw std::runtime_error(
-        "the points along the arch lie on one line: give at least three, from one end of the arch over its "
+        "the points along the arch lie on one line: choose at least three, from one end of the arch over its "
         "front to the other");
   ArchFrame frame;
   frame.look = glm::normalize(doubled_area);

@@ -40,7 +40,7 @@ std::optional<Seen> Front::first(const glm::dvec2& p_mm) const {
     const auto& face = turned_.faces[crossing.face];
     const glm::dvec3 &a = turned_.points_mm[face[0]], &b = turned_.points_mm[face[1]],
                      &c = turned_.points_mm[face[2]];
-    // The axes look, right and up are left-handed.
+    // The axes look, right and up form a left-handed system.
     const glm::dvec3 normal = -glm::cross(b - a, c - a);
     if (normal.x == 0.0) continue;
     const double depth_mm = a.x - (normal.y * (p_mm.x - a.y) + normal.z * (p_mm.y - a.z)) / normal.x;

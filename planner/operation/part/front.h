@@ -12,28 +12,28 @@
 
 namespace octotomy::planner {
 
-/// The first point of a bone on a line of sight.
+/// The first point of a bone that a line of sight meets.
 struct Seen {
   double depth_mm = 0.0;   ///< p . look
-  glm::dvec3 normal{0.0};  ///< of the triangle, unit, LPS
+  glm::dvec3 normal{0.0};  ///< unit normal of the triangle there, LPS
   std::uint32_t face = 0;  ///< of the bone's triangles
 };
 
-/// The part of a bone's surface that is visible along a frame's look, within a box of the view.
+/// The part of a bone's surface that is visible along `look` of a frame, within a box of the view.
 class Front {
  public:
   /// `low` and `high` are corners of the box in the frame's millimetres (u, v).
   Front() = default;
   Front(const brep::Solid& bone, const ArchFrame& frame, const glm::dvec2& low, const glm::dvec2& high);
 
-  /// The first point of the bone on the line of sight through a position of the view; none if the line meets
-  /// no bone.
+  /// The first point of the bone on the line of sight through a position (u, v) of the view; none if the line
+  /// meets no bone.
   std::optional<Seen> first(const glm::dvec2& p_mm) const;
-  /// The smallest position along `look` of the bone's points within the box; none if there are none.
+  /// The smallest p . look over the bone's points within the box; none if there are no such points.
   const std::optional<double>& foremost_mm() const { return foremost_mm_; }
 
  private:
-  brep::Triangles turned_;  ///< (p . look, p . right, p . up)
+  brep::Triangles turned_;  ///< points as (p . look, p . right, p . up)
   std::vector<std::uint32_t> face_of_;
   glm::dmat3 lps_from_turned_{1.0};
   std::optional<double> foremost_mm_;

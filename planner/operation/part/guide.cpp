@@ -41,10 +41,10 @@
 namespace octotomy::planner {
 namespace {
 
-/// A sleeve around a screw's axis, through which a drill passes.
+/// A sleeve around the axis of a screw. The drill passes through it.
 struct Sleeve {
   ScrewAxis axis;
-  glm::dvec3 outer_mm{0.0};  ///< the middle of its outer end
+  glm::dvec3 outer_mm{0.0};  ///< centre of its outer end
 
   glm::dvec3 through_mm(double by_mm) const { return axis.head_mm + by_mm * axis.along; }
 };
@@ -77,24 +77,25 @@ struct Guide {
   double sleeve_radius_mm() const { return hole_radius_mm() + sleeve_wall_mm; }
 };
 
-/// Cell size of the mesh's level sets. The middles of the balls and the final surface each lie within a 16th
-/// of a cell: together within an eighth of a millimetre, below a printer's error of 0.16 mm, and a third of
-/// that on average.
+/// Cell size of the mesh's level sets. The centres of the balls and the final surface each lie within a 16th
+/// of a cell. Together they deviate by at most an eighth of a millimetre, which is less than a printer's
+/// error of 0.16 mm; the mean deviation is a third of that.
 constexpr double guide_cell_mm = 1.0;
-/// Margin around the region beyond what the guide needs.
+/// Bone within this distance beside the region is used, in addition to what the guide needs.
 constexpr double room_mm = 1.0;
-/// How far rods and holes extend below the bone's surface, because a screw's point may lie slightly off it.
+/// Rods and holes extend this far below the bone's surface, because a screw's point may lie slightly off the
+/// surface.
 constexpr double below_mm = 5.0;
 
 void check(const Guide& guide, const FieldLocation& place) {
   if (!guide.points.empty() && guide.region)
-    place.refuse("states its region twice, by 'points' and by 'region': keep one of them");
+    place.refuse("states its region twice, as 'points' and 'region': keep one of them");
   if (guide.points.empty() && !guide.region && guide.screws.empty())
     place.refuse(
         "the region is missing: add 'points' on the bone, 'region', drawn in a view, or 'screws', whose "
         "heads are points");
   if (guide.region && guide.region->polygons_mm.size() != 1)
-    place.at("region").refuse("must be one polygon: a guide is one piece");
+    place.at("region").refuse("must have exactly one polygon, because a guide is one piece");
   const auto check_view = [&](const std::string& view, const FieldLocation& at) {
     try {
       voxel::parse_view(view);
@@ -105,7 +106,8 @@ void check(const Guide& guide, const FieldLocation& place) {
   check_view(guide.side, place.at("side"));
   if (guide.region) check_view(guide.region->view, place.at("region").at("view"));
   if (guide.rounding_mm > 0.9 * guide.slot_wall_mm)
-    place.at("rounding_mm").refuse("is more than 0.9 of 'slot_wall_mm': rounding would cut the walls off");
+    place.at("rounding_mm")
+        .refuse("is more than 0.9 of 'slot_wall_mm', so rounding would cut off the walls: make it smaller");
   check_least_wall(guide.least_wall_mm, guide.thickness_mm, "thickness_mm", place);
   check_least_wall(guide.least_wall_mm, guide.slot_wall_mm, "slot_wall_mm", place);
   check_least_wall(guide.least_wall_mm, guide.sleeve_wall_mm, "sleeve_wall_mm", place);
@@ -119,7 +121,7 @@ void check(const Guide& guide, const FieldLocation& place) {
   }
 }
 
-/// The sleeves. Throws std::runtime_error unless each lies within the region and beside all slots.
+/// Computes the sleeves. Throws std::runtime_error unless each lies within the region and beside all slots.
 std::vector<Sleeve> sleeves_of(const Guide& guide, const SettleBench& bench) {
   std::vector<Sleeve> sleeves;
   for (const ObjectName& name : guide.screws) {
@@ -132,8 +134,8 @@ std::vector<Sleeve> sleeves_of(const Guide& guide, const SettleBench& bench) {
                                "out of 'screws'");
     if (glm::dot(sleeve.axis.along, guide.site.along) < 0.5)
       throw std::runtime_error(says +
-                               "points more than 60 degrees off the way in which the guide is put on: "
-                               "turn the screw, or choose another 'side'");
+                               "points more than 60 degrees off the guide's insertion direction: turn the "
+                               "screw, or choose another 'side'");
     const brep::Solid body = rod(sleeve.outer_mm, sleeve.axis.head_mm, guide.sleeve_radius_mm());
     for (const SawSlot& slot : guide.slots) {
       const brep::Solid opening = slot.opening.solid(guide.slot_width_mm(slot));
@@ -196,13 +198,15 @@ std::string definition(const Guide& guide, const Objects&) {
          " slots, " + std::to_string(guide.sleeves.size()) + " sleeves";
 }
 
-/// Where the bone's shadow ends. Moved back by the depth of a slot, the shadow bounds the slot's walls; it
-/// then still ends behind the region, so that the walls meet the base everywhere.
+/// The position along the insertion direction at which the bone's shadow ends. Moved back by the depth of a
+/// slot, the shadow bounds the slot's walls. It must then still end behind the region, so that the walls meet
+/// the base everywhere.
 double shadow_end_mm(const Guide& guide) {
   return guide.site.end_mm + (guide.slots.empty() ? 0.0 : guide.slot_depth_mm);
 }
 
-/// The motion from behind the bone to behind a slot's outer rim, along the saw's direction.
+/// The motion along the saw's direction by which the space behind the bone becomes the space behind a slot's
+/// outer rim.
 glm::dmat4 to_rim(const Guide& guide, const SawSlot& slot) {
   return glm::translate(glm::dmat4(1.0), -guide.slot_depth_mm * slot.goes_in);
 }
@@ -217,13 +221,13 @@ double beyond_mm(const Guide& guide) {
 }
 
 void voxels(const Guide& guide, const VoxelBench& bench, VoxelSide& made) {
-  made.lineage = "distances to, and columns of, the octree of the bone";
+  made.lineage = "distances to the octree of the bone, and its columns";
   const VoxelSide& object = bench.object(guide.object.name);
   const voxel::Expression near = guide.site.near.expression();
   const voxel::Octree bone = bench.combined(voxel::Expression(object.octree) & near);
   const voxel::Expression nothing(voxel::Octree::empty(bench.universe));
   const auto has_none = [&] {
-    made.findings.push_back("no voxel lies within the guide's walls: take smaller voxels");
+    made.findings.push_back("no voxel lies within the guide's walls: choose smaller voxels");
     made.octree = voxel::Octree::empty(bench.universe);
     made.symbol = nothing;
   };
@@ -257,14 +261,15 @@ void voxels(const Guide& guide, const VoxelBench& bench, VoxelSide& made) {
 void triangles(const Guide& guide, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "guide");
   const brep::Progress progress{bench.progress.stop, bench.progress.report};
-  made.lineage = "level sets of the distance to the bone less their exact shadow";
+  made.lineage = "level sets of the distance to the bone, less their exact shadow";
   const brep::Solid bone = noted(guide.site.bone, made);
-  if (bone.empty()) throw std::runtime_error("no bone of the mesh lies in the region");
+  if (bone.empty()) throw std::runtime_error("the region contains no bone of the mesh: draw it on the bone");
   const auto timed = [&](const char* stage, const auto& work) {
     const Stopwatch part(bench.timings, stage);
     return work();
   };
-  // The shadow of the grown bone equals the grown shadow of the bone, which has fewer triangles.
+  // The shadow is computed first and then grown, because it has fewer triangles than the bone and the result
+  // is the same.
   const brep::Level taken{
       timed("guide_shadow",
             [&] {
@@ -274,7 +279,7 @@ void triangles(const Guide& guide, const MeshBench& bench, MeshSide& made) {
   const brep::Solid base = guide.site.base.solid();
   const brep::Solid patch =
       noted(brep::boolean(bone, brep::Operation::Intersection, base, bench.progress.stop), made);
-  if (patch.empty()) throw std::runtime_error("no bone of the mesh lies in the region");
+  if (patch.empty()) throw std::runtime_error("the region contains no bone of the mesh: draw it on the bone");
   brep::LevelBody body;
   body.without.push_back(taken);
   for (const SawSlot& slot : guide.slots) {
@@ -299,7 +304,7 @@ void triangles(const Guide& guide, const MeshBench& bench, MeshSide& made) {
   body.without.insert(body.without.end(), holes.begin(), holes.end());
   body.parts.push_back({{patch, guide.clearance_mm + guide.thickness_mm}});
   made.whole = thick_part(body, {guide.least_wall_mm, guide_cell_mm, holes}, "guide", bench, made);
-  if (made.whole->empty()) throw std::runtime_error("nothing of the guide is left: make the region larger");
+  if (made.whole->empty()) throw std::runtime_error("nothing of the guide remains: make the region larger");
   made.details["holes"] = nlohmann::ordered_json::array();
   for (const Sleeve& sleeve : guide.sleeves) {
     const std::optional<double> off_mm = hole_off_mm(*made.whole, sleeve.axis, guide.hole_radius_mm());
@@ -307,8 +312,9 @@ void triangles(const Guide& guide, const MeshBench& bench, MeshSide& made) {
     if (off_mm)
       made.details["holes"].back()["off_axis_mm"] = *off_mm;
     else
-      made.findings.push_back("the guide has no hole for '" + sleeve.axis.screw +
-                              "': its sleeve is on a piece that is left out, so make the region larger");
+      made.findings.push_back(
+          "the guide has no hole for '" + sleeve.axis.screw +
+          "', because its sleeve is on a piece that was left out: make the region larger");
   }
 }
 
@@ -317,8 +323,8 @@ void bound(const Guide& guide, const BoundBench& bench, Object& made) {
   inherit(object, made);
   if (object.mesh.whole && made.mesh.whole && !made.mesh.whole->empty()) {
     const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
-    // In the mesh kernel, only the last surface, which thick_part() makes, adds an error: distances are exact
-    // before it.
+    // In the mesh kernel, distances are exact up to the last surface. Only thick_part(), which makes that
+    // surface, adds an error.
     double apart_mm =
         verify::offset_allowance_mm({object.witness,
                                      voxel::combine(bench.universe, voxel::Expression(object.voxel.octree) &
@@ -346,28 +352,28 @@ void bound(const Guide& guide, const BoundBench& bench, Object& made) {
 }  // namespace
 
 Operation guide_operation() {
-  return Describe<Guide>("guide", "Makes a guide for saw and drill that sits on a region of a bone.",
+  return Describe<Guide>("guide", "Makes a guide for saw and drill that fits onto a region of a bone.",
                          Makes::Object)
       .takes(field("object", &Guide::object, "The bone, before it is cut.").required().positional("bone"))
       .takes(field("side", &Guide::side,
-                   "The side from which the surgeon reaches the bone: anterior, posterior, left, right, "
-                   "superior, inferior, or AZ,EL in degrees; of the head as it is held.")
+                   "The side from which the surgeon reaches the bone, relative to the head's position: "
+                   "anterior, posterior, left, right, superior, inferior, or AZ,EL in degrees.")
                  .required())
       .takes(field("direction", &Guide::direction,
                    "The direction in which the guide is put on, LPS. Default: straight from the side.")
                  .direction())
       .takes(field("points", &Guide::points,
-                   "Points on the bone, in their order along it, about which the guide lies: [x, y, z] or "
-                   "landmarks. Default, without a region: the heads of the screws."))
+                   "Points on the bone, in their order along it: [x, y, z] or landmarks. The guide covers "
+                   "the bone around them. Default, without a region: the heads of the screws."))
       .takes(field("radius_mm", &Guide::radius_mm,
-                   "How far the guide reaches to either side of the line through the points.")
+                   "The distance to which the guide extends on either side of the line through the points.")
                  .from(3.0)
                  .to(60.0)
                  .read_if<Guide>([](const Guide& guide) { return !guide.region; },
                                  "applies only to 'points': leave it out"))
       .takes(field("ends_mm", &Guide::ends_mm,
-                   "How far the guide extends beyond the first and the last of several points. Default: the "
-                   "radius.")
+                   "The distance to which the guide extends beyond the first and the last of several points. "
+                   "Default: the radius.")
                  .from(0.0)
                  .to(60.0)
                  .read_if<Guide>(
@@ -376,47 +382,44 @@ Operation guide_operation() {
                               (guide.points.empty() ? guide.screws.size() : guide.points.size()) > 1;
                      },
                      "applies only to several points or screws: leave it out"))
-      .takes(record("region", &Guide::region, "In place of the points, a region drawn in a view.",
+      .takes(record("region", &Guide::region, "A region drawn in a view, instead of the points.",
                     {field("view", &DrawnSite::view, "The view in which the region is drawn.").required(),
                      field("polygons_mm", &DrawnSite::polygons_mm,
                            "One closed polygon of points [u, v] in the view's millimetres.")
                          .required()})
                  .in_plans_only())
       .takes(field("reach_mm", &Guide::reach_mm,
-                   "How far the guide reaches back from the region's foremost bone; 25 reaches from the "
-                   "piriform rim to the buttress.")
+                   "The distance to which the guide extends behind the region's foremost bone; 25 extends "
+                   "from the piriform rim to the buttress.")
                  .from(2.0)
                  .to(150.0))
       .takes(field("clearance_mm", &Guide::clearance_mm,
-                   "The gap between guide and bone: 0.25 is usual for resin, 0.4 for filament.")
+                   "The gap between guide and bone; 0.25 is usual for resin, 0.4 for filament.")
                  .from(0.05)
                  .to(2.0))
-      .takes(
-          field("thickness_mm", &Guide::thickness_mm,
-                "The thickness of the base; 3 is usual, and 1 the least that is stiff enough to lead a saw.")
-              .from(1.0)
-              .to(10.0))
-      .takes(
-          field(
-              "cuts", &Guide::cuts,
-              "Saw steps, masks and flaps' spaces of this plan whose cuts get slots. A mask gets "
-              "slots at its walls that cut bone in the region, a flap's segment at both cuts, a resection at "
-              "its cuts in the region.")
-              .in_plans_only())
+      .takes(field("thickness_mm", &Guide::thickness_mm,
+                   "The thickness of the base; 3 is usual, and 1 is the least that is stiff enough to guide "
+                   "a saw.")
+                 .from(1.0)
+                 .to(10.0))
+      .takes(field("cuts", &Guide::cuts,
+                   "Saw steps, masks and spaces of flaps in this plan whose cuts get slots. A mask gets "
+                   "slots at its walls that cut bone in the region, a flap's segment at both of its cuts, "
+                   "and a resection at its cuts in the region.")
+                 .in_plans_only())
       .takes(field("kerf_mm", &Guide::kerf_mm,
-                   "The width of the saw's cut for masks, which state none; saw steps have their own.")
+                   "The width of the saw's cut for masks, which do not state one as saw steps do.")
                  .from(0.1)
                  .to(5.0))
-      .takes(
-          field("play_mm", &Guide::play_mm,
-                "By how much slots are wider than the kerf, and holes than the drill, so that saw and drill "
-                "run freely; 0.2 is above a printer's error of 0.16.")
-              .from(0.0)
-              .to(1.0))
+      .takes(field("play_mm", &Guide::play_mm,
+                   "The play: slots are wider than the kerf, and holes wider than the drill, by this much, "
+                   "so that saw and drill run freely; 0.2 exceeds a printer's error of 0.16.")
+                 .from(0.0)
+                 .to(1.0))
       .takes(
           field("slot_depth_mm", &Guide::slot_depth_mm,
-                "How long a slot's walls are along the saw, from the fitting surface to their rim: they lead "
-                "the blade over this length, and the rim stops its shaft. 15 is published for guides.")
+                "The length of a slot's walls along the saw, from the fitting surface to their rim. They "
+                "guide the blade over this length, and the rim stops its shaft. 15 is published for guides.")
               .from(1.0)
               .to(40.0))
       .takes(field("slot_wall_mm", &Guide::slot_wall_mm,
@@ -426,32 +429,31 @@ Operation guide_operation() {
       .takes(
           field(
               "slot_end_mm", &Guide::slot_end_mm,
-              "The wall of the guide beyond a slot's closed ends; 4 is twice the default of 'slot_wall_mm'.")
+              "The length of the wall beyond a slot's closed ends; 4 is twice the default of 'slot_wall_mm'.")
               .from(1.0)
               .to(30.0))
       .takes(field("slot_form", &Guide::slot_form,
-                   "closed: both ends of slots are closed; three_sided: the end of the line's last point is "
-                   "open.")
+                   "closed: both ends of slots are closed; three_sided: the end at the last point of the "
+                   "cut's line is open.")
                  .one_of({"closed", "three_sided"}))
-      .takes(
-          field("rounding_mm", &Guide::rounding_mm,
-                "The radius of the edges of slots' walls, which are thicker than twice this; 1 is half the "
-                "default of 'slot_wall_mm'. The base's rim needs no rounding.")
-              .from(0.3)
-              .to(5.0))
-      .takes(field("screws", &Guide::screws, "Screws of this plan whose holes the guide drills.")
+      .takes(field("rounding_mm", &Guide::rounding_mm,
+                   "The radius of the rounded edges of slots' walls; 1 is half the default of "
+                   "'slot_wall_mm'. The base's rim is not rounded.")
+                 .from(0.3)
+                 .to(5.0))
+      .takes(field("screws", &Guide::screws,
+                   "Screws of this plan. The guide has a sleeve for the drill of each.")
                  .in_plans_only())
       .takes(field("drill_mm", &Guide::drill_mm, "The drill's diameter; 1.5 is usual for screws of 2 mm.")
                  .from(0.5)
                  .to(6.0))
       .takes(field("sleeve_wall_mm", &Guide::sleeve_wall_mm,
-                   "The wall of a drill's sleeve; 1.5 is the diameter of a usual drill.")
+                   "The thickness of the wall of a drill's sleeve; 1.5 is the diameter of a usual drill.")
                  .from(1.0)
                  .to(5.0))
       .takes(field("sleeve_height_mm", &Guide::sleeve_height_mm,
-                   "How far before the bone's surface a sleeve reaches along its axis; over a length of 6 a "
-                   "drill tilts by at "
-                   "most 2 degrees in its play.")
+                   "The height of a sleeve above the bone's surface, along its axis; over a length of 6 a "
+                   "drill tilts by at most 2 degrees within its play.")
                  .from(1.0)
                  .to(40.0))
       .takes(least_wall(&Guide::least_wall_mm))

@@ -14,15 +14,15 @@
 namespace octotomy::planner {
 namespace {
 
-/// The largest distance of points from the bone, because landmarks are placed by hand.
+/// Points may lie this far from the bone, because landmarks are placed by hand.
 constexpr double off_bone_mm = 3.0;
-/// A point deeper than this behind the visible bone is hidden.
+/// A point that lies deeper than this behind the visible bone counts as hidden.
 constexpr double hidden_mm = 3.0;
 /// The largest angle between a guide's insertion direction and its view, and between that direction and the
-/// normal of the bone on which the guide sits.
+/// normal of the bone below the guide.
 constexpr double most_turned_deg = 60.0;
 constexpr double grid_mm = 1.0;
-/// The region is refused if this share of it, or more, lies on a second bone.
+/// A region is refused if at least this share of it lies on a second bone.
 constexpr double second_share = 0.05;
 
 voxel::View head_view(const std::string& text, const SettleBench& bench) {
@@ -35,13 +35,14 @@ double turned_deg(const glm::dvec3& a, const glm::dvec3& b) {
   return glm::degrees(std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)));
 }
 
-/// The direction in which the guide is put on.
+/// The insertion direction of the part as a unit vector, LPS. Throws if it or the region's view lies too far
+/// off the side.
 glm::dvec3 way_of(const SiteAsked& asked, const SettleBench& bench) {
   const voxel::View side = head_view(asked.side, bench);
   const glm::dvec3 along = asked.direction ? glm::normalize(*asked.direction) : side.look;
   if (const double off_deg = turned_deg(along, side.look); off_deg > most_turned_deg)
     throw std::runtime_error("the direction lies " + three_figures(off_deg) + " degrees off the view from '" +
-                             asked.side + "', so that nobody on that side can put the " + asked.part +
+                             asked.side + "', so nobody on that side can put the " + asked.part +
                              " on: turn 'direction', or "
                              "choose another 'side'");
   if (asked.drawn) {
@@ -54,7 +55,7 @@ glm::dvec3 way_of(const SiteAsked& asked, const SettleBench& bench) {
   return along;
 }
 
-/// A frame that looks along a direction; its up is as close as possible to the head's.
+/// A frame that looks along a direction. Its up is as close as possible to the head's up.
 ArchFrame frame_along(const glm::dvec3& look, const glm::dmat3& lps_from_head) {
   ArchFrame frame;
   frame.look = look;
@@ -95,7 +96,7 @@ ViewBox box_of(const std::vector<glm::dvec2>& outline_mm, double margin_mm = 0.0
   return box;
 }
 
-/// Computes the outlines of the region and of the space around it, in the base's frame.
+/// Computes the outlines of the region and of the space around it, in the frame of the base.
 void draw_outlines(const SiteAsked& asked, const SettleBench& bench, GuideSite& site) {
   ArchFrame& frame = site.base.frame;
   if (asked.drawn) {
@@ -113,8 +114,8 @@ void draw_outlines(const SiteAsked& asked, const SettleBench& bench, GuideSite& 
     for (std::size_t i = 1; i < frame.points_mm.size(); ++i)
       if (glm::distance(frame.points_mm[i - 1], frame.points_mm[i]) < least_apart_mm)
         throw std::runtime_error("points " + std::to_string(i) + " and " + std::to_string(i + 1) +
-                                 " lie behind each other, seen along the direction in which the " +
-                                 asked.part + " is put on: leave one out");
+                                 " lie behind each other along the direction in which the " + asked.part +
+                                 " is put on: leave out one of them");
     const double ends_mm = asked.ends_mm.value_or(asked.radius_mm);
     site.base.outline_mm = outline_about(frame.points_mm, asked.radius_mm, ends_mm);
     site.near.outline_mm =
@@ -127,15 +128,14 @@ void draw_outlines(const SiteAsked& asked, const SettleBench& bench, GuideSite& 
     static_cast<void>(site.base.solid());
     static_cast<void>(site.near.solid());
   } catch (const std::invalid_argument&) {
-    throw std::runtime_error(
-        asked.drawn
-            ? "the region's polygon crosses itself or has no area: draw a simple one"
-            : "the region about the points crosses itself: make it narrower, or give points in their order "
-              "along a line");
+    throw std::runtime_error(asked.drawn
+                                 ? "the region's polygon crosses itself or has no area: draw a simple polygon"
+                                 : "the region around the points crosses itself: make it narrower, or state "
+                                   "the points in their order along a line");
   }
 }
 
-/// The component of each face of a bone.
+/// For each face of a bone, the number of its component.
 std::vector<std::uint32_t> pieces_of(const brep::Solid& bone) {
   std::vector<std::uint32_t> piece(bone.triangles().faces.size(), 0);
   const std::vector<brep::Component>& components = bone.components();
@@ -151,23 +151,21 @@ void need_points_seen(const SiteAsked& asked, const brep::Solid& bone,
     const std::string point = "point " + std::to_string(i + 1);
     if (feet[i].distance_mm > off_bone_mm)
       throw std::runtime_error(point + " lies " + three_figures(feet[i].distance_mm) +
-                               " mm off the surface of '" + asked.bone + "': give points on the bone");
+                               " mm off the surface of '" + asked.bone + "': choose points on the bone");
     if (!asked.is_on_several && piece[feet[i].face] != piece[feet[0].face])
-      throw std::runtime_error("points 1 and " + std::to_string(i + 1) + " lie on two bones, pieces of '" +
-                               asked.bone +
-                               "' that do not meet: a guide sits on one bone, so make a guide for each");
+      throw std::runtime_error("points 1 and " + std::to_string(i + 1) + " lie on two separate pieces of '" +
+                               asked.bone + "', but a guide sits on one bone: make a guide for each of them");
     const std::optional<Seen> seen = site.front.first(site.base.frame.project(feet[i].p_mm));
     const double behind_mm = seen ? glm::dot(feet[i].p_mm, site.base.frame.look) - seen->depth_mm : 0.0;
     if (behind_mm > hidden_mm)
       throw std::runtime_error(
           point + " lies " + three_figures(behind_mm) +
-          " mm behind other bone, seen along the direction in which the " + asked.part +
-          " is put on: the surgeon reaches only bone that is visible from the side; move the point or "
-          "choose another 'side'");
+          " mm behind other bone along the direction in which the " + asked.part +
+          " is put on, where the surgeon cannot reach it: move the point or choose another 'side'");
   }
 }
 
-/// The visible bone of the region, sampled on a grid.
+/// Samples of the region's visible bone on a grid.
 struct SeenRegion {
   double foremost_mm = std::numeric_limits<double>::infinity();
   std::vector<std::pair<double, Seen>> all;  ///< each with its depth
@@ -202,12 +200,12 @@ void need_one_bone(const SiteAsked& asked, const SeenRegion& region,
   if (other >= second_share)
     throw std::runtime_error("the region lies on two bones: " + three_figures(100.0 * other) +
                              " % of it is on other pieces of '" + asked.bone +
-                             "' than the rest: draw it on one bone, or keep one by a parts step");
+                             "' than the rest: draw it on one bone, or keep one bone by a parts step");
 }
 
 void need_facing(const SiteAsked& asked, const SeenRegion& region, const GuideSite& site) {
-  // A line of sight represents an area that grows with the slant of the surface, so normals are weighted by
-  // it: their sum then has the direction of the mean normal over the area.
+  // A line of sight stands for an area that grows with the slant of the surface. Normals are weighted by this
+  // area, so that their sum has the direction of the mean normal over the surface.
   constexpr double least_slant = 0.05;
   glm::dvec3 sum(0.0);
   for (const auto& [depth_mm, seen] : region.all)
@@ -218,8 +216,8 @@ void need_facing(const SiteAsked& asked, const SeenRegion& region, const GuideSi
   if (off_deg > most_turned_deg)
     throw std::runtime_error("the direction runs along the sides of '" + asked.bone + "': it lies " +
                              three_figures(off_deg) +
-                             " degrees off the mean normal of the region, so that nothing holds the " +
-                             asked.part + "; point it into the bone");
+                             " degrees off the mean normal of the region, so nothing holds the " +
+                             asked.part + "; point the direction into the bone");
 }
 
 }  // namespace
@@ -244,8 +242,8 @@ GuideSite guide_site(const SiteAsked& asked, const SettleBench& bench) {
   if (!asked.drawn) need_points_seen(asked, bone, piece, site);
   const SeenRegion region = seen_of(site);
   if (region.all.empty())
-    throw std::runtime_error("the region holds no bone of '" + asked.bone +
-                             "' as seen from its side: draw it on the bone");
+    throw std::runtime_error("the region contains no bone of '" + asked.bone +
+                             "' that is visible from its side: draw it on the bone");
   if (asked.drawn) need_one_bone(asked, region, piece);
   need_facing(asked, region, site);
   site.base.low_mm = region.foremost_mm - asked.before_mm;

@@ -12,7 +12,7 @@
 #include "planner/operation/table/bench.h"
 #include "planner/operation/table/field.h"
 
-// The region of a bone on which a guide or a plate sits, and the side from which it is put on.
+// The place of a guide or plate: the region of the bone that it covers, and the side from which it is put on.
 namespace octotomy::planner {
 
 /// A region drawn in a view.
@@ -22,35 +22,37 @@ struct DrawnSite {
 };
 
 struct SiteAsked {
-  std::string bone;  ///< the name of the object
-  std::string side;  ///< a view of the head as it is held
+  std::string bone;  ///< name of the bone's object
+  std::string side;  ///< a view's name or angles, relative to the head's position
   std::optional<glm::dvec3> direction;
-  std::vector<glm::dvec3> points_mm;  ///< if no region is drawn
-  double radius_mm = 10.0;            ///< of the region about the points
-  std::optional<double> ends_mm;      ///< how far it extends beyond the first and last of several points;
-                                      ///< none: by the radius
+  std::vector<glm::dvec3> points_mm;  ///< points that the region surrounds, if no region is drawn
+  double radius_mm = 10.0;            ///< half width of the region around the points
+  std::optional<double> ends_mm;      ///< length of the region beyond the first and last of several points;
+                                      ///< none: the radius
   std::optional<DrawnSite> drawn;
-  double reach_mm = 25.0;      ///< behind the region's foremost bone
-  double before_mm = 5.0;      ///< how far the guide extends before the bone
-  double margin_mm = 5.0;      ///< how far beside the region bone is used
+  double reach_mm = 25.0;      ///< the part extends this far behind the region's foremost bone
+  double before_mm = 5.0;      ///< the part extends this far before the region's foremost bone
+  double margin_mm = 5.0;      ///< bone within this distance beside the region is used
   std::string part = "guide";  ///< in messages
-  bool is_on_several = false;  ///< the part may lie on several pieces of the bone
+  bool is_on_several = false;  ///< whether the part may lie on several pieces of the bone
 };
 
 struct GuideSite {
-  Slab base;                  ///< the region, from `before_mm` before to `reach_mm` behind the foremost bone
-  Slab near;                  ///< the space whose bone shapes the part
-  glm::dvec3 along{0, 1, 0};  ///< unit, LPS: the direction in which the guide is put on
-  double end_mm = 0.0;        ///< position along `along` of the plane, 1 mm behind `base` and `near`, at
-                              ///< which shadows end
+  Slab base;                  ///< the region's volume, from `before_mm` before the foremost bone to
+                              ///< `reach_mm` behind it
+  Slab near;                  ///< the space around it; the bone within shapes the part
+  glm::dvec3 along{0, 1, 0};  ///< unit, LPS: the direction in which the part is put on
+  double end_mm = 0.0;        ///< position along `along` of the plane at which shadows end, 1 mm behind
+                              ///< `base` and `near`
   brep::BooleanResult bone;   ///< the bone's mesh within `near`
-  Front front;                ///< of the bone about the region
+  Front front;                ///< visible surface of the bone around the region
 
-  /// The visible bone at a position of the base's view, within the reach.
+  /// The visible bone at a position (u, v) of the base's view, LPS mm; none if there is none within the
+  /// reach.
   std::optional<glm::dvec3> bone_at(const glm::dvec2& p_mm) const;
 };
 
-/// Computes where a part sits. Throws std::runtime_error, which names the remedy, if points lie off the bone,
+/// Computes the place of a part. Throws std::runtime_error that states the remedy if points lie off the bone,
 /// on two bones or hidden behind bone; if the region lies on two bones or was drawn from another side; or if
 /// the direction runs along the bone's sides or comes from another side.
 GuideSite guide_site(const SiteAsked& asked, const SettleBench& bench);

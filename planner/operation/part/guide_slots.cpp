@@ -29,10 +29,10 @@ namespace octotomy::planner {
 namespace {
 
 constexpr double step_mm = 0.5;
-/// A region's polygon is swept along the guide's direction if its line of sight is within this angle of that
-/// direction or of the opposite one, and across it otherwise.
+/// The polygon of a region is swept along the guide's direction if its line of sight lies within this angle
+/// of that direction or its opposite. Otherwise it is swept across.
 constexpr double most_apart_deg = 45.0;
-/// The largest angle between a saw's direction and the direction in which the guide is put on.
+/// The largest allowed angle between a saw's direction and the guide's insertion direction.
 constexpr double most_oblique_deg = 60.0;
 constexpr double least_opening_mm = 2.0;
 constexpr double on_other_cut_mm = 1.0;
@@ -40,7 +40,7 @@ constexpr double on_other_cut_mm = 1.0;
 enum class On { Beside, Gap, Bone };
 
 struct CutSample {
-  double at_mm = 0.0;  ///< along the line, or the sweep
+  double at_mm = 0.0;  ///< position along the line, or along the sweep
   On on = On::Beside;
   glm::dvec3 bone_mm{0.0};
 };
@@ -57,7 +57,7 @@ double length_of(const Line& line) {
   return length_mm;
 }
 
-/// The part of a line between two lengths along it.
+/// The part of a line between two lengths from its beginning.
 Line piece_of(const Line& line, double from_mm, double to_mm) {
   Line piece;
   double before_mm = 0.0;
@@ -76,7 +76,7 @@ Line piece_of(const Line& line, double from_mm, double to_mm) {
   return piece;
 }
 
-/// A line whose last edge is made longer.
+/// The line with its last edge made longer by `by_mm`.
 Line longer(Line line, double by_mm) {
   const std::size_t last = line.size() - 1;
   line[last] += by_mm * glm::normalize(line[last] - line[last - 1]);
@@ -87,13 +87,14 @@ bool is_in(const SlotsAsked& asked, const glm::dvec2& p_mm) {
   return voxel::contains({asked.base.outline_mm}, p_mm);
 }
 
-/// The point at which a saw through a point meets the bone of the region.
+/// The point at which a saw that passes `p_mm` along `direction` meets the bone of the region.
 CutSample met_along(const glm::dvec3& p_mm, const glm::dvec3& direction, const SlotsAsked& asked) {
   const ArchFrame& frame = asked.base.frame;
   const double sinks = glm::dot(direction, frame.look);
   double depth_mm = 0.5 * (asked.base.low_mm + asked.base.high_mm);
   CutSample sample;
-  constexpr int rounds = 6;  // each moves the sample closer to where an oblique saw meets the bone
+  constexpr int rounds = 6;  // each round moves the sample closer to the point where an oblique saw meets the
+                             // bone
   for (int round = 0; round < rounds; ++round) {
     const glm::dvec3 at_mm = p_mm + direction * ((depth_mm - glm::dot(p_mm, frame.look)) / sinks);
     const glm::dvec2 seen_mm = frame.project(at_mm);
@@ -121,8 +122,8 @@ std::vector<CutSample> along_line(const Line& line, const glm::dvec3& direction,
   return samples;
 }
 
-/// For a line that runs into the bone and is swept across: the points at which its surface meets the bone,
-/// one for each position of the sweep.
+/// The points at which the surface of a cut meets the bone, one for each position of the sweep. For a line
+/// that runs into the bone and is swept across it.
 std::vector<CutSample> along_sweep(const Line& line, const glm::dvec3& sweep, double from_mm, double to_mm,
                                    const SlotsAsked& asked) {
   const glm::dvec3& look = asked.base.frame.look;
@@ -145,7 +146,7 @@ std::vector<CutSample> along_sweep(const Line& line, const glm::dvec3& sweep, do
         was_before = true;
         continue;
       }
-      if (!was_before) break;  // the line begins within the bone: no saw comes from there
+      if (!was_before) break;  // the line begins within the bone, where no saw can enter
       sample.on = On::Bone;
       sample.bone_mm = *bone_mm;
       break;
@@ -155,7 +156,7 @@ std::vector<CutSample> along_sweep(const Line& line, const glm::dvec3& sweep, do
   return samples;
 }
 
-/// The longest run of samples within the region, from bone to bone; empty if there is none.
+/// The longest run of samples within the region that begins and ends on bone; empty if there is none.
 std::vector<CutSample> longest_run(const std::vector<CutSample>& samples) {
   std::vector<CutSample> best, run;
   const auto close = [&] {
@@ -173,7 +174,7 @@ std::vector<CutSample> longest_run(const std::vector<CutSample>& samples) {
   return best;
 }
 
-/// Where a slot's opening and its walls begin and end, as lengths along the cut.
+/// The ends of a slot's opening and of its walls, as lengths along the cut.
 struct SlotEnds {
   double from_mm, to_mm, walls_from_mm, walls_to_mm;
 };
@@ -191,7 +192,7 @@ std::optional<SlotEnds> ends_of(const std::vector<CutSample>& run, const SlotsAs
   return ends;
 }
 
-/// A blade that extends from before the bone to behind it.
+/// A blade that extends from `margin_mm` before the bone to `margin_mm` behind it.
 Blade blade_through(Line line, const glm::dvec3& direction, const std::vector<CutSample>& run,
                     const SlotsAsked& asked) {
   double low_mm = std::numeric_limits<double>::infinity(), high_mm = -low_mm;
@@ -205,7 +206,8 @@ Blade blade_through(Line line, const glm::dvec3& direction, const std::vector<Cu
   return {std::move(line), direction, high_mm + asked.margin_mm - low_mm};
 }
 
-/// The result of a sampled cut: a slot, or the length along which the cut meets the bone of the region.
+/// The result of sampling a cut: its slot if there is one, and the length over which the cut meets the bone
+/// of the region.
 struct SlotFound {
   std::optional<SawSlot> slot;
   double met_mm = 0.0;
@@ -243,7 +245,7 @@ SlotFound slot_along_sweep(const Line& line, const glm::dvec3& sweep, const std:
   const std::optional<SlotEnds> ends = ends_of(found.run, asked);
   if (!ends) return found;
   const auto swept = [&](double from_mm, double to_mm) {
-    // Moves the end of the first edge outward, beyond the guide's front.
+    // The end of the first edge is moved outward, beyond the guide's front.
     Line points(line.rbegin(), line.rend());
     points = longer(points, 2.0 * asked.margin_mm);
     for (glm::dvec3& p_mm : points) p_mm += sweep * (from_mm - glm::dot(p_mm, sweep));
@@ -258,8 +260,8 @@ SlotFound slot_along_sweep(const Line& line, const glm::dvec3& sweep, const std:
   return found;
 }
 
-/// Whether a point lies within the regions or on their border. A cut drawn in two views lies on the borders
-/// of both regions.
+/// Whether a point lies within the regions or within border_mm of their border. A cut that is drawn in two
+/// views lies on the borders of both regions.
 bool is_within(const voxel::RegionMask& regions, const glm::dvec3& p_mm) {
   constexpr double border_mm = 0.1;
   if (regions.regions.empty() || voxel::contains(regions, p_mm)) return true;
@@ -272,14 +274,13 @@ bool is_within(const voxel::RegionMask& regions, const glm::dvec3& p_mm) {
   return false;
 }
 
-/// Excludes samples whose bone lies outside the mask's other regions, because nothing is cut there.
+/// Excludes samples whose bone lies outside of the mask's other regions, because the mask cuts nothing there.
 void leave_out_beside(const voxel::RegionMask& others, std::vector<CutSample>& samples) {
   for (CutSample& sample : samples)
     if (sample.on == On::Bone && !is_within(others, sample.bone_mm)) sample.on = On::Beside;
 }
 
-/// The parts of a closed polygon that run into the bone from its front, as seen along the direction in which
-/// the guide is put on.
+/// The parts of a closed polygon that run from the bone's front into the bone along the insertion direction.
 std::vector<Line> stretches_inward(const Line& polygon, const glm::dvec3& along) {
   const std::size_t count = polygon.size();
   const double least = std::cos(glm::radians(most_oblique_deg));
@@ -301,7 +302,7 @@ std::vector<Line> stretches_inward(const Line& polygon, const glm::dvec3& along)
   return found;
 }
 
-/// Whether another slot already lies at the same place, as happens when a box is drawn in two views.
+/// Whether a slot already lies at the same place, because a box is drawn in two views.
 bool is_double(const SlotFound& found, const std::vector<SawSlot>& slots) {
   for (const SawSlot& slot : slots) {
     std::size_t on = 0, of = 0;
@@ -354,8 +355,7 @@ std::vector<SawSlot> slots_of_mask(const Mask& mask, const glm::dmat3& lps_from_
         if (!is_across) {
           const glm::dvec3 direction = off_deg < 90.0 ? view.look : -view.look;
           Line closed = polygon;
-          // A run does not continue across the line's ends, so the ends are moved to samples beside the
-          // region.
+          // A run ends at the ends of the line, so the ends are moved to samples beside the region.
           const auto beside = std::find_if(closed.begin(), closed.end(), [&](const glm::dvec3& p_mm) {
             return met_along(p_mm, direction, asked).on == On::Beside;
           });
@@ -391,8 +391,8 @@ std::vector<SawSlot> slots_of_saw(const std::string& cut, const Saw& saw, const 
   const double off_deg = angle_deg(direction, asked.along);
   if (off_deg > most_oblique_deg)
     throw std::runtime_error("the saw of '" + cut + "' goes in at " + three_figures(off_deg) +
-                             " degrees to the way in which the guide is put on: no guide on this side leads "
-                             "it, so choose another 'side'");
+                             " degrees to the guide's insertion direction, so no guide on this side can "
+                             "guide it: choose another 'side'");
   SlotFound found = slot_along_line(saw.line_mm, direction, along_line(saw.line_mm, direction, asked), asked);
   longest_mm = std::max(longest_mm, found.met_mm);
   if (!found.slot) return {};
@@ -402,19 +402,19 @@ std::vector<SawSlot> slots_of_saw(const std::string& cut, const Saw& saw, const 
 
 std::string misses(const std::string& cut) {
   return cut +
-         "misses the guide: no bone of the region lies on it, so move 'points' to the cut or leave it out of "
-         "'cuts'";
+         "misses the guide, because no bone of the region lies on it: move 'points' to the cut, or leave the "
+         "cut out of 'cuts'";
 }
 
 std::string too_short(const std::string& cut, double met_mm, const SlotsAsked& asked) {
   return cut + "meets the bone of the guide's region along " + three_figures(met_mm) +
-         " mm, too little for a slot with walls of " + three_figures(asked.end_mm) +
+         " mm, which is too short for a slot with walls of " + three_figures(asked.end_mm) +
          " mm at its ends: make the region larger, or 'slot_end_mm' smaller";
 }
 
 /// The slots of a flap's cuts. The saw enters within the plane of a cut, as nearly as possible along the
-/// guide's insertion direction, and its kerf lies on one side of the plane. Cuts of the resection that miss
-/// the region belong to another guide.
+/// guide's insertion direction, and its kerf lies on one side of the plane. A cut of the resection that
+/// misses the region is skipped, because it belongs to another guide.
 std::vector<SawSlot> slots_of_flap(const std::string& cut, const std::vector<FlapCut>& cuts,
                                    const SlotsAsked& asked, double& longest_mm) {
   std::vector<SawSlot> slots;
@@ -422,7 +422,8 @@ std::vector<SawSlot> slots_of_flap(const std::string& cut, const std::vector<Fla
     const FlapCut& plane = cuts[i];
     const std::string says = "cut " + std::to_string(i + 1) + " of '" + cut + "' ";
     if (!(plane.kerf_mm > 0.0))
-      throw std::runtime_error("'kerf_mm' of '" + cut + "' is 0: a slot needs the width of the saw's cut");
+      throw std::runtime_error("'kerf_mm' of '" + cut +
+                               "' is 0, but a slot needs the width of the saw's cut: state it");
     const glm::dvec3 within = asked.along - plane.away * glm::dot(asked.along, plane.away);
     const ArchFrame& frame = asked.base.frame;
     const glm::dvec3 middle_mm = plane.point_mm + 0.5 * plane.kerf_mm * plane.away;
@@ -443,10 +444,9 @@ std::vector<SawSlot> slots_of_flap(const std::string& cut, const std::vector<Fla
     SlotFound found;
     if (is_before && is_behind) {
       if (!is_led)
-        throw std::runtime_error(
-            says + "lies more than " + three_figures(most_oblique_deg) +
-            " degrees off the way in which the guide is put on: no guide on this side leads "
-            "the saw, so choose another 'side'");
+        throw std::runtime_error(says + "lies more than " + three_figures(most_oblique_deg) +
+                                 " degrees off the guide's insertion direction, so no guide on this side can "
+                                 "guide the saw: choose another 'side'");
       const Line line{middle_mm - half_mm * across, middle_mm + half_mm * across};
       std::vector<CutSample> samples = along_line(line, direction, asked);
       for (CutSample& sample : samples)
@@ -492,10 +492,9 @@ std::vector<SawSlot> slots_of(const std::string& cut, const SlotsAsked& asked, c
            !cuts.empty())
     slots = slots_of_flap(cut, cuts, asked, longest_mm);
   else
-    throw std::runtime_error(
-        "'" + cut +
-        "' is no cut: name a saw step, a mask whose walls are cuts, or a flap's space of a "
-        "segment or resection");
+    throw std::runtime_error("'" + cut +
+                             "' is not a cut: name a saw step, a mask whose walls are cuts, or a flap's "
+                             "space of a segment or resection");
   const std::string says = "the cut '" + cut + "' ";
   if (slots.empty())
     throw std::runtime_error(longest_mm > 0.0 ? too_short(says, longest_mm, asked) : misses(says));

@@ -56,17 +56,16 @@ std::string in_words(const Insertion& insertion) {
 }
 
 Field insertion_direction(const std::function<Insertion&(void* owner)>& insertion) {
-  return Field{"direction", "The direction in which a part is put on, LPS; its length does not count.",
+  return Field{"direction", "The direction in which a part is put on, as an LPS vector of any length.",
                [insertion](void* owner) -> Slot { return &insertion(owner).direction; }}
       .direction();
 }
 
 Field insertion_view(const std::function<Insertion&(void* owner)>& insertion) {
-  return Field{
-      "seen_from",
-      "Instead of the direction, the view from whose side a part is put on: anterior, posterior, left, "
-      "right, superior, inferior, or AZ,EL in degrees; of the head as it is held.",
-      [insertion](void* owner) -> Slot { return &insertion(owner).seen_from; }};
+  return Field{"seen_from",
+               "The view from whose side a part is put on, instead of the direction, relative to the head's "
+               "position: anterior, posterior, left, right, superior, inferior, or AZ,EL in degrees.",
+               [insertion](void* owner) -> Slot { return &insertion(owner).seen_from; }};
 }
 
 }  // namespace octotomy::planner

@@ -11,25 +11,25 @@
 
 namespace octotomy::planner {
 
-/// The direction in which a part is inserted: a given vector, or a view: the part then comes from the
-/// viewer's side. Exactly one of the two is set.
+/// The direction in which a part is put on: either a vector, or a view, which means that the part comes from
+/// the viewer's side. Exactly one of the two is set.
 struct Insertion {
   std::optional<glm::dvec3> direction;   ///< of any length, LPS
-  std::optional<std::string> seen_from;  ///< a view of the head as it is held
+  std::optional<std::string> seen_from;  ///< a view's name or angles, relative to the head's position
 };
 
-/// Refuses a direction and a view together, neither of them, a direction without length, and an unknown
-/// view.
+/// Refuses an insertion with both a direction and a view, or with neither, and a direction without length or
+/// an unknown view.
 void check(const Insertion& insertion, const FieldLocation& place);
 /// The insertion direction as a unit vector, LPS.
 glm::dvec3 direction_of(const Insertion& insertion, const glm::dmat3& lps_from_head);
-/// The first direction, then rings of directions around it, a step apart, up to `within_deg`; the directions
-/// on a ring are about a step apart. Precondition: a unit vector.
+/// Directions around a first one, which comes first: rings of directions, `step_deg` apart, up to
+/// `within_deg`. Neighbours on a ring are about one step apart. Precondition: `first` is a unit vector.
 std::vector<glm::dvec3> directions_about(const glm::dvec3& first, double within_deg, double step_deg);
-/// The direction for messages: "(0, 1, 0)", "the view from anterior".
+/// The direction as text for messages: "(0, 1, 0)" or "the view from anterior".
 std::string in_words(const Insertion& insertion);
 
-/// The fields "direction" and "seen_from" of an operation that holds an insertion.
+/// The fields "direction" and "seen_from" of an operation whose value contains an insertion.
 Field insertion_direction(const std::function<Insertion&(void* owner)>& insertion);
 Field insertion_view(const std::function<Insertion&(void* owner)>& insertion);
 template <typename Owner>

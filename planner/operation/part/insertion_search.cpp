@@ -26,7 +26,8 @@ struct InsertionSearch {
 void check(const InsertionSearch& asked, const FieldLocation& place) {
   check(asked.insertion, place);
   if (asked.step_deg > asked.within_deg)
-    place.at("step_deg").refuse("is larger than 'within_deg', so no direction but the first is tried");
+    place.at("step_deg")
+        .refuse("is larger than 'within_deg', so only the first direction would be tried: make it smaller");
 }
 
 double by_mesh_mm3(const brep::Solid& solid, const glm::dvec3& direction, const AnswerBench& bench) {
@@ -72,8 +73,8 @@ Json measure(const InsertionSearch& asked, const AnswerBench& bench) {
                                       : Json(by_mesh_mm3(*object.mesh.within, directions[best], bench));
   if (json["mesh_filled_mm3"].get<double>() > json["first"]["mesh_filled_mm3"].get<double>())
     json["findings"].push_back(
-        "in the mesh, the first direction has a smaller undercut than the best direction of the voxels: use "
-        "the first");
+        "in the mesh, the first direction has a smaller undercut than the direction that is best in voxels: "
+        "use the first direction");
   return json;
 }
 
@@ -82,17 +83,18 @@ Json measure(const InsertionSearch& asked, const AnswerBench& bench) {
 Operation insertion_search_operation() {
   return Describe<InsertionSearch>(
              "insertion_search",
-             "Finds the insertion direction along which an object has the least undercut.",
+             "Searches for the insertion direction along which an object has the least undercut.",
              Makes::Measurement)
       .takes(field("object", &InsertionSearch::object, "The bone or teeth on which a part is to sit.")
                  .required())
       .takes(insertion_direction(&InsertionSearch::insertion))
       .takes(insertion_view(&InsertionSearch::insertion))
       .takes(field("within_deg", &InsertionSearch::within_deg,
-                   "The largest angle between the first direction and the others.")
+                   "The largest angle between the first direction and the other directions that are tried.")
                  .greater_than(0.0)
                  .to(80.0))
-      .takes(field("step_deg", &InsertionSearch::step_deg, "The angle between neighbouring directions.")
+      .takes(field("step_deg", &InsertionSearch::step_deg,
+                   "The angle between neighbouring directions that are tried.")
                  .from(1.0)
                  .to(45.0))
       .example(R"({"id": "way_in", "do": "insertion_search", "object": "maxilla", "direction": [0, 0, 1],

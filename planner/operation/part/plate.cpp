@@ -58,29 +58,29 @@ struct Plate {
   std::vector<ObjectName> away_from;
   double least_mm = 1.0;
   double least_wall_mm = 0.8;
-  // The values that settle() computes.
+  // The following members are computed by settle().
   GuideSite site;
-  Slab ridge;  ///< narrower than the plate by the rounding on each side
+  Slab ridge;  ///< the band, narrower than the plate by the rounding on either side
   std::vector<ScrewAxis> axes;
 
   double hole_radius_mm(const ScrewAxis& axis) const { return 0.5 * (axis.diameter_mm + play_mm); }
-  double flat_mm() const { return thickness_mm - rounding_mm; }  ///< of the thickness below the rounding
+  double flat_mm() const { return thickness_mm - rounding_mm; }  ///< thickness below the rounded edge
 };
 
 constexpr double plate_room_mm = 1.0;
-/// Largest angle between a screw and the direction in which the plate is put on.
+/// The largest allowed angle between a screw and the plate's insertion direction.
 constexpr double steepest_screw_deg = 45.0;
-/// Largest distance of a screw's point from the bone; the point was placed by hand.
+/// A screw's point may lie this far off the bone, because it was placed by hand.
 constexpr double screw_off_bone_mm = 3.0;
-/// Cell size of the mesh's offsets. Triangles lie within a 16th of a cell, and within a third of that on
-/// average. A ball of the bending radius touches all triangles of the patch on which it rests, so the number
-/// of triangles determines the running time.
+/// Cell size of the mesh's offsets. Triangles lie within a 16th of a cell from the surface, and within a
+/// third of that on average. The number of triangles determines the running time, because a ball of the
+/// bending radius touches all triangles of the patch on which it rests.
 constexpr double plate_outer_cell_mm = 0.6;
 double grown_cell_mm(const Plate& plate) {
   return plate.bend_radius_mm / 5.0;
 }
-/// Triangles face the bone if their normal lies within 60 degrees of the direction in which the plate is put
-/// on.
+/// A triangle faces the bone if the cosine between its normal and the insertion direction exceeds this, that
+/// is within 60 degrees.
 constexpr double faces_bone = 0.5;
 
 void check(const Plate& plate, const FieldLocation& place) {
@@ -93,20 +93,23 @@ void check(const Plate& plate, const FieldLocation& place) {
     place.at("points").refuse(
         "has fewer than two points: add points on the bone, or 'screws', whose heads are points");
   if (plate.rounding_mm > 0.45 * plate.thickness_mm)
-    place.at("rounding_mm").refuse("is more than 0.45 of 'thickness_mm': nothing of the sides would be left");
+    place.at("rounding_mm")
+        .refuse("is more than 0.45 of 'thickness_mm', so nothing of the sides would remain: make it smaller");
   if (plate.rounding_mm > 0.3 * plate.width_mm)
-    place.at("rounding_mm").refuse("is more than 0.3 of 'width_mm': nothing of the outer face would be left");
+    place.at("rounding_mm")
+        .refuse("is more than 0.3 of 'width_mm', so nothing of the outer face would remain: make it smaller");
   if (!(plate.bend_radius_mm >= 2.0 * plate.thickness_mm))
     place.at("bend_radius_mm")
         .refuse(
-            "is less than twice 'thickness_mm': a plate that is bent this sharply breaks, and its outer "
-            "side would cross itself");
+            "is less than twice 'thickness_mm', but a plate that is bent so sharply breaks, and its outer "
+            "side would cross itself: make it larger");
   check_least_wall(plate.least_wall_mm, plate.thickness_mm, "thickness_mm", place);
   if (plate.least_wall_mm > plate.hole_wall_mm)
-    place.at("least_wall_mm").refuse("is more than 'hole_wall_mm': walls beside holes would be cut off");
+    place.at("least_wall_mm")
+        .refuse("is more than 'hole_wall_mm', so walls beside holes would be cut off: make it smaller");
 }
 
-/// The distance of a place from the border of an outline; negative outside.
+/// The distance in mm of a point from the border of an outline; negative if it lies outside.
 double within_mm(const std::vector<glm::dvec2>& outline_mm, const glm::dvec2& p_mm) {
   double least_mm = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < outline_mm.size(); ++i) {
@@ -116,8 +119,8 @@ double within_mm(const std::vector<glm::dvec2>& outline_mm, const glm::dvec2& p_
   return voxel::contains({outline_mm}, p_mm) ? least_mm : -least_mm;
 }
 
-/// The axes of the screws. Throws std::runtime_error unless each starts at the planned bone, lies within the
-/// band and leaves a wall to the other holes.
+/// The axes of the screws. Throws std::runtime_error unless each screw starts at the planned bone, lies
+/// within the band and leaves enough wall to the plate's side and to other holes.
 std::vector<ScrewAxis> axes_of(const Plate& plate, const SettleBench& bench) {
   std::vector<ScrewAxis> axes;
   const brep::Solid& bone = bench.object(plate.object.name);
@@ -128,22 +131,22 @@ std::vector<ScrewAxis> axes_of(const Plate& plate, const SettleBench& bench) {
       throw std::runtime_error(
           "the screw '" + name.name + "' lies " + three_figures(off_mm) + " mm off the surface of '" +
           plate.object.name +
-          "': name the object that a move step made of the screw when it moved the screw with its piece");
+          "': if the screw moves with a piece, name the object of the step that moved the screw");
     if (glm::dot(axis.along, plate.site.along) < std::cos(glm::radians(steepest_screw_deg)))
       throw std::runtime_error("the screw '" + name.name +
                                "' points more than 45 degrees off the direction in which the plate is put "
                                "on: turn the screw, or choose another 'side'");
-    // The point where the axis crosses the middle of the plate's wall.
+    // The point at which the axis crosses the middle of the plate's thickness.
     const glm::dvec3 middle_mm = axis.head_mm - (plate.clearance_mm + 0.5 * plate.thickness_mm) * axis.along;
     const double wall_mm = within_mm(plate.site.base.outline_mm, plate.site.base.frame.project(middle_mm)) -
                            plate.hole_radius_mm(axis);
     if (wall_mm < plate.hole_wall_mm)
       throw std::runtime_error(
           "the hole of '" + name.name + "' leaves " +
-          (wall_mm > 0.0 ? three_figures(wall_mm) + " mm of the plate at its side, less than the " +
+          (wall_mm > 0.0 ? three_figures(wall_mm) + " mm of the plate beside it, less than the " +
                                three_figures(plate.hole_wall_mm) + " mm of 'hole_wall_mm'"
-                         : std::string("no plate at its side")) +
-          ": lead 'points' through the screws, make the plate wider, or leave the screw out of 'screws'");
+                         : std::string("no plate beside it")) +
+          ": put 'points' at the screws, make the plate wider, or leave the screw out of 'screws'");
     for (const ScrewAxis& other : axes) {
       const glm::dvec3 apart_mm = axis.head_mm - other.head_mm;
       const glm::dvec3 across_mm = apart_mm - glm::dot(apart_mm, plate.site.along) * plate.site.along;
@@ -160,8 +163,8 @@ std::vector<ScrewAxis> axes_of(const Plate& plate, const SettleBench& bench) {
   return axes;
 }
 
-/// Reports each screw: its planned axis, and its distances from objects that it must not touch, before the
-/// motion (from its own step) and at its planned place.
+/// Reports for each screw its planned axis, and its distances from objects that it must not touch: before its
+/// motion, from its own step, and in its planned position.
 void report_screws(const Plate& plate, const SettleBench& bench) {
   bench.details["screws"] = nlohmann::ordered_json::array();
   for (const ScrewAxis& axis : plate.axes) {
@@ -187,7 +190,8 @@ void report_screws(const Plate& plate, const SettleBench& bench) {
     }
     bench.details["screws"].push_back(std::move(line));
   }
-  if (plate.axes.empty()) bench.findings.push_back("the plate has no holes: name the plan's 'screws'");
+  if (plate.axes.empty())
+    bench.findings.push_back("the plate has no holes: name screws of the plan as 'screws'");
 }
 
 Plate settle(const Plate& asked, const SettleBench& bench) {
@@ -208,7 +212,7 @@ Plate settle(const Plate& asked, const SettleBench& bench) {
   site.part = "plate";
   site.is_on_several = true;
   made.site = guide_site(site, bench);
-  // The plate ends in half discs about the first and last point.
+  // The plate ends in half discs around the first and last point.
   Slab& base = made.site.base;
   const std::vector<glm::dvec2>& points_mm = base.frame.points_mm;
   base.outline_mm = round_band_outline(points_mm, asked.width_mm);
@@ -219,8 +223,8 @@ Plate settle(const Plate& asked, const SettleBench& bench) {
     static_cast<void>(made.ridge.solid());
   } catch (const std::invalid_argument&) {
     throw std::runtime_error(
-        "the plate about the points crosses itself: make it narrower, or give points in "
-        "their order along a line that bends less");
+        "the plate along the points crosses itself: make it narrower, or choose points in their order along "
+        "a line that bends less");
   }
   made.axes = axes_of(made, bench);
   bench.details = {{"direction", to_json(made.site.along)}, {"length_mm", curve_length_mm(points_mm)}};
@@ -233,16 +237,16 @@ std::string definition(const Plate& plate, const Objects&) {
          plate.object.name + " from " + plate.side + ", " + std::to_string(plate.axes.size()) + " holes";
 }
 
-/// Half the length of a screw's hole, on either side of the screw's head. It passes through the plate even
-/// where the plate bridges a gap.
+/// The length of a screw's hole on either side of the screw's head. The hole passes through the plate even if
+/// the plate bridges a gap there.
 double through_mm(const Plate& plate) {
   return plate.clearance_mm + plate.thickness_mm + plate.bend_radius_mm + plate_room_mm;
 }
 
-/// Everything behind the bone, grown by bending radius and clearance and then shrunk by the radius. It is
-/// correct only where it is used: up to the plate's thickness away from its band. Shrinking needs the grown
-/// body only up to the radius beyond that region. Farther away every point is taken as grown, so distances
-/// are measured only to the surface before the band.
+/// The space behind the bone, grown by the bending radius and the clearance, and then shrunk by the radius.
+/// It is correct only where it is used, within the plate's thickness around its band. Shrinking needs the
+/// grown body only within the radius around that region. All points farther away count as grown, so distances
+/// are only computed to the surface before the band.
 voxel::Expression closed_about(const Plate& plate, const voxel::Expression& behind, const VoxelBench& bench) {
   const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
   const double voxel_mm = std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
@@ -254,7 +258,7 @@ voxel::Expression closed_about(const Plate& plate, const voxel::Expression& behi
     about.high_mm += by_mm;
     return about.expression();
   };
-  // Two voxels more, because distances next to a region's border are interpolated.
+  // Two more voxels, because distances next to a region's border are interpolated.
   const double wanted_mm = plate.thickness_mm + 2.0 * voxel_mm, reach_mm = wanted_mm + plate.bend_radius_mm;
   const voxel::Octree wanted = bench.combined(about_band(wanted_mm + 2.0 * voxel_mm)),
                       reached = bench.combined(about_band(reach_mm + 2.0 * voxel_mm));
@@ -270,12 +274,12 @@ voxel::Expression closed_about(const Plate& plate, const voxel::Expression& behi
 }
 
 void voxels(const Plate& plate, const VoxelBench& bench, VoxelSide& made) {
-  made.lineage = "distances to columns of the octree of the bone";
+  made.lineage = "distances to the columns of the bone's octree";
   const VoxelSide& object = bench.object(plate.object.name);
   const voxel::Expression near = plate.site.near.expression();
   const voxel::Octree bone = bench.combined(voxel::Expression(object.octree) & near);
   const auto has_none = [&] {
-    made.findings.push_back("no voxel lies within the plate: take smaller voxels");
+    made.findings.push_back("no voxel lies within the plate: choose smaller voxels");
     made.octree = voxel::Octree::empty(bench.universe);
     made.symbol = voxel::Expression(made.octree);
   };
@@ -301,7 +305,7 @@ void voxels(const Plate& plate, const VoxelBench& bench, VoxelSide& made) {
   if (made.octree.is_empty()) has_none();
 }
 
-/// The gap between a plate and the bone, over those parts of the plate's surface that face the bone.
+/// The gap between a plate and the bone, over the part of the plate's surface that faces the bone.
 struct FitGap {
   double mean_mm = 0.0, largest_mm = 0.0;
   glm::dvec3 largest_at_mm{0.0};
@@ -335,7 +339,7 @@ std::optional<FitGap> mesh_gap(const brep::Solid& plate, const glm::dvec3& along
   return gap;
 }
 
-/// The gap computed from the points where both objects' surfaces cross the lattice.
+/// The gap computed from points at which the surfaces of both objects cross the lattice's lines.
 std::optional<FitGap> voxel_gap(const VoxelSide& plate, const glm::dvec3& along, const VoxelSide& bone,
                                 const voxel::Expression& near, const voxel::Universe& universe) {
   const voxel::Expression world(voxel::bounds(universe.lattice()));
@@ -358,7 +362,7 @@ std::optional<FitGap> voxel_gap(const VoxelSide& plate, const glm::dvec3& along,
   const voxel::Octree beside = voxel::combine(universe, voxel::Expression(bone.octree) & near);
   if (facing.empty() || beside.is_empty()) return std::nullopt;
   const std::vector<glm::dvec3> surface = crossings_of(beside, *bone.symbol & near);
-  constexpr std::size_t most = 2000;  // each is compared with all crossings of the bone
+  constexpr std::size_t most = 2000;  // each point of the plate is compared with all crossings of the bone
   const std::size_t step = std::max<std::size_t>(1, facing.size() / most);
   std::vector<glm::dvec3> places_mm;
   for (std::size_t i = 0; i < facing.size(); i += step) places_mm.push_back(facing[i]);
@@ -390,14 +394,16 @@ void triangles(const Plate& plate, const MeshBench& bench, MeshSide& made) {
   };
   made.lineage = "level sets of the distance to the bone's exact shadow";
   const brep::Solid bone = noted(plate.site.bone, made);
-  if (bone.empty()) throw std::runtime_error("no bone of the mesh lies along the plate");
+  if (bone.empty())
+    throw std::runtime_error("no bone of the mesh lies along the plate: move 'points' onto the bone");
   const brep::Solid behind = brep::shadow(bone, {plate.site.along, plate.site.end_mm, progress}).solid;
   const brep::Solid big = grown(behind, plate.bend_radius_mm + plate.clearance_mm, grown_cell_mm(plate));
-  if (big.empty()) throw std::runtime_error("no bone of the mesh lies along the plate");
-  // Shrinks `big` by the radius. Points that lie at most that deep in `big` are outside the bone, and their
-  // depth determines their distance from it.
+  if (big.empty())
+    throw std::runtime_error("no bone of the mesh lies along the plate: move 'points' onto the bone");
+  // Shrinks `big` by the radius. Points of `big` that lie at most that deep are outside of the bone, and
+  // their depth determines their distance from it.
   const brep::Level closed{big, -plate.bend_radius_mm};
-  // The ridge ends below the bone's surface, deeper than the rounding reaches.
+  // The ridge ends below the bone's surface, deeper than its rounding extends.
   const brep::LevelBody ridge_body{
       {{{big, plate.flat_mm() - plate.bend_radius_mm}, {plate.ridge.solid(), 0.0}}},
       {{big, -plate.bend_radius_mm - plate.rounding_mm - plate_room_mm}}};
@@ -405,7 +411,8 @@ void triangles(const Plate& plate, const MeshBench& bench, MeshSide& made) {
     const Stopwatch part(bench.timings, "plate_offset");
     return brep::core_of(ridge_body, {0.0, plate_outer_cell_mm, progress});
   }();
-  if (ridge.empty()) throw std::runtime_error("no bone of the mesh lies along the plate");
+  if (ridge.empty())
+    throw std::runtime_error("no bone of the mesh lies along the plate: move 'points' onto the bone");
   brep::LevelBody body{{{{ridge, plate.rounding_mm}}}, {closed}};
   for (const ScrewAxis& axis : plate.axes) {
     const glm::dvec3 by_mm = through_mm(plate) * axis.along;
@@ -413,7 +420,7 @@ void triangles(const Plate& plate, const MeshBench& bench, MeshSide& made) {
         {rod(axis.head_mm - by_mm, axis.head_mm + by_mm, plate.hole_radius_mm(axis)), 0.0});
   }
   made.whole = thick_part(body, {plate.least_wall_mm}, "plate", bench, made);
-  if (made.whole->empty()) throw std::runtime_error("nothing of the plate is left: make it thicker");
+  if (made.whole->empty()) throw std::runtime_error("nothing of the plate remains: make it thicker");
   made.details["holes"] = nlohmann::ordered_json::array();
   constexpr double goal_mm = 0.01;
   for (const ScrewAxis& axis : plate.axes) {
@@ -421,8 +428,9 @@ void triangles(const Plate& plate, const MeshBench& bench, MeshSide& made) {
     made.details["holes"].push_back({{"screw", axis.screw}, {"off_axis_mm", nullptr}, {"goal_mm", goal_mm}});
     if (off_mm) made.details["holes"].back()["off_axis_mm"] = *off_mm;
     if (!off_mm)
-      made.findings.push_back("the plate has no hole for '" + axis.screw +
-                              "': it lies in a separate piece, which is left out; lead 'points' over bone");
+      made.findings.push_back(
+          "the plate has no hole for '" + axis.screw +
+          "', because the hole lies in a separate piece that was left out: put 'points' on bone");
     else if (*off_mm > goal_mm)
       made.findings.push_back("the hole of '" + axis.screw + "' lies " + three_figures(*off_mm) +
                               " mm off its axis, more than 0.01 mm");
@@ -437,8 +445,8 @@ void triangles(const Plate& plate, const MeshBench& bench, MeshSide& made) {
                            {"largest_at_mm", to_json(gap->largest_at_mm)}};
 }
 
-/// Computes the half-widths of the gap: the difference between both kernels, plus the noise of digitised
-/// surfaces, a tenth of a voxel.
+/// Computes the half-widths of the gaps: the difference between both kernels, plus the noise of digitised
+/// surfaces, which is a tenth of a voxel.
 void bound_gap(const Plate& plate, const BoundBench& bench, const Object& bone, Object& made) {
   const auto json = made.mesh.details.find("gap");
   if (json == made.mesh.details.end() || !made.voxel.symbol || made.voxel.octree.is_empty() ||
@@ -462,8 +470,9 @@ void bound(const Plate& plate, const BoundBench& bench, Object& made) {
   inherit(bone, made);
   if (bone.mesh.whole && made.mesh.whole && !made.mesh.whole->empty()) {
     const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
-    // Bone hidden behind other bone has no effect, because the shadow is grown, not the bone. Shrinking it
-    // again by the radius moves no point of the surface by more than the error of the grown surface.
+    // Bone that is hidden behind other bone has no effect, because the shadow is grown, not the bone.
+    // Shrinking it again by the radius moves no point of the surface by more than the error of the grown
+    // surface.
     const voxel::Octree near =
         voxel::combine(bench.universe, voxel::Expression(bone.voxel.octree) & plate.site.near.expression());
     const voxel::Octree behind =
@@ -479,7 +488,7 @@ void bound(const Plate& plate, const BoundBench& bench, Object& made) {
         verify::offset_allowance_mm({bone.witness, behind, mesh_behind, is_whole_voxels(bone.voxel)},
                                     {plate.bend_radius_mm + plate.clearance_mm, grown_cell_mm(plate)},
                                     made.mesh.whole->measures().area_mm2);
-    // Later offsets start from smooth surfaces, where triangles are off by a third of the tolerance on
+    // Later offsets start from smooth surfaces, whose triangles deviate by a third of the tolerance on
     // average.
     apart_mm += brep::offset_tolerance_mm({plate.rounding_mm, plate_outer_cell_mm, {}}) / 3.0 +
                 thick_part_allowance_mm({plate.least_wall_mm});
@@ -497,68 +506,69 @@ void bound(const Plate& plate, const BoundBench& bench, Object& made) {
 }  // namespace
 
 Operation plate_operation() {
-  return Describe<Plate>("plate", "Makes a plate along a curve on the planned bone, with its screws' holes.",
+  return Describe<Plate>("plate",
+                         "Makes a plate along a curve on the planned bone, with holes for its screws.",
                          Makes::Object)
-      .takes(field("object", &Plate::object, "The bone as it is planned, with its pieces at their places.")
+      .takes(field("object", &Plate::object, "The planned bone, with its pieces in their planned positions.")
                  .required()
                  .positional("bone"))
       .takes(field("side", &Plate::side,
-                   "The side from which the surgeon puts the plate on: anterior, posterior, left, right, "
-                   "superior, inferior, or AZ,EL in degrees; of the head as it is held.")
+                   "The side from which the surgeon puts the plate on, relative to the head's position: "
+                   "anterior, posterior, left, right, superior, inferior, or AZ,EL in degrees.")
                  .required())
       .takes(field("direction", &Plate::direction,
                    "The direction in which the plate is put on, LPS. Default: straight from the side.")
                  .direction())
-      .takes(
-          field("points", &Plate::points,
-                "Two or more points on the bone, in their order along the plate, which ends in half discs "
-                "about the first and the last: [x, y, z] or landmarks. Default: the heads of the screws, in "
-                "their order."))
+      .takes(field("points", &Plate::points,
+                   "Two or more points on the bone, in their order along the plate: [x, y, z] or landmarks. "
+                   "The plate ends in half discs around the first and the last. Default: the heads of the "
+                   "screws, in their order."))
       .takes(field("width_mm", &Plate::width_mm, "The plate's width.").from(3.0).to(20.0))
       .takes(field("thickness_mm", &Plate::thickness_mm,
-                   "The plate's thickness; 2.5 is usual for plates that bear the jaw's load.")
+                   "The plate's thickness; 2.5 is usual for plates that carry the jaw's load.")
                  .from(0.8)
                  .to(6.0))
-      .takes(field("bend_radius_mm", &Plate::bend_radius_mm,
-                   "The smallest radius of hollows that the plate follows: it bridges narrower hollows and "
-                   "gaps. At "
-                   "least twice the thickness; 10 is four times the usual one.")
-                 .from(2.0)
-                 .to(60.0))
+      .takes(
+          field(
+              "bend_radius_mm", &Plate::bend_radius_mm,
+              "The smallest radius of hollows that the plate follows. It bridges narrower hollows and gaps. "
+              "The radius must be at least twice the thickness; 10 is four times the usual thickness.")
+              .from(2.0)
+              .to(60.0))
       .takes(field("clearance_mm", &Plate::clearance_mm,
-                   "The gap between plate and bone where the plate follows the bone; 0.2 is above a "
-                   "printer's error of 0.16.")
+                   "The gap between plate and bone where the plate follows the bone; 0.2 exceeds a printer's "
+                   "error of 0.16.")
                  .from(0.05)
                  .to(2.0))
       .takes(field("rounding_mm", &Plate::rounding_mm,
-                   "The radius of the outer edges; 0.8 is a third of the usual thickness.")
+                   "The radius of the rounded outer edges; 0.8 is a third of the usual thickness.")
                  .from(0.2)
                  .to(2.5))
       .takes(field("reach_mm", &Plate::reach_mm,
-                   "How far the plate extends backwards from the foremost bone, along the direction in which "
-                   "it is put on; 25 reaches from the piriform rim to the buttress.")
+                   "The distance to which the plate extends behind the foremost bone, along its insertion "
+                   "direction; 25 extends from the piriform rim to the buttress.")
                  .from(2.0)
                  .to(150.0))
       .takes(field("screws", &Plate::screws,
-                   "Screws of this plan at their planned places, as moved with their pieces: the plate's "
-                   "holes are there.")
+                   "Screws of this plan in their planned positions, moved with their pieces. The plate has a "
+                   "hole for each.")
                  .in_plans_only())
       .takes(field("play_mm", &Plate::play_mm,
-                   "By how much holes are wider than their screws; 0.2 is above a printer's error of "
-                   "0.16.")
+                   "The play of a screw: its hole is wider than the screw by this much; 0.2 exceeds a "
+                   "printer's error of 0.16.")
                  .from(0.0)
                  .to(1.0))
       .takes(field("hole_wall_mm", &Plate::hole_wall_mm,
-                   "The least wall between a hole and the plate's side or another hole; 1 is above the "
+                   "The least wall between a hole and the plate's side or another hole; 1 exceeds the "
                    "default of 'least_wall_mm'.")
                  .from(0.5)
                  .to(5.0))
       .takes(field("away_from", &Plate::away_from,
-                   "Objects at their planned places that the screws must not touch, such as roots or the "
+                   "Objects in their planned positions that the screws must not touch, such as roots or the "
                    "nerve's canal.")
                  .in_plans_only())
       .takes(field("least_mm", &Plate::least_mm,
-                   "The least distance from the screws to 'away_from'; a smaller one is a finding. 1 is "
+                   "The least distance from the screws to 'away_from'; a smaller distance is a finding. 1 is "
                    "published for screws between roots.")
                  .from(0.0)
                  .to(20.0))

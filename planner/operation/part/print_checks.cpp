@@ -34,14 +34,15 @@ glm::dvec3 middle_of(const brep::Triangles& triangles, std::size_t face) {
   return (triangles.points_mm[a] + triangles.points_mm[b] + triangles.points_mm[c]) / 3.0;
 }
 
-/// A triangle's side: the two points of its edge by index, the triangle, and whether the side runs from the
-/// lower index to the higher.
+/// One triangle at an edge: the edge's two points by index, the triangle, and whether it passes the edge from
+/// the lower index to the higher.
 struct EdgeUse {
   std::uint32_t low = 0, high = 0, face = 0;
   bool is_upward = false;
 };
 
-/// The middle of the first triangle with an edge for which `is_bad(upward sides, downward sides)` is true.
+/// The centre of the first triangle with an edge for which `is_bad` is true. Its arguments are the numbers of
+/// triangles that pass the edge upward and downward in index.
 template <typename IsBad>
 std::optional<glm::dvec3> first_bad_edge(const brep::Triangles& triangles, const IsBad& is_bad) {
   std::vector<EdgeUse> uses;
@@ -66,7 +67,7 @@ std::optional<glm::dvec3> first_bad_edge(const brep::Triangles& triangles, const
   return middle_of(triangles, *first);
 }
 
-/// " (first at (1, 2, 3) mm)", or an empty text.
+/// Text such as " (first at (1, 2, 3) mm)"; empty without a place.
 std::string first_at(const std::optional<glm::dvec3>& at_mm) {
   return at_mm ? " (first at " + place_in_words(*at_mm) + ")" : "";
 }
@@ -82,7 +83,7 @@ PrintCheck closed_check(const brep::Triangles& triangles, const brep::Health& he
     made.at_mm = first_bad_edge(triangles, [](int up, int down) { return up + down != 2; });
     made.says = std::to_string(health.boundary_edges) + " edges have one triangle and " +
                 std::to_string(health.nonmanifold_edges) + " have more than two" + first_at(made.at_mm) +
-                ": octotomy repair --solid mends them";
+                ": mend them by octotomy repair --solid";
   } else if (health.nonmanifold_vertices > 0 || health.degenerate_faces > 0 || health.duplicate_faces > 0) {
     made.verdict = warns;
     made.says = health.findings.front();
@@ -98,7 +99,7 @@ PrintCheck crossing_check(const brep::Triangles& triangles, const brep::Health& 
   if (!health.crossing.empty())
     made.at_mm = middle_of(triangles, static_cast<std::size_t>(health.crossing.front().second));
   made.says = std::to_string(health.self_intersections) + " pairs of triangles intersect" +
-              first_at(made.at_mm) + ": octotomy repair --solid mends them";
+              first_at(made.at_mm) + ": mend them by octotomy repair --solid";
   return made;
 }
 
@@ -110,35 +111,36 @@ PrintCheck outward_check(const brep::Triangles& triangles, const brep::Health& h
     made.verdict = fails;
     made.at_mm = first_bad_edge(triangles, [](int up, int down) { return up == 2 || down == 2; });
     made.says = std::to_string(health.misoriented_edges) + " edges have triangles that face opposite ways" +
-                first_at(made.at_mm) + ": octotomy repair --solid turns them";
+                first_at(made.at_mm) + ": turn them by octotomy repair --solid";
   } else if (!health.closed) {
     made.verdict.reset();
-    made.says = "not measured: an open surface has no outside";
+    made.says = "not measured, because an open surface has no outside";
   } else if (!health.oriented) {
     made.verdict = fails;
     const bool is_inside_out = std::any_of(health.findings.begin(), health.findings.end(),
                                            [](const std::string& f) { return f.find("inward") != f.npos; });
     if (is_inside_out) made.at_mm = middle_of(triangles, 0);
     made.says = is_inside_out ? "the surface faces inward" + first_at(made.at_mm) +
-                                    ": octotomy repair --solid turns it outward"
-                              : health.findings.front() + ": octotomy repair --solid joins the shells";
+                                    ": turn it outward by octotomy repair --solid"
+                              : health.findings.front() + ": join the shells by octotomy repair --solid";
   }
   return made;
 }
 
-/// The box around a part that stands on the bed, rotated about the vertical so that its share of the bed's
-/// width or depth is smallest.
+/// The bounding box of a part that stands on the bed, after the rotation about the vertical for which its
+/// share of the bed's width or depth is smallest.
 struct Footprint {
-  glm::dvec3 size_mm{0.0};  ///< along the bed's width and depth, and upward
+  glm::dvec3 size_mm{0.0};  ///< size along the bed's width and depth, and upward
   double turned_deg = 0.0;
-  double share = std::numeric_limits<double>::infinity();  ///< of the bed's width or depth, the larger one
+  double share = std::numeric_limits<double>::infinity();  ///< the larger of its shares of the bed's width
+                                                           ///< and depth
 };
 
 Footprint footprint_of(const brep::Triangles& triangles, const PrintLimits& limits) {
   const glm::dvec3 beside = std::abs(limits.up.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
   const glm::dvec3 v = glm::normalize(glm::cross(limits.up, beside)), u = glm::cross(v, limits.up);
   Footprint best;
-  // A step of half a degree overstates a side by at most 0.5 % of the other.
+  // With steps of half a degree, a side is overestimated by at most 0.5 % of the other side.
   for (int step = 0; step < 360; ++step) {
     const double turn = glm::radians(0.5 * step);
     const glm::dvec3 across = std::cos(turn) * u + std::sin(turn) * v,
@@ -151,7 +153,7 @@ Footprint footprint_of(const brep::Triangles& triangles, const PrintLimits& limi
     }
     const glm::dvec3 size_mm = high - low;
     const double share = std::max(size_mm.x / limits.bed_mm.x, size_mm.y / limits.bed_mm.y);
-    // Among shares that are equal up to rounding, the smaller turn is kept.
+    // If shares are equal except for rounding, the smaller rotation is used.
     if (share < best.share * (1.0 - 1e-9)) best = {size_mm, 0.5 * step, share};
   }
   return best;
@@ -172,7 +174,8 @@ PrintCheck bed_check(const brep::Triangles& triangles, const PrintLimits& limits
   made.says = size_in_words(found.size_mm) + " turned by " + plain(found.turned_deg) +
               " degrees, on a bed of " + size_in_words(limits.bed_mm);
   if (is_too_wide || is_too_high) {
-    // The place to report: the highest point or, if the part is too wide, the point farthest from the middle.
+    // The position to report: the highest point, or if the part is too wide the point farthest from its
+    // middle.
     const auto height = [&](const glm::dvec3& p_mm) { return glm::dot(limits.up, p_mm); };
     glm::dvec3 low = triangles.points_mm.front(), high = low;
     for (const glm::dvec3& p_mm : triangles.points_mm) {
@@ -187,20 +190,21 @@ PrintCheck bed_check(const brep::Triangles& triangles, const PrintLimits& limits
                                    [&](const glm::dvec3& a, const glm::dvec3& b) {
                                      return is_too_high ? height(a) < height(b) : aside(a) < aside(b);
                                    });
-    made.says += is_too_high ? ": too high, so choose another build direction or printer"
-                             : ": too wide, so choose another build direction or printer";
+    made.says += is_too_high ? ", which is too high: choose another build direction or printer"
+                             : ", which is too wide: choose another build direction or printer";
   }
   return made;
 }
 
 PrintCheck overhang_check(const brep::Linked& surface, const PrintLimits& limits) {
-  PrintCheck made{"overhang", passes, "no face that looks down needs support", {}, {}};
+  PrintCheck made{"overhang", passes, "no downward face needs support", {}, {}};
   double all_mm2 = 0.0, least_mm2 = limits.least_wall_mm * limits.least_wall_mm;
   std::size_t patches = 0;
   const std::vector<brep::Overhang> found =
       brep::overhangs(surface, {limits.up, limits.overhang_deg, brep::OverhangOptions().resting_mm});
   for (const brep::Overhang& patch : found) {
-    // Patches smaller than the square of the least wall need no support: the layer below carries them.
+    // Patches smaller than the square of the least wall need no support, because the layer below carries
+    // them.
     if (patch.area_mm2 < least_mm2) break;
     all_mm2 += patch.area_mm2;
     ++patches;
@@ -213,16 +217,16 @@ PrintCheck overhang_check(const brep::Linked& surface, const PrintLimits& limits
   made.verdict = warns;
   made.at_mm = found.front().at_mm;
   made.says = grouped(all_mm2, 1) + " mm\u00b2 in " + std::to_string(patches) +
-              " places look down and need support, the largest at " + place_in_words(*made.at_mm);
+              " downward patches need support, the largest at " + place_in_words(*made.at_mm);
   return made;
 }
 
-/// A position on a shell: the middle of its first face, so that the position is the same in every run.
+/// A position on a shell: the centre of its first face, which is the same in every run.
 glm::dvec3 place_of(const brep::Triangles& triangles, const brep::Component& piece) {
   return middle_of(triangles, piece.faces.front());
 }
 
-/// The middle of the first triangle of the first shell with a negative volume.
+/// The centre of the first triangle of the first shell with a negative volume; none if there is none.
 std::optional<glm::dvec3> first_cavity(const brep::Solid& solid) {
   const brep::Linked& linked = solid.linked();
   std::vector<char> is_seen(linked.triangles.faces.size(), 0);
@@ -250,7 +254,8 @@ std::optional<glm::dvec3> first_cavity(const brep::Solid& solid) {
   return std::nullopt;
 }
 
-/// The free space around an object's voxels in a box, and the reason if it is incomplete.
+/// The free space around an object's voxels within a box, and the reason if it could not be computed
+/// completely.
 struct FreeVoxels {
   std::optional<voxel::Octree> octree;
   std::string lacks;
@@ -262,7 +267,7 @@ FreeVoxels free_voxels(const voxel::Octree& octree, double margin_mm) {
   if (glm::any(glm::lessThan(box.low_mm, world.low_mm)) ||
       glm::any(glm::greaterThan(box.high_mm, world.high_mm)))
     return {std::nullopt, "the universe ends within " + three_figures(margin_mm) +
-                              " mm of the object, so that voxels do not show its gaps"};
+                              " mm of the object, so voxels do not show its gaps"};
   return {voxel::combine(octree.universe(), voxel::Expression(box) - voxel::Expression(octree)), ""};
 }
 
@@ -275,7 +280,7 @@ PrintCheck pieces_check(const brep::Solid& solid, const voxel::Octree* voxels) {
     made.at_mm = place_of(solid.triangles(), pieces[1]);
     made.says = std::to_string(pieces.size()) + " pieces, the second of " + grouped(pieces[1].volume_mm3, 2) +
                 " mm\u00b3 at " + place_in_words(*made.at_mm) +
-                ": the operation 'separate' makes one of them an object";
+                ": make one of them an object by the operation 'separate'";
   }
   if (voxels == nullptr || voxels->is_empty()) return made;
   const std::size_t count = voxel::component_count(*voxels);
@@ -283,7 +288,7 @@ PrintCheck pieces_check(const brep::Solid& solid, const voxel::Octree* voxels) {
   if (made.verdict == passes && count > 1) {
     made.verdict = warns;
     made.says += ", but " + std::to_string(count) +
-                 " of voxels: bridges thinner than a voxel, or the kernels disagree";
+                 " of voxels, because bridges are thinner than a voxel or the kernels disagree";
   }
   return made;
 }
@@ -296,8 +301,8 @@ PrintCheck cavity_check(const brep::Solid& solid, const voxel::Octree* voxels, d
   if (cavities > 0) {
     made.verdict = fails;
     made.at_mm = first_cavity(solid);
-    made.says = std::to_string(cavities) + " closed cavities hold resin or powder" + first_at(made.at_mm) +
-                ": the operation 'fill' closes them; or give each a drain hole";
+    made.says = std::to_string(cavities) + " closed cavities would contain resin or powder" +
+                first_at(made.at_mm) + ": close them by the operation 'fill', or make a drain hole for each";
   }
   if (voxels == nullptr || voxels->is_empty()) return made;
   if (const FreeVoxels free = free_voxels(*voxels, margin_mm); free.octree)
@@ -305,7 +310,7 @@ PrintCheck cavity_check(const brep::Solid& solid, const voxel::Octree* voxels, d
   return made;
 }
 
-/// The least thickness below `up_to_mm`, as each kernel measures it.
+/// The least thickness below `up_to_mm`, measured by each kernel.
 struct Thinnest {
   std::optional<double> mesh_mm, voxel_mm;
   std::optional<glm::dvec3> at_mm;
@@ -332,7 +337,8 @@ Thinnest thinnest_of(const brep::Solid& solid, const voxel::Octree* voxels, doub
   return found;
 }
 
-/// The line for the least wall or gap. `thin` is the verdict below the limit; `what` is "wall" or "gap".
+/// The check of the least wall or gap. `thin` is the verdict if it is below the limit; `what` is "wall" or
+/// "gap".
 PrintCheck thinnest_check(const Thinnest& found, const std::string& what, double limit_mm, const char* thin,
                           const std::string& remedy, const voxel::Octree* voxels) {
   PrintCheck made{what, passes, "", found.at_mm, {}};
@@ -353,16 +359,17 @@ PrintCheck thinnest_check(const Thinnest& found, const std::string& what, double
     made.says = "there is no " + what + " with two sides that are nearly parallel";
   }
   if (voxels == nullptr || voxels->is_empty()) return made;
-  // Each of the two digitised sides may be off by half a voxel's diagonal.
+  // Each of the two digitised sides may be displaced by half a voxel's diagonal.
   const double error_mm = glm::length(voxels->universe().lattice().spacing_mm());
   made.numbers["voxel_error_mm"] = error_mm;
   if (made.verdict == passes && found.voxel_mm && *found.voxel_mm + error_mm < limit_mm) {
     made.verdict = warns;
-    made.says += "; voxels have one of " + three_figures(*found.voxel_mm) + " mm";
+    made.says += "; in voxels the least is " + three_figures(*found.voxel_mm) + " mm";
   } else if (made.verdict == passes && found.mesh_mm && found.voxel_mm &&
              std::abs(*found.mesh_mm - *found.voxel_mm) > error_mm && *found.voxel_mm < *found.mesh_mm) {
     made.verdict = warns;
-    made.says += "; the kernels disagree: voxels have one of " + three_figures(*found.voxel_mm) + " mm";
+    made.says +=
+        "; the kernels disagree, because in voxels the least is " + three_figures(*found.voxel_mm) + " mm";
   }
   return made;
 }
@@ -390,7 +397,7 @@ std::vector<PrintCheck> solid_checks(const brep::Solid& solid, const voxel::Octr
   const voxel::Octree* free_octree = free.octree ? &*free.octree : nullptr;
   made.push_back(
       thinnest_check(thinnest_of(brep::free_space(solid, margin_mm), free_octree, up_to_mm, progress), "gap",
-                     limits.least_gap_mm, warns, "it may fuse, so widen or fill it", free_octree));
+                     limits.least_gap_mm, warns, "it may close in print: widen or fill it", free_octree));
   made.back().numbers["looked_up_to_mm"] = up_to_mm;
   if (!free.lacks.empty()) made.back().says += "; " + free.lacks;
   return made;

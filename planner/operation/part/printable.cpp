@@ -46,7 +46,7 @@ Json answer_of(const std::string& object, const PrintLimits& limits, const std::
   return json;
 }
 
-/// All lines about one surface. `voxels_of` may return null.
+/// All checks of one surface. `voxels_of` may return null.
 std::vector<PrintCheck> checks_of(const brep::Triangles& triangles, const brep::Solid* known,
                                   const PrintLimits& limits,
                                   const std::function<const voxel::Octree*(const brep::Solid&)>& voxels_of,
@@ -62,7 +62,7 @@ std::vector<PrintCheck> checks_of(const brep::Triangles& triangles, const brep::
     add(build_checks(solid.linked(), limits));
     return checks;
   }
-  add(missing_solid_checks("the surface encloses no solid; mend it first, octotomy repair --solid"));
+  add(missing_solid_checks("the surface encloses no solid: mend it first by octotomy repair --solid"));
   if (health.faces > 0 && health.nonmanifold_edges == 0 && health.misoriented_edges == 0 &&
       health.first_defect != brep::Defect::InsideOut)
     add(build_checks(brep::linked(triangles), limits));
@@ -87,7 +87,8 @@ Json measure(const Printable& asked, const AnswerBench& bench) {
           bench.progress("printable")));
 }
 
-/// The edge of the voxels for a file: half of the least wall or gap, but with at most 256 voxels a side.
+/// The edge of voxels for a part in a file: half of the least wall or gap, but with at most 256 voxels a
+/// side.
 double voxel_mm_of(const Printable& asked, const brep::Solid& solid) {
   const glm::dvec3 size_mm = solid.size().high_mm - solid.size().low_mm;
   return asked.voxel_mm.value_or(std::max(0.5 * std::min(asked.least_wall_mm, asked.least_gap_mm),
@@ -125,37 +126,36 @@ FileAnswer on_files(const Printable& asked, const FileBench& bench) {
 
 Operation printable_operation() {
   return Describe<Printable>("printable",
-                             "Measures whether an object can be printed: surface, pieces, walls, gaps, "
-                             "overhangs and the printer's bed.",
+                             "Checks whether an object can be printed: its surface, pieces, walls, gaps, "
+                             "overhangs and size on the printer's bed.",
                              Makes::Measurement)
       .takes(field("object", &Printable::object, "The part; for the verb, a mesh in a file.")
                  .required()
                  .positional("file"))
       .takes(
           field("build_direction", &Printable::build_direction,
-                "The direction from the printer's bed to the layers above, LPS; its length does not count.")
+                "The direction from the printer's bed to the layers above, as an LPS vector of any length.")
               .direction())
       .takes(field("overhang_deg", &Printable::overhang_deg,
-                   "Faces that look down and are inclined by less than this from the bed need support. "
-                   "Printing services state 45 for filament.")
+                   "Downward faces need support if their angle to the bed is smaller than this. Printing "
+                   "services state 45 for filament.")
                  .from(0.0)
                  .to(90.0))
       .takes(field("least_wall_mm", &Printable::least_wall_mm,
-                   "The smallest wall that prints; 0.6 is the least thickness published for splints.")
+                   "The thinnest wall that can be printed; 0.6 is the least thickness published for splints.")
                  .greater_than(0.0)
                  .to(10.0))
       .takes(field("least_gap_mm", &Printable::least_gap_mm,
-                   "The smallest gap or hole that stays open; 0.5 is the least hole that printing services "
-                   "state for resin.")
+                   "The smallest gap or hole that stays open in print; 0.5 is the smallest hole that "
+                   "printing services state for resin.")
                  .greater_than(0.0)
                  .to(10.0))
-      .takes(field(
-          "bed_mm", &Printable::bed_mm,
-          "Width, depth and height that your printer can build; the default is that of a desktop printer for "
-          "dental resin."))
+      .takes(field("bed_mm", &Printable::bed_mm,
+                   "Width, depth and height of the printer's build space. Default: that of a desktop printer "
+                   "for dental resin."))
       .verb_takes(field("voxel_mm", &Printable::voxel_mm,
-                        "Edge of the voxels of the second answer. Default: half of the smallest wall or "
-                        "gap, or the extent's 256th where that is larger.")
+                        "Edge of the voxels with which walls and gaps are measured a second time. Default: "
+                        "half of the least wall or gap, or a 256th of the extent if that is larger.")
                       .greater_than(0.0))
       .example(R"({"id": "prints", "do": "printable", "object": "advanced", "build_direction": [0, 0, 1]})")
       .on_files(

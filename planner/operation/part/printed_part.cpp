@@ -17,11 +17,11 @@
 namespace octotomy::planner {
 namespace {
 
-/// The distance between cuts and the balls, as a share of the radius. It exceeds the error of either kernel's
+/// Cuts stay this share of the radius away from the balls, which exceeds the error of either kernel's
 /// distances on flat and gently curved parts.
 constexpr double standing_off = 0.1;
 
-/// The largest of the pieces, with its cavities.
+/// The largest piece of a solid, with its cavities.
 brep::Solid first_piece(const brep::Solid& solid) {
   const std::vector<brep::Component>& pieces = solid.components();
   if (pieces.size() < 2) return solid;
@@ -29,22 +29,23 @@ brep::Solid first_piece(const brep::Solid& solid) {
                              brep::proof_of_part(solid.proof()));
 }
 
-/// An expression without the voxels of all pieces but the largest. `whole` is the expression's octree.
+/// The expression with only the largest of its pieces. `whole` is the octree of the expression, `largest`
+/// that of its largest piece.
 voxel::Expression of_largest(const voxel::Expression& expression, const voxel::Octree& whole,
                              const voxel::Octree& largest, const VoxelBench& bench) {
   return expression -
          voxel::Expression(bench.combined(voxel::Expression(whole) - voxel::Expression(largest)));
 }
 
-/// The union of the balls of the radius that fit within a solid: of all balls, or of the balls around the
-/// largest connected piece of their middles. Balls about another piece meet these in a neck that is thinner
-/// than a ball, because no ball fits between the two.
+/// The union of the balls of the radius that fit within a solid. With `without_necks`, only of the balls
+/// around the largest connected piece of their centres. The balls around another piece meet these in a neck
+/// that is thinner than a ball, because no ball fits between them.
 voxel::Expression balls_within(const voxel::Expression& solid, double radius_mm, bool without_necks,
                                const VoxelBench& bench) {
   const voxel::Octree octree = bench.combined(solid);
   if (octree.is_empty()) return voxel::Expression(octree);
-  // Distances to edges are overstated by up to 2/3 of a voxel's diagonal. Balls narrower than a voxel would
-  // therefore cut off most of a part that is few voxels thick.
+  // Distances to edges are overestimated by up to 2/3 of a voxel's diagonal. Balls narrower than a voxel
+  // would therefore cut off most of a part that is few voxels thick.
   const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
   if (std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z}) > 2.0 * radius_mm) return solid;
   const voxel::Expression middles(
@@ -58,19 +59,20 @@ voxel::Expression balls_within(const voxel::Expression& solid, double radius_mm,
                                                  bench.progress));
 }
 
-/// The width below which a neck is cut through: the least wall that printers make, and at most this share of
-/// the part's own least wall. Other walls are thinner than the least wall by at most twice the tolerance of
-/// triangles. Where balls as wide as the least wall meet in a neck, the surface turns by at least 74 degrees,
-/// or by half of that at two edges next to each other: above the least angle of NecksOptions.
+/// Necks thinner than this are cut through: the least wall that printers make, or this share of the part's
+/// own least wall if that is smaller. Other walls are thinner than the part's least wall by at most twice the
+/// tolerance of triangles. Where balls as wide as the least wall meet in a neck, the surface turns by at
+/// least 74 degrees, or by half of that at each of two neighbouring edges; both exceed the least angle of
+/// NecksOptions.
 constexpr double neck_share = 0.8;
 double neck_mm(double least_wall_mm) {
   return std::min(neck_share * least_wall_mm, PrintLimits{}.least_wall_mm);
 }
-/// Half the width of the cleft that parts the two sides of a neck. Printers keep clefts of 0.5 mm and more
-/// open.
+/// Half the width of the cleft that separates the two sides of a neck. In prints, clefts of at least 0.5 mm
+/// stay open.
 constexpr double half_cleft_mm = 0.3;
 
-/// The union of the balls of the radius about points.
+/// The union of balls of the radius around the middles of necks.
 brep::Solid balls_about(const std::vector<brep::Neck>& necks, double radius_mm,
                         const brep::Progress& progress) {
   // Triangles this small change the balls by less than the tolerance of their surface.
@@ -87,7 +89,7 @@ brep::Solid balls_about(const std::vector<brep::Neck>& necks, double radius_mm,
   return brep::thickened(points, {radius_mm, 0.5 * radius_mm, progress});
 }
 
-/// Records the middles of necks; of necks that are closer to each other than `apart_mm`, only the first.
+/// Appends the middles of necks to `at_mm`; of necks within `apart_mm` of each other, only the first.
 void record_necks(const std::vector<brep::Neck>& necks, double apart_mm, std::vector<glm::dvec3>& at_mm) {
   for (const brep::Neck& neck : necks)
     if (std::none_of(at_mm.begin(), at_mm.end(), [&](const glm::dvec3& other_mm) {
@@ -127,8 +129,8 @@ brep::Solid largest_piece(const brep::Solid& solid, const std::string& part, Mes
 brep::Solid printed(const brep::Solid& solid, const std::string& part, MeshSide& made) {
   const brep::Solid largest = largest_piece(solid, part, made);
   brep::Triangles triangles = largest.triangles();
-  // Thin triangles along the intersection of a Boolean's surfaces would cross their neighbours when a file
-  // rounds them to single precision.
+  // Along the intersection of a Boolean's surfaces, thin triangles would cross their neighbours when a file
+  // rounds their points to single precision.
   constexpr int most_rounds = 4;
   for (int round = 0; round < most_rounds; ++round) {
     for (glm::dvec3& p_mm : triangles.points_mm) p_mm = glm::dvec3(glm::vec3(p_mm));
@@ -137,9 +139,9 @@ brep::Solid printed(const brep::Solid& solid, const std::string& part, MeshSide&
     if (brep::health(mesh).solid()) return brep::trusted_solid(mesh, brep::Proof::Health);
     triangles = brep::untangle(mesh).surface;
   }
-  made.findings.push_back("triangles intersect where points of the " + part +
-                          " are rounded to single precision: mend a file of it by octotomy repair --solid "
-                          "before it is printed");
+  made.findings.push_back(
+      "triangles intersect where points of the " + part +
+      " are rounded to single precision: before printing, mend its file by octotomy repair --solid");
   return largest;
 }
 
@@ -150,12 +152,12 @@ brep::Solid thick_part(const brep::LevelBody& body, const ThickPart& asked, cons
   brep::Solid middles;
   {
     const Stopwatch watch(bench.timings, part + "_core");
-    // Balls about other pieces would be connected only by necks, as in balls_within().
+    // The balls around other pieces would be connected only by necks, as balls_within() explains.
     middles = first_piece(brep::core_of(body, {-radius_mm, asked.cell_mm, progress}));
   }
   brep::Solid whole;
   std::vector<glm::dvec3> necks_mm;
-  // A neck that is cut may leave another one beside it, where its two sides come nearer to each other.
+  // Beside a neck that is cut, another neck may appear where the two sides come nearer to each other.
   constexpr int most_rounds = 6;
   for (int round = 0; !middles.empty(); ++round) {
     {
@@ -181,12 +183,12 @@ brep::Solid thick_part(const brep::LevelBody& body, const ThickPart& asked, cons
     const std::string places =
         necks_mm.size() == 1 ? "" : std::to_string(necks_mm.size()) + " places, the first at ";
     made.findings.push_back("necks thinner than " + three_figures(neck_mm(asked.least_wall_mm)) +
-                            " mm are cut through at " + places + place_in_words(necks_mm.front()));
+                            " mm were cut through at " + places + place_in_words(necks_mm.front()));
   }
   {
     const Stopwatch watch(bench.timings, part + "_thin");
-    // Edges that are rounded by the radius recede by up to 0.73 of it, at the corners of a cube, and do not
-    // count as thin walls.
+    // Edges that are rounded by the radius recede by up to 0.73 of the radius, at the corners of a cube. This
+    // does not count as a thin wall.
     const double thin_mm3 = brep::volume_beyond_mm3(body, whole, radius_mm, 0.5);
     made.details["thin_mm3"] = thin_mm3;
     if (thin_mm3 > 0.0)
@@ -198,7 +200,7 @@ brep::Solid thick_part(const brep::LevelBody& body, const ThickPart& asked, cons
 }
 
 double thick_part_allowance_mm(const ThickPart& asked) {
-  // On average over a smooth surface, triangles are off by a third of the tolerance.
+  // On smooth surfaces, triangles deviate by a third of the tolerance on average.
   const double radius_mm = 0.5 * asked.least_wall_mm;
   return 2.0 * brep::offset_tolerance_mm({radius_mm, asked.cell_mm, {}}) / 3.0;
 }
@@ -207,8 +209,7 @@ void check_least_wall(double least_wall_mm, double wall_mm, const char* wall, co
   if (least_wall_mm > 0.9 * wall_mm)
     place.at("least_wall_mm")
         .refuse("is more than 0.9 of '" + std::string(wall) +
-                "', so that walls of that thickness would be cut "
-                "off: make it smaller, or the wall thicker");
+                "', so walls of that thickness would be cut off: make it smaller, or the wall thicker");
 }
 
 brep::Solid noted(const brep::BooleanResult& result, MeshSide& made) {

@@ -39,18 +39,18 @@ struct Rocking {
   int seed = 1;
 };
 
-/// Neighbouring contacts of the mesh, and pushed points, lie about this far apart.
+/// Spacing of the contacts and of the pushed points on the mesh.
 constexpr double contact_spacing_mm = 1.0;
-/// Normals are those of the bone's surface over this distance.
+/// Normals of contacts are averaged over the bone's surface within this distance.
 constexpr double smooth_mm = 2.0;
-/// Normals of triangles are off by about a degree, which holds like friction of that angle: less counts as
-/// none.
+/// The normals of triangles deviate by about a degree, which has the same effect as friction of that angle.
+/// Smaller angles therefore count as zero.
 constexpr double nothing_deg = 1.0;
-/// Errors of scan and printer are alike within patches of this edge.
+/// The errors of scan and printer are constant within patches with this edge.
 constexpr double patch_mm = 4.0;
-/// Walls that face a push by less than this cosine, six degrees, lie along it.
+/// Walls whose normal has a smaller cosine with the push, about six degrees, count as parallel to the push.
 constexpr double least_facing = 0.1;
-/// The number of worst points that trials follow.
+/// Only this number of the worst points are used in trials.
 constexpr std::size_t tried_points = 4;
 
 void check(const Rocking& asked, const FieldLocation& place) {
@@ -58,15 +58,16 @@ void check(const Rocking& asked, const FieldLocation& place) {
   check_against(asked.part, asked.against, place);
 }
 
-/// The input of both kernels.
+/// The objects, push direction and points for both kernels.
 struct Question {
   const Object& part;
   std::vector<const Object*> against;
   glm::dvec3 push{0.0};
-  std::vector<glm::dvec3> at_mm;  ///< the points about which the part is pushed
+  std::vector<glm::dvec3> at_mm;  ///< the points at which the part is pushed
 };
 
-/// The points of a surface within the radius of a line along the push through a point, and typed points.
+/// The points of a surface within the radius of a line along the push through one of the points, and the
+/// points that the user typed.
 std::vector<glm::dvec3> pushed_points(const std::vector<glm::dvec3>& surface, const Rocking& asked,
                                       const Question& question) {
   std::vector<glm::dvec3> points;
@@ -76,7 +77,8 @@ std::vector<glm::dvec3> pushed_points(const std::vector<glm::dvec3>& surface, co
         points.push_back(p);
         break;
       }
-  // Typed points that no surface near them faces are typing errors.
+  // Typed points without a surface near them that faces the push are typing errors, so no points are
+  // returned.
   if (points.empty() && asked.radius_mm > 0.0) return points;
   if (!asked.at.empty()) points.insert(points.end(), question.at_mm.begin(), question.at_mm.end());
   return points;
@@ -135,10 +137,10 @@ double angle_of(const std::vector<brep::DockingContact>& contacts, const glm::dv
   return least;
 }
 
-/// How far two right answers may be apart, by changes of the mesh's contacts alone: the largest effect of
-/// contacts a voxel wider and narrower, of pushed points a voxel nearer and farther, and of gaps a tenth of a
-/// voxel wider; and that of normals turned at random as a tenth of a voxel turns a plane over the distance of
-/// smoothing.
+/// The angle by which two correct answers may differ, from changes of the mesh's contacts alone. It is the
+/// largest effect of four changes: contacts a voxel wider or narrower, pushed points a voxel nearer or
+/// farther, and gaps a tenth of a voxel wider. Added to it is the effect of random errors of normals: a tenth
+/// of a voxel over the smoothing distance.
 double allowed_deg(const std::vector<brep::DockingContact>& contacts, double angle_deg, const Rocking& asked,
                    const glm::dvec3& push, const std::vector<glm::dvec3>& points, double voxel_mm) {
   glm::dvec3 middle(0.0);
@@ -180,8 +182,8 @@ double allowed_deg(const std::vector<brep::DockingContact>& contacts, double ang
   return allowed + most;
 }
 
-/// The angles of all trials, ascending. In a trial the errors of patches open and close gaps; what is opened
-/// beyond the largest gap bears no more.
+/// The angles of all trials, ascending. In a trial, the errors of patches widen and narrow gaps. Contacts
+/// whose gap exceeds the largest gap no longer support the part.
 std::vector<double> trial_angles(const std::vector<brep::DockingContact>& contacts, const Rocking& asked,
                                  const glm::dvec3& push, const std::vector<glm::dvec3>& points,
                                  double angle_deg, const voxel::Progress& progress) {
@@ -209,7 +211,7 @@ std::vector<double> trial_angles(const std::vector<brep::DockingContact>& contac
   return angles;
 }
 
-/// A value that a share of sorted ones does not exceed.
+/// The value below which a share of the sorted values lies, interpolated.
 double percentile(const std::vector<double>& sorted, double share) {
   const double at = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(std::floor(at));
@@ -265,7 +267,7 @@ Json failed(Json json, const std::string& finding) {
   return json;
 }
 
-/// The place of a surface where a push may deviate most, of places 4 mm apart.
+/// The position at which a push may deviate most, among positions on a surface at most 4 mm apart.
 brep::Docking best_of(const std::vector<brep::DockingContact>& contacts, const Question& question,
                       const AnswerBench& bench) {
   std::vector<brep::Docking> all = brep::dockings(
@@ -287,7 +289,7 @@ void judge(Json& json, const Question& question, const brep::Docking& worst) {
                                                                json["best_at_mm"][2])) +
                                      " mm, where it may deviate by " + three_figures(json["best_deg"]) +
                                      " degrees"
-                               : "; let the part reach farther round the bone";
+                               : "; extend the part farther around the bone";
   json["verdict"] = "WARN";
   if (angle < nothing_deg)
     json["findings"].push_back("'" + question.part.id + "' rocks on " + names_of(question) + ": " + pushed +
@@ -314,7 +316,7 @@ Json measure(const Rocking& asked, const AnswerBench& bench) {
   for (const ObjectName& name : asked.against) question.against.push_back(&bench.objects.at(name.name));
   Json json = empty_answer(asked, question);
   const auto add_missing = [&](const Object& object) {
-    if (auto missing = missing_kernel(object, "nothing can be said of its contacts"))
+    if (auto missing = missing_kernel(object, "its contacts cannot be examined"))
       json["findings"].push_back(std::move(*missing));
   };
   add_missing(question.part);
@@ -378,43 +380,38 @@ Json measure(const Rocking& asked, const AnswerBench& bench) {
 }  // namespace
 
 Operation rocking_operation() {
-  return Describe<Rocking>(
-             "rocking",
-             "Tests whether a part that is pushed onto its bone can rock: by how much the push may "
-             "deviate before the part turns or slides.",
-             Makes::Measurement)
-      .takes(field("object", &Rocking::part, "The part at its place.").required())
+  return Describe<Rocking>("rocking",
+                           "Tests whether a part that is pushed onto its bone can rock: computes the angle "
+                           "by which the push may deviate before the part turns or slides.",
+                           Makes::Measurement)
+      .takes(field("object", &Rocking::part, "The part in its seated position.").required())
       .takes(field("against", &Rocking::against, "The bone or teeth on which it sits.").required().from(1))
       .takes(insertion_direction(&Rocking::insertion))
       .takes(insertion_view(&Rocking::insertion))
       .takes(field("push", &Rocking::push,
-                   "The direction in which the part is held by a finger, LPS; default: that in which it is "
-                   "put on.")
+                   "The direction in which a finger pushes the part, LPS. Default: the insertion direction.")
                  .direction())
       .takes(field("at", &Rocking::at,
-                   "Points where the part is pushed; default: over the middle of its contacts."))
-      .takes(
-          field(
-              "radius_mm", &Rocking::radius_mm,
-              "The outer surface that faces the push within this distance of the lines of push through these "
-              "points may be pushed, too: half a fingertip.")
-              .from(0.0)
-              .to(500.0))
-      .takes(
-          field(
-              "contact_mm", &Rocking::contact_mm,
-              "Bone within this distance of the part bears it: the part's clearance and what its fit lacks.")
-              .greater_than(0.0)
-              .to(5.0))
-      .takes(
-          field("scan_mm", &Rocking::scan_mm, "Standard deviation of the bone's surface from place to place.")
-              .from(0.0)
-              .to(5.0))
-      .takes(field("printer_mm", &Rocking::printer_mm,
-                   "Standard deviation of the printed surface; 0.16 is stated for resin.")
+                   "Points at which the part is pushed. Default: over the middle of its contacts."))
+      .takes(field("radius_mm", &Rocking::radius_mm,
+                   "The part may also be pushed within this distance of the lines of push through these "
+                   "points, where its outer surface faces the push; about half a fingertip.")
+                 .from(0.0)
+                 .to(500.0))
+      .takes(field("contact_mm", &Rocking::contact_mm,
+                   "Bone within this distance of the part supports it: the part's clearance plus the error "
+                   "of its fit.")
+                 .greater_than(0.0)
+                 .to(5.0))
+      .takes(field("scan_mm", &Rocking::scan_mm,
+                   "Standard deviation of the error of the bone's surface, independent from patch to patch.")
                  .from(0.0)
                  .to(5.0))
-      .takes(field("trials", &Rocking::trials, "Number of trials of these errors.").from(100).to(100000))
+      .takes(field("printer_mm", &Rocking::printer_mm,
+                   "Standard deviation of the error of the printed surface; 0.16 is published for resin.")
+                 .from(0.0)
+                 .to(5.0))
+      .takes(field("trials", &Rocking::trials, "Number of trials with random errors.").from(100).to(100000))
       .takes(field("seed", &Rocking::seed, "Seed of the random errors: the same seed gives the same numbers.")
                  .from(0)
                  .to(1e9))

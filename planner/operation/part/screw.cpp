@@ -35,9 +35,9 @@
 namespace octotomy::planner {
 namespace {
 
-/// The largest distance of a screw's point from the bone's surface, because landmarks are placed by hand.
+/// A screw's point may lie this far from the bone's surface, because landmarks are placed by hand.
 constexpr double on_surface_mm = 3.0;
-/// The side of a flap's screw if none is given: jaw and fibula are reached from below.
+/// The default side of a flap's screw, because jaw and fibula are reached from below.
 constexpr const char* usual_side = "inferior";
 
 void check(const Screw& screw, const FieldLocation& place) {
@@ -66,7 +66,7 @@ void check(const Screw& screw, const FieldLocation& place) {
       place.at("away_from").refuse("names '" + object.name + "', in which the screw sits");
 }
 
-/// The gap measured in voxels; none if the screw or the other object has no voxels.
+/// The gap measured in voxels; none if either object has no voxels.
 std::optional<double> voxel_gap_mm(const voxel::Octree& screw, const voxel::Octree& other) {
   if (screw.is_empty() || other.is_empty()) return std::nullopt;
   return gap_between(screw, other, std::nullopt, std::nullopt).voxel_mm;
@@ -80,8 +80,8 @@ ScrewClear clear_of_object(const Object& object, const brep::Solid& rod, const v
   return clear;
 }
 
-/// The distance of a screw from the walls of a mask or of a flap's space, on either side of them; or from the
-/// bone that a saw removes.
+/// The distance in mm of a screw from the walls of a mask or of a flap's space, measured on either side of
+/// them; or from the bone that a saw removes.
 ScrewClear clear_of_cut(const Object& object, const Action& maker, const brep::Solid& rod,
                         const voxel::Octree& voxels, const std::filesystem::path& folder) {
   const voxel::Universe universe = voxels.universe();
@@ -110,7 +110,8 @@ ScrewClear clear_of_cut(const Object& object, const Action& maker, const brep::S
 
 void need_mesh(const Object& object) {
   if (!object.mesh.whole || object.mesh.whole->empty())
-    throw std::runtime_error("'" + object.id + "' has no mesh, so no distance to it can be measured");
+    throw std::runtime_error("'" + object.id +
+                             "' has no mesh, so no distance to it can be measured: see its findings");
 }
 
 std::vector<ScrewClear> clearances(const Screw& screw, const SettleBench& bench) {
@@ -126,8 +127,7 @@ std::vector<ScrewClear> clearances(const Screw& screw, const SettleBench& bench)
     const Action* maker = bench.maker_of ? bench.maker_of(name.name) : nullptr;
     if (maker == nullptr)
       throw std::runtime_error("'" + name.name +
-                               "' is no step of this plan: cuts are saw steps, masks and flaps' "
-                               "spaces");
+                               "' is not a step of this plan: name a saw step, a mask or a flap's space");
     if (maker->get_if<Saw>() == nullptr) need_mesh(object);
     found.push_back(clear_of_cut(object, *maker, body, voxels, bench.folder));
   }
@@ -140,7 +140,7 @@ std::string in_words(const ScrewClear& clear) {
 
 void report(const Screw& screw, const std::vector<ScrewClear>& clearances, const SettleBench& bench) {
   const voxel::Universe universe = bench.objects.at(screw.object.name).voxel.octree.universe();
-  // Each digitised surface may lie half a voxel's diagonal off.
+  // Each digitised surface may be displaced by half a voxel's diagonal.
   const double voxel_error_mm = glm::length(universe.lattice().spacing_mm());
   bench.details["clearances"] = nlohmann::ordered_json::array();
   for (const ScrewClear& clear : clearances) {
@@ -154,11 +154,11 @@ void report(const Screw& screw, const std::vector<ScrewClear>& clearances, const
   }
 }
 
-/// The point at which a line enters bone from outside, between two places on it. Throws std::runtime_error
-/// if no bone of the object lies there, with the remedy, or if the first place lies in bone.
+/// The point at which a line enters bone from outside, between two points on it. Throws std::runtime_error
+/// that states the remedy if the object has no bone there, or if the first point lies in bone.
 glm::dvec3 entry_mm(const std::string& name, const brep::Solid& bone, const glm::dvec3& from_mm,
                     const glm::dvec3& to_mm, const std::string& remedy) {
-  constexpr double sample_mm = 0.1;  // walls thinner than this hold no screw
+  constexpr double sample_mm = 0.1;  // thinner walls cannot hold a screw
   const int count = std::max(1, static_cast<int>(std::ceil(glm::distance(from_mm, to_mm) / sample_mm)));
   std::vector<glm::dvec3> places_mm;
   for (int i = 0; i <= count; ++i)
@@ -174,7 +174,7 @@ glm::dvec3 entry_mm(const std::string& name, const brep::Solid& bone, const glm:
         " mm from the flap's axis on the side of the screw: raise 'reach_mm' of its flap_space step");
   const auto at = static_cast<std::size_t>(first - inside.begin());
   glm::dvec3 outer_mm = places_mm[at - 1], inner_mm = places_mm[at];
-  constexpr int halvings = 20;  // to a millionth of the step
+  constexpr int halvings = 20;  // halves the step to a millionth
   for (int i = 0; i < halvings; ++i) {
     const glm::dvec3 middle_mm = 0.5 * (outer_mm + inner_mm);
     (bone.tree().is_inside(middle_mm) ? inner_mm : outer_mm) = middle_mm;
@@ -182,18 +182,18 @@ glm::dvec3 entry_mm(const std::string& name, const brep::Solid& bone, const glm:
   return 0.5 * (outer_mm + inner_mm);
 }
 
-/// A screw's head and direction at the place of the bone in which it sits.
+/// The head and direction of a screw at a place of the bone in which it sits.
 struct Placed {
   glm::dvec3 head_mm{0.0};
   glm::dvec3 along{0.0, 1.0, 0.0};  ///< unit
 };
 
-/// The screw that goes in along a view, where the view's line through the place meets the bone first.
+/// The screw that enters along a view's line through the place, where this line first meets the bone.
 Placed seen_from(const glm::dvec3& look, const Screw& asked, const SettleBench& bench) {
   const brep::Solid& bone = bench.object(asked.object.name);
   const glm::dvec3 at_mm = mark_mm(*asked.at, bench.objects);
   const brep::Size& size = bone.size();
-  // The bone's box lies within this distance of the place.
+  // No point of the bone's bounding box is farther from the place than this.
   const double far_mm = glm::length(glm::max(glm::abs(size.low_mm - at_mm), glm::abs(size.high_mm - at_mm)));
   return {entry_mm(asked.object.name, bone, at_mm - far_mm * look, at_mm + far_mm * look,
                    "move 'at', or choose another 'side'"),
@@ -227,7 +227,8 @@ Screw settle(const Screw& asked, const SettleBench& bench) {
   const Stopwatch watch(bench.timings, "screw");
   Screw made = asked;
   const brep::Solid& bone = bench.object(asked.object.name);
-  if (bone.empty()) throw std::runtime_error("'" + asked.object.name + "' is empty: no screw holds in it");
+  if (bone.empty())
+    throw std::runtime_error("'" + asked.object.name + "' is empty, so it cannot hold a screw");
   const Placed at = placed(asked, bench);
   made.head_mm = at.head_mm;
   made.direction = at.along;
@@ -236,11 +237,11 @@ Screw settle(const Screw& asked, const SettleBench& bench) {
   if (off_mm > on_surface_mm)
     throw std::runtime_error("the point " + voxel::rounded(made.head_mm) + " mm lies " +
                              three_figures(off_mm) + " mm off the surface of '" + asked.object.name +
-                             "': give a point on that surface");
+                             "': choose a point on that surface");
   made.tip_mm = made.head_mm + asked.length_mm * at.along;
   bench.details = {
       {"head_mm", to_json(made.head_mm)}, {"tip_mm", to_json(made.tip_mm)}, {"off_surface_mm", off_mm}};
-  // Samples the axis. If no sample lies in bone, the screw points out of it.
+  // The axis is sampled. If no sample lies in bone, the screw points out of the bone.
   constexpr int samples = 32;
   int inside = 0;
   for (int i = 0; i < samples; ++i)
@@ -311,7 +312,7 @@ std::string too_near(const std::string& screw, const ScrewClear& clear, double l
 brep::Solid rod(const glm::dvec3& from_mm, const glm::dvec3& to_mm, double radius_mm) {
   constexpr int sides = 48;
   const double turn = 2.0 * glm::pi<double>() / sides;
-  // The corners of a polygon with the same area as the disc.
+  // The radius of the corners of a polygon that has the area of the disc.
   const double corner_mm = radius_mm * std::sqrt(turn / std::sin(turn));
   brep::Prism prism;
   prism.look = glm::normalize(to_mm - from_mm);
@@ -333,10 +334,10 @@ ScrewAxis screw_axis(const std::string& name, const SettleBench& bench) {
   const Action* maker = bench.maker_of ? bench.maker_of(still.id) : nullptr;
   const Screw* screw = maker == nullptr ? nullptr : maker->get_if<Screw>();
   if (screw == nullptr)
-    throw std::runtime_error("'" + name + "' is no screw: name a screw step, or a screw that was moved");
+    throw std::runtime_error("'" + name + "' is not a screw: name a screw step, or a screw that was moved");
   if (object.image && !keeps_lengths(object.image->image_from_object))
     throw std::runtime_error("'" + name +
-                             "' is scaled or sheared, and a screw keeps its shape: move it rigidly");
+                             "' is scaled or sheared, but a screw must keep its shape: move it rigidly");
   const glm::dmat4 image = object.image ? object.image->image_from_object : glm::dmat4(1.0);
   const Placed at = placed(*screw, bench);
   return {name,
@@ -348,10 +349,10 @@ ScrewAxis screw_axis(const std::string& name, const SettleBench& bench) {
 }
 
 std::optional<double> hole_off_mm(const brep::Solid& solid, const ScrewAxis& axis, double radius_mm) {
-  constexpr double near_mm = 0.05;  // the corners of the hole's prism and their rounding
+  constexpr double near_mm = 0.05;  // allows for the corners of the hole's prism and for their rounding
   const glm::dvec3 aside = std::abs(axis.along.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
   const glm::dvec3 u = glm::normalize(glm::cross(axis.along, aside)), v = glm::cross(axis.along, u);
-  // A circle u^2 + v^2 = 2 a u + 2 b v + c is fitted; the sums run over all points.
+  // Fits the circle u^2 + v^2 = 2 a u + 2 b v + c. The sums run over all points.
   glm::dmat3 sums(0.0);
   glm::dvec3 right(0.0);
   int count = 0;
@@ -375,32 +376,31 @@ Operation screw_operation() {
   const char* const needs_flap = "applies only to 'flap': leave it out";
   return Describe<Screw>(
              "screw",
-             "Places a screw, whose axis moves with its bone and sets the holes of guides and plates.",
+             "Places a screw. Its axis moves with its bone and determines the holes of guides and plates.",
              Makes::Object)
       .takes(field("object", &Screw::object, "The bone or piece in which the screw sits.").required())
       .takes(field("at", &Screw::at,
-                   "Where its axis meets the bone's surface, or with 'side' a place before or behind that: "
-                   "[x, y, z] or a landmark."))
+                   "The point at which its axis meets the bone's surface; with 'side' it may lie before or "
+                   "behind the surface: [x, y, z] or a landmark."))
       .takes(field("direction", &Screw::direction, "The direction from the screw's head to its tip, LPS.")
                  .direction())
-      .takes(field(
-          "flap", &Screw::flap,
-          "In place of 'at' and 'direction', the flap_space step of a segment or of the resection: the screw "
-          "meets the axis of that space at a right angle, from 'side'."))
+      .takes(field("flap", &Screw::flap,
+                   "Instead of 'at' and 'direction': the flap_space step of a segment or of the resection. "
+                   "The screw meets the axis of that space at a right angle, from 'side'."))
       .takes(
-          field("share", &Screw::share,
-                "Where on that axis: 0 at a segment's first cut to 1 at its second. Of the resection, in the "
-                "bone that stays: -1 at the first stump's point to 0 at the first cut, and 1 at the last cut "
-                "to 2 at the last stump's point.")
+          field(
+              "share", &Screw::share,
+              "The position on the flap's axis: for a segment from 0 at its first cut to 1 at its second "
+              "cut. For the resection it lies in the bone that stays: from -1 at the first point of the "
+              "stumps to 0 at the first cut, or from 1 at the last cut to 2 at the last point of the stumps.")
               .from(-1.0)
               .to(2.0)
               .read_if<Screw>(of_flap, needs_flap))
-      .takes(field(
-          "side", &Screw::side,
-          "The side from which it is screwed in: anterior, posterior, left, right, superior, inferior, or "
-          "AZ,EL in degrees; of the head as it is held. It replaces 'direction': with 'at' the screw enters "
-          "where 'at' is seen on the bone from that side. With 'flap' it is the side of the segment in its "
-          "new place; default: inferior."))
+      .takes(field("side", &Screw::side,
+                   "The side from which the screw enters, relative to the head's position: anterior, "
+                   "posterior, left, right, superior, inferior, or AZ,EL in degrees. It replaces "
+                   "'direction': with 'at', the screw enters the bone where 'at' is seen from that side. "
+                   "With 'flap', it is the side of the segment in its new place; default: inferior."))
       .takes(field("diameter_mm", &Screw::diameter_mm,
                    "The outer diameter; 2 is usual for plates of the midface.")
                  .from(0.8)
@@ -411,12 +411,12 @@ Operation screw_operation() {
                  .to(60.0))
       .takes(field("away_from", &Screw::away_from,
                    "Objects that the screw must not touch, such as roots or the nerve's canal."))
-      .takes(
-          field("cuts", &Screw::cuts,
-                "Saw steps, masks and flaps' spaces of this plan whose cuts the screw must stay away from."))
+      .takes(field("cuts", &Screw::cuts,
+                   "Saw steps, masks and spaces of flaps in this plan, from whose cuts the screw must keep a "
+                   "distance."))
       .takes(field("least_mm", &Screw::least_mm,
-                   "The least distance from the screw to 'away_from' and 'cuts'; a smaller one is a finding. "
-                   "1 is published for screws between roots.")
+                   "The least distance from the screw to 'away_from' and 'cuts'; a smaller distance is a "
+                   "finding. 1 is published for screws between roots.")
                  .from(0.0)
                  .to(20.0))
       .example(R"({"id": "left_1", "do": "screw", "object": "maxilla", "at": [18, -80, -34],

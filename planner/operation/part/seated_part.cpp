@@ -18,7 +18,8 @@ std::optional<std::string> missing_kernel(const Object& object, const std::strin
     return why_no_voxels(object) + ": " + consequence;
   if (!object.mesh.within || object.mesh.within->empty())
     return "'" + object.id +
-           "' has no mesh, so one kernel alone would answer: make it by steps that both kernels have";
+           "' has no mesh, so the kernels cannot check each other: make the object by steps that both "
+           "kernels have";
   return std::nullopt;
 }
 

@@ -10,12 +10,12 @@
 
 namespace octotomy::planner {
 
-/// Refuses a part that is among the objects on which it sits.
+/// Refuses a part that is listed among the objects on which it sits.
 void check_against(const ObjectName& part, const std::vector<ObjectName>& against,
                    const FieldLocation& place);
 
-/// The kernel whose solid an object lacks, as a finding; none if both kernels have one. `consequence` ends the
-/// finding of an object without voxels: "nothing can be seated".
+/// A finding that states which kernel has no solid of an object; none if both have one. `consequence`, such
+/// as "nothing can be seated", ends the finding if the object has no voxels.
 std::optional<std::string> missing_kernel(const Object& object, const std::string& consequence);
 
 }  // namespace octotomy::planner

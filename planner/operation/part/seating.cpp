@@ -27,7 +27,7 @@ struct Seating {
   double tolerance_mm = 0.12;
 };
 
-/// The accuracy of the mesh's depths.
+/// The accuracy of depths in the mesh, in mm.
 constexpr double resolution_mm = 0.01;
 
 void check(const Seating& seating, const FieldLocation& place) {
@@ -35,7 +35,7 @@ void check(const Seating& seating, const FieldLocation& place) {
   check_against(seating.part, seating.against, place);
 }
 
-/// Both kernels' results for one object.
+/// The results of both kernels for one object.
 struct Found {
   std::string object;
   std::optional<brep::Binding> mesh;
@@ -65,8 +65,8 @@ std::string sentence_of(const Found& found, const std::string& part) {
   return "'" + part + "' binds on '" + found.object + "': it would go " + three_figures(at.depth_mm) +
          " mm into it at " + voxel::rounded(at.at_mm) + " mm, from " + three_figures(at.first_mm) + " to " +
          three_figures(at.last_mm) +
-         " mm before its place; subtract the object's shadow along the insertion direction from the part, "
-         "or choose another direction";
+         " mm before its seat: subtract the object's shadow along the insertion direction from the part, or "
+         "choose another direction";
 }
 
 Found find(const Object& part, const Object& object, const glm::dvec3& along, const AnswerBench& bench) {
@@ -99,7 +99,7 @@ Json measure(const Seating& asked, const AnswerBench& bench) {
   for (const ObjectName& name : asked.against) add_missing(bench.objects.at(name.name));
   if (!json["findings"].empty()) return json;
 
-  // Each digitised surface may be off by half a voxel's diagonal.
+  // Each digitised surface may be displaced by half a voxel's diagonal.
   const double voxel_error_mm = glm::length(bench.universe.lattice().spacing_mm());
   json["voxel_error_mm"] = voxel_error_mm;
   double deepest_mm = 0.0;
@@ -127,20 +127,18 @@ Json measure(const Seating& asked, const AnswerBench& bench) {
 }  // namespace
 
 Operation seating_operation() {
-  return Describe<Seating>("seating",
-                           "Tests whether a part can be put on, by how deep objects reach into its path.",
-                           Makes::Measurement)
-      .takes(field("object", &Seating::part, "The part at its place.").required())
+  return Describe<Seating>(
+             "seating",
+             "Tests whether a part can be put on: measures the depth to which objects extend into its path.",
+             Makes::Measurement)
+      .takes(field("object", &Seating::part, "The part in its seated position.").required())
       .takes(field("against", &Seating::against, "The bone or teeth on which it sits.").required().from(1))
       .takes(insertion_direction(&Seating::insertion))
       .takes(insertion_view(&Seating::insertion))
-      .takes(
-          field(
-              "tolerance_mm", &Seating::tolerance_mm,
-              "The depth that is tolerated, because parts are elastic: an undercut of this depth lets a part "
-              "snap on.")
-              .from(0.0)
-              .to(2.0))
+      .takes(field("tolerance_mm", &Seating::tolerance_mm,
+                   "The tolerated depth. Parts are elastic, so a part snaps onto an undercut of this depth.")
+                 .from(0.0)
+                 .to(2.0))
       .example(R"({"id": "goes_on", "do": "seating", "object": "advanced", "against": ["rest"],
         "direction": [0, 1, 0]})")
       .of_head()

@@ -33,22 +33,23 @@ struct Shadow {
   Insertion insertion;
   double beyond_mm = 0.0;
   std::optional<double> tolerance_mm;
-  glm::dvec3 along{0.0, 1.0, 0.0};  ///< set by settle(): unit, LPS
-  double end_mm = 0.0;              ///< set by settle(): position along `along` of the plane at which the
-                                    ///< shadow ends
+  glm::dvec3 along{0.0, 1.0, 0.0};  ///< computed by settle(): unit, LPS
+  double end_mm = 0.0;              ///< computed by settle(): position along `along` of the plane at which
+                                    ///< the shadow ends
 };
 
 void check(const Shadow& shadow, const FieldLocation& place) {
   check(shadow.insertion, place);
 }
 
-/// The object within the universe. Both kernels compute the shadow of this part. Precondition: the object has
-/// a mesh.
+/// The part of the object within the universe, of which both kernels compute the shadow. Precondition: the
+/// object has a mesh.
 const brep::Solid& solid_within(const Object& object) {
   return object.mesh.within ? *object.mesh.within : *object.mesh.whole;
 }
 
-/// The far end of the object by its mesh, whose tips are exact, or by its voxels if it has no mesh.
+/// The position of the object's far end along the direction: from its mesh, whose tips are exact, or from its
+/// voxels if it has no mesh.
 std::optional<double> far_end_mm(const Object& object, const glm::dvec3& along) {
   if (object.mesh.whole) {
     const brep::Solid& solid = solid_within(object);
@@ -72,16 +73,16 @@ std::string definition(const Shadow& shadow, const Objects&) {
   return "shadow of " + shadow.object.name + " along " + in_words(shadow.insertion);
 }
 
-/// The edge of the cells in which the mesh kernel searches for points as deep as the tolerance: a quarter of
-/// the tolerance, but not below about 1/200 of the solid's extent.
+/// The edge of the cells with which the mesh kernel searches for points as deep as the tolerance: a quarter
+/// of the tolerance, but at least about 1/200 of the solid's extent.
 double cell_mm(const brep::Solid& solid, double tolerance_mm) {
   const glm::dvec3 extent = solid.size().high_mm - solid.size().low_mm;
   return std::max(0.25 * tolerance_mm, std::max({extent.x, extent.y, extent.z}) / 200.0);
 }
 
-/// The part of a shadow within the universe, where the voxels of the shadow end too. The end plane of an
-/// oblique shadow extends beyond the universe; what is cut off there is not reported as lost. A verb that
-/// works on meshes alone has no universe.
+/// The part of a shadow within the universe, because the voxels' shadow also ends there. The end plane of an
+/// oblique shadow extends beyond the universe; that part is cut off without a finding. A verb that works on
+/// meshes only has no universe.
 brep::BooleanResult cut_at_universe(const brep::Solid& shadow, bool has_voxels, const MeshBench& bench) {
   const glm::dvec3 &low = bench.low_mm, &high = bench.high_mm;
   if (!has_voxels || shadow.empty() ||
@@ -96,7 +97,7 @@ brep::BooleanResult cut_at_universe(const brep::Solid& shadow, bool has_voxels, 
 }
 
 void voxels(const Shadow& shadow, const VoxelBench& bench, VoxelSide& made) {
-  made.lineage = "columns of the octree, filled from where they first cross its surface";
+  made.lineage = "columns of the octree, filled from the point at which they first cross its surface";
   const VoxelSide& object = bench.object(shadow.object.name);
   if (object.octree.is_empty()) {
     made.symbol = voxel::Expression(made.octree);
@@ -114,21 +115,20 @@ void voxels(const Shadow& shadow, const VoxelBench& bench, VoxelSide& made) {
     made.symbol = object.symbol;
     made.findings.push_back(
         "no point of the object is deeper than the tolerated undercut, so nothing is blocked out: choose a "
-        "smaller one");
+        "smaller undercut");
     return;
   }
   const voxel::Shadow found = [&] {
     const Stopwatch watch(bench.timings, "shadow_voxel");
     return voxel::shadow(octree, solid, {shadow.along, shadow.end_mm, bench.progress});
   }();
-  // The end is taken from the mesh. That of the voxels may be off by less than a voxel's diagonal.
+  // The end comes from the mesh. The end of the voxels may differ by less than a voxel's diagonal.
   const double apart_mm =
       std::abs(found.far_end_mm + shadow.tolerance_mm.value_or(0.0) + shadow.beyond_mm - shadow.end_mm);
   if (apart_mm > glm::length(bench.universe.lattice().spacing_mm()))
-    made.findings.push_back(
-        "the object's far end lies " + three_figures(apart_mm) +
-        " mm apart in voxels and in the mesh: a thin tip has no voxels, so choose smaller "
-        "voxels or cut the tip off");
+    made.findings.push_back("the object's far end lies " + three_figures(apart_mm) +
+                            " mm apart in voxels and in the mesh, because a thin tip has no voxels: choose "
+                            "smaller voxels or cut off the tip");
   const voxel::Expression window(found.window);
   made.octree = bench.combined(shadow.tolerance_mm ? window | voxel::Expression(object.octree) : window);
   made.symbol = bench.within_universe(shadow.tolerance_mm ? window | *object.symbol : window);
@@ -147,7 +147,7 @@ void triangles(const Shadow& shadow, const MeshBench& bench, MeshSide& made) {
     if (missed.area_share > 0.0)
       made.findings.push_back("walls thinner than " + three_figures(options.cell_mm) + " mm, " +
                               three_figures(100.0 * missed.area_share) +
-                              " % of the surface, cast no shadow where an undercut is tolerated");
+                              " % of the surface, cast no shadow because an undercut is tolerated");
     made.details["cell_mm"] = options.cell_mm;
   }
   const brep::Shadow found = brep::shadow(deep, {shadow.along, shadow.end_mm, progress});
@@ -162,7 +162,7 @@ void triangles(const Shadow& shadow, const MeshBench& bench, MeshSide& made) {
   made.whole = whole.solid;
   made.details["triangles_seen"] = found.seen;
   made.details["filled_mm3"] = brep::volume_mm3(*made.whole) - brep::volume_mm3(solid);
-  made.lineage = "the triangles that are seen first along the direction, with walls below their outline";
+  made.lineage = "the triangles that are visible along the direction, with walls below their outline";
 }
 
 void bound(const Shadow& shadow, const BoundBench& bench, Object& made) {
@@ -179,7 +179,7 @@ void bound(const Shadow& shadow, const BoundBench& bench, Object& made) {
   const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
   if (is_whole_voxels(object.voxel))
     made.bound.measured_apart_mm += 0.5 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
-  // If the end plane is parallel to voxels' faces, the whole plane is rounded in the same direction.
+  // If the end plane is parallel to faces of voxels, the whole plane is rounded in the same direction.
   constexpr double rounding = 1e-9;
   for (int axis = 0; axis < 3; ++axis)
     if (std::abs(shadow.along[axis]) > 1.0 - rounding)
@@ -198,14 +198,15 @@ Operation shadow_operation() {
       .takes(insertion_direction(&Shadow::insertion))
       .takes(insertion_view(&Shadow::insertion))
       .takes(
-          field("beyond_mm", &Shadow::beyond_mm,
-                "How far the shadow goes on behind the object's far end, at most to the universe's border. "
-                "Default: it ends there, as models that are blocked out by hand end at their base.")
+          field(
+              "beyond_mm", &Shadow::beyond_mm,
+              "The distance to which the shadow continues behind the object's far end, at most to the "
+              "universe's border. Default: it ends at the far end, like models that are blocked out by hand.")
               .from(0.0)
               .to(500.0))
       .takes(field("tolerance_mm", &Shadow::tolerance_mm,
-                   "A tolerated undercut: parts less deep than this below the object's surface block "
-                   "nothing, so that a part snaps on, for example 0.12. Default: none is tolerated.")
+                   "The tolerated undercut: points less deep than this below the object's surface cast no "
+                   "shadow, so that a part can snap on, for example 0.12. Default: no undercut is tolerated.")
                  .greater_than(0.0)
                  .to(2.0))
       .example(R"({"id": "blocked", "do": "shadow", "object": "maxilla", "direction": [0, 0, 1]})")

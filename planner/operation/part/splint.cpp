@@ -39,12 +39,12 @@
 namespace octotomy::planner {
 namespace {
 
-/// The values of a jaw that settle() determines.
+/// The values of one jaw that settle() computes.
 struct SplintJaw {
-  Slab near;                  ///< the part of the jaw that is used
-  glm::dvec3 along{0, 0, 1};  ///< unit, LPS: the direction in which the splint moves onto it
-  double end_mm = 0.0;        ///< p . along of a plane behind `near` and the slab
-  double tip_mm = 0.0;        ///< p . look of the teeth's tips
+  Slab near;                  ///< the space of the jaw that is used
+  glm::dvec3 along{0, 0, 1};  ///< unit, LPS: the direction in which the splint moves onto this jaw
+  double end_mm = 0.0;        ///< position along `along` of a plane behind `near` and the slab
+  double tip_mm = 0.0;        ///< position p . look of the teeth's tips
 };
 
 struct Splint {
@@ -57,13 +57,13 @@ struct Splint {
   SplintJaw jaws[2];  ///< upper, lower
 };
 
-/// The size of the space around the band in which a jaw is used: beside the band, and above and below it.
+/// A jaw is used within these distances around the band: beside it, and above and below it.
 constexpr double margin_mm = 3.0, reach_mm = 12.0;
-/// Searched directions are tilted from the arch's normal by at most this, in these steps.
+/// Directions that are searched are tilted from the arch's normal by at most this angle, in these steps.
 constexpr double search_deg = 20.0, search_step_deg = 10.0;
-/// If the angle to the arch's normal is larger than this, a direction runs along the teeth's sides.
+/// A direction with a larger angle to the arch's normal runs along the teeth's sides and is refused.
 constexpr double steepest_deg = 60.0;
-/// Cell size of the mesh's offsets of teeth. Flat parts lie within a 16th of it.
+/// Cell size of the mesh's offsets of teeth. Flat parts lie within a 16th of a cell.
 constexpr double fit_cell_mm = 0.5;
 
 const ObjectName& name_of(const Splint& splint, int jaw) {
@@ -75,15 +75,15 @@ void check(const Splint& splint, const FieldLocation& place) {
     place.at("lower").refuse("is the upper jaw itself: name the object with the lower teeth");
 }
 
-/// Throws if the points do not all lie on one jaw.
+/// Throws std::runtime_error if the points do not all lie on the same jaw.
 void need_one_jaw(const std::vector<glm::dvec3>& points_mm, const Splint& splint, const SettleBench& bench) {
-  constexpr double on_mm = 3.0;  // landmarks are placed by hand
+  constexpr double on_mm = 3.0;  // points may lie this far off, because landmarks are placed by hand
   std::vector<double> to[2];
   double sum[2] = {0.0, 0.0};
   for (int jaw = 0; jaw < 2; ++jaw) {
     const brep::Solid& solid = bench.object(name_of(splint, jaw).name);
     if (solid.empty())
-      throw std::runtime_error("'" + name_of(splint, jaw).name + "' is empty: it has no teeth");
+      throw std::runtime_error("'" + name_of(splint, jaw).name + "' is empty, so it has no teeth");
     for (const brep::Foot& foot : solid.tree().feet(points_mm)) to[jaw].push_back(foot.distance_mm);
     for (const double mm : to[jaw]) sum[jaw] += mm;
   }
@@ -93,14 +93,14 @@ void need_one_jaw(const std::vector<glm::dvec3>& points_mm, const Splint& splint
     const std::string point = "point " + std::to_string(i + 1) + " of the arch lies ";
     if (to[1 - on][i] < to[on][i])
       throw std::runtime_error(point + "on '" + name_of(splint, 1 - on).name + "', the others on '" +
-                               name_of(splint, on).name + "': give points on the teeth of one jaw");
+                               name_of(splint, on).name + "': choose points on the teeth of one jaw");
     throw std::runtime_error(point + three_figures(to[on][i]) + " mm off '" + name_of(splint, on).name +
-                             "': give points on the biting surfaces of its teeth");
+                             "': choose points on the biting surfaces of its teeth");
   }
 }
 
-/// The tips of a jaw's teeth in the band: the least p . look of the upper jaw, the largest of the lower jaw.
-/// `column` is the band, extended up and down as far as jaws are used.
+/// The position p . look of a jaw's tips of teeth in the band: the smallest of the upper jaw, the largest of
+/// the lower jaw. `column` is the band, extended up and down as far as jaws are used.
 double tip_of(const brep::Solid& jaw, const Slab& column, double sign, const std::string& name,
               const SettleBench& bench) {
   const brep::Solid teeth =
@@ -108,16 +108,16 @@ double tip_of(const brep::Solid& jaw, const Slab& column, double sign, const std
   double tip_mm = std::numeric_limits<double>::infinity();
   for (const glm::dvec3& p_mm : teeth.triangles().points_mm)
     tip_mm = std::min(tip_mm, sign * glm::dot(p_mm, column.frame.look));
-  // A jaw that continues beyond the column has no tips in it.
+  // If the jaw continues beyond the column, there are no tips in the column.
   constexpr double cut_mm = 1e-3;
   if (!(std::abs(sign * tip_mm - column.frame.height_mm) < reach_mm - cut_mm))
     throw std::runtime_error("'" + name + "' has no tips of teeth within " + three_figures(reach_mm) +
-                             " mm above or below the arch's points: give points on its biting surfaces, and "
-                             "let the object hold this jaw alone");
+                             " mm above or below the arch's points: choose points on its biting surfaces, "
+                             "and check that the object contains only this jaw");
   return sign * tip_mm;
 }
 
-/// The direction along which the teeth within the slab have the least undercut.
+/// The direction along which the teeth within the slab have the least undercut, LPS.
 glm::dvec3 found_direction(const Object& object, const Slab& slab, double sign, const SettleBench& bench,
                            nlohmann::ordered_json& details) {
   const glm::dvec3 first = sign * slab.frame.look;
@@ -152,8 +152,8 @@ Splint settle(const Splint& asked, const SettleBench& bench) {
     static_cast<void>(slab.solid());
   } catch (const brep::InvalidInput&) {
     throw std::runtime_error("a band of " + three_figures(asked.width_mm) +
-                             " mm about the arch's points crosses itself: take a smaller 'width_mm', or "
-                             "points in their order along the arch");
+                             " mm along the arch's points crosses itself: choose a smaller 'width_mm', or "
+                             "state the points in their order along the arch");
   }
   bench.details = {{"arch_normal", to_json(slab.frame.look)}, {"jaws", nlohmann::ordered_json::array()}};
   for (int jaw = 0; jaw < 2; ++jaw) {
@@ -170,7 +170,7 @@ Splint settle(const Splint& asked, const SettleBench& bench) {
   if (!(slab.high_mm - slab.low_mm >= asked.thickness_mm))
     throw std::runtime_error("the rows of teeth overlap by " +
                              three_figures(made.jaws[1].tip_mm - made.jaws[0].tip_mm) + " mm, so that " +
-                             three_figures(slab.high_mm - slab.low_mm) + " mm are left for a splint of " +
+                             three_figures(slab.high_mm - slab.low_mm) + " mm remain for a splint of " +
                              three_figures(asked.thickness_mm) + " mm: open the bite, or raise 'depth_mm'");
   for (int jaw = 0; jaw < 2; ++jaw) {
     SplintJaw& of = made.jaws[jaw];
@@ -184,12 +184,13 @@ Splint settle(const Splint& asked, const SettleBench& bench) {
       if (off_deg > steepest_deg)
         throw std::runtime_error(std::string(jaw == 0 ? "'upper_direction'" : "'lower_direction'") +
                                  " lies " + three_figures(off_deg) +
-                                 " degrees off the arch's normal: along the teeth's sides nothing can be put "
-                                 "on, so point it from the splint to the teeth");
+                                 " degrees off the arch's normal, so it runs along the teeth's sides: point "
+                                 "it from the splint to the teeth");
     } else {
       of.along = found_direction(bench.objects.at(name_of(asked, jaw).name), slab, sign, bench, details);
     }
-    // The jaw is used up to slightly beyond the slab, so that its cut stays away from the splint.
+    // The jaw is used slightly beyond the slab, so that the plane at which it is cut does not touch the
+    // splint.
     (jaw == 0 ? of.near.high_mm : of.near.low_mm) =
         jaw == 0 ? slab.high_mm + margin_mm : slab.low_mm - margin_mm;
     of.end_mm = std::max(of.near.far_end_mm(of.along), slab.far_end_mm(of.along)) + margin_mm;
@@ -202,7 +203,7 @@ Splint settle(const Splint& asked, const SettleBench& bench) {
   bench.details["height_mm"] = slab.high_mm - slab.low_mm;
   if (slab.frame.off_plane_mm > asked.depth_mm)
     bench.findings.push_back("points of the arch lie up to " + three_figures(slab.frame.off_plane_mm) +
-                             " mm off their plane: teeth there are covered less or more by this much");
+                             " mm off their plane, so teeth there are covered less or more by this distance");
   return made;
 }
 
@@ -211,14 +212,14 @@ std::string definition(const Splint& splint, const Objects&) {
          plain(splint.offset_mm) + " mm off the teeth";
 }
 
-/// The distance between the teeth and the surface that casts the shadow. The teeth themselves cast it if that
-/// distance is below the accuracy of the mesh's offsets on flat parts.
+/// The distance between the teeth and the surface that casts the shadow. If it is below the accuracy of the
+/// mesh's offsets on flat parts, the teeth themselves cast the shadow.
 double shadow_by_mm(const Splint& splint) {
   const double by_mm = splint.offset_mm - splint.tolerance_mm;
   return std::abs(by_mm) < fit_cell_mm / 16.0 ? 0.0 : by_mm;
 }
 
-/// The voxels that must stay free of splint because of a jaw.
+/// The voxels that the splint must not occupy because of one jaw.
 voxel::Expression taken_by(const Splint& splint, int jaw, const VoxelBench& bench) {
   const VoxelSide& object = bench.object(name_of(splint, jaw).name);
   const voxel::Expression near = splint.jaws[jaw].near.expression();
@@ -237,7 +238,7 @@ voxel::Expression taken_by(const Splint& splint, int jaw, const VoxelBench& benc
 }
 
 void voxels(const Splint& splint, const VoxelBench& bench, VoxelSide& made) {
-  made.lineage = "the slab less distances to, and columns of, the octrees of the teeth";
+  made.lineage = "the slab less the columns of the teeth's octrees and the points near them";
   const voxel::Expression slab = splint.slab.expression();
   const voxel::Expression taken = [&] {
     const Stopwatch watch(bench.timings, "splint_voxel");
@@ -254,7 +255,7 @@ void voxels(const Splint& splint, const VoxelBench& bench, VoxelSide& made) {
   keep_largest(thick_part(whole, splint.thickness_mm, bench), bench, made);
 }
 
-/// The levels that must stay free of splint because of a jaw, for the mesh kernel.
+/// The levels of the mesh kernel that the splint must not occupy because of one jaw.
 std::vector<brep::Level> taken_by(const Splint& splint, int jaw, const MeshBench& bench, MeshSide& made) {
   const brep::Progress progress{bench.progress.stop, bench.progress.report};
   const brep::BooleanResult near =
@@ -266,7 +267,8 @@ std::vector<brep::Level> taken_by(const Splint& splint, int jaw, const MeshBench
     return brep::shadow(casts, {splint.jaws[jaw].along, splint.jaws[jaw].end_mm, progress}).solid;
   };
   std::vector<brep::Level> taken{{near.solid, splint.offset_mm}};
-  // The shadow of grown teeth equals the grown shadow of the teeth. For shrunk teeth that does not hold.
+  // For teeth that are grown, the shadow of the grown teeth equals the grown shadow of the teeth. For teeth
+  // that are shrunk this does not hold.
   if (const double by_mm = shadow_by_mm(splint); by_mm >= 0.0) {
     taken.push_back({shadow_of(near.solid), by_mm});
   } else if (const brep::Solid casts = brep::offset(near.solid, {by_mm, fit_cell_mm, progress});
@@ -323,11 +325,12 @@ void bound(const Splint& splint, const BoundBench& bench, Object& made) {
 }  // namespace
 
 Operation splint_operation() {
-  return Describe<Splint>("splint", "Makes a splint that slides onto the teeth of both jaws.", Makes::Object)
-      .takes(field("upper", &Splint::upper, "The upper jaw at its planned place.")
+  return Describe<Splint>("splint", "Makes a splint that can be put onto the teeth of both jaws.",
+                          Makes::Object)
+      .takes(field("upper", &Splint::upper, "The upper jaw in its planned position.")
                  .required()
                  .positional("upper"))
-      .takes(field("lower", &Splint::lower, "The lower jaw at its place, with the bite that is planned.")
+      .takes(field("lower", &Splint::lower, "The lower jaw in its position with the planned bite.")
                  .required()
                  .positional("lower"))
       .takes(field("arch", &Splint::arch,
@@ -340,8 +343,8 @@ Operation splint_operation() {
                  .from(0.05)
                  .to(0.5))
       .takes(field("depth_mm", &Splint::depth_mm,
-                   "How far the splint reaches over the tips of both rows; published splints that reach 5 "
-                   "fit badly.")
+                   "The distance to which the splint extends over the tips of both rows of teeth; published "
+                   "splints with 5 fit badly.")
                  .from(0.5)
                  .to(6.0))
       .takes(field("thickness_mm", &Splint::thickness_mm,
@@ -352,20 +355,18 @@ Operation splint_operation() {
                    "The splint's width across the arch; molars are about 10 wide.")
                  .from(4.0)
                  .to(40.0))
-      .takes(
-          field(
-              "tolerance_mm", &Splint::tolerance_mm,
-              "How far the splint may reach into undercuts of the teeth with their gap, so that it snaps on; "
-              "the default is the one published for splints.")
-              .from(0.0)
-              .to(0.5))
+      .takes(field("tolerance_mm", &Splint::tolerance_mm,
+                   "The depth to which the splint may extend into undercuts of the teeth, including the gap, "
+                   "so that it snaps on. The default is published for splints.")
+                 .from(0.0)
+                 .to(0.5))
       .takes(field("upper_direction", &Splint::upper_direction,
-                   "The direction in which the splint moves onto the upper teeth, LPS. Default: the one of "
-                   "least undercut within 20 degrees of the arch's normal.")
+                   "The direction in which the splint moves onto the upper teeth, LPS. Default: the "
+                   "direction of least undercut within 20 degrees of the arch's normal.")
                  .direction())
       .takes(field("lower_direction", &Splint::lower_direction,
-                   "The direction in which the splint moves onto the lower teeth, LPS. Default: as for the "
-                   "upper teeth.")
+                   "The direction in which the splint moves onto the lower teeth, LPS. Default: the "
+                   "direction of least undercut within 20 degrees of the arch's normal.")
                  .direction())
       .example(R"({"id": "wafer", "do": "splint", "upper": "advanced", "lower": "rest",
         "arch": [[-24, -52, -56], [0, -86, -56], [24, -52, -56]]})")

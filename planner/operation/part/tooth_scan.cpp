@@ -52,11 +52,11 @@ void check(const ToothScan& asked, const FieldLocation& place) {
   if (asked.points.size() != asked.scan_points.size())
     place.at("scan_points")
         .refuse("has " + std::to_string(asked.scan_points.size()) + " points and 'points' has " +
-                std::to_string(asked.points.size()) + ": give the same places on both, in the same order");
+                std::to_string(asked.points.size()) + ": state the same places on both, in the same order");
   if (asked.frame && !brep::frame_named(*asked.frame))
     place.at("frame").refuse(
         "'" + *asked.frame +
-        "' is not a frame: give three letters for the directions of x, y and z, LPS or RAS");
+        "' is not a frame: write three letters for the directions of x, y and z, such as LPS or RAS");
 }
 
 std::vector<glm::dvec3> places_of(const std::vector<Mark>& marks, const Objects& objects) {
@@ -79,7 +79,7 @@ brep::ScanBlendOptions blend_of(const ToothScan& asked, const brep::Progress& pr
   return options;
 }
 
-/// The scan's triangles, joined where points repeat.
+/// The scan's triangles, joined where points coincide.
 brep::Mesh read_scan(const ToothScan& asked, const SettleBench& bench) {
   const Stopwatch watch(bench.timings, "read");
   const std::filesystem::path path = asked.path.is_absolute() ? asked.path : bench.folder / asked.path;
@@ -115,8 +115,8 @@ void report(const ToothScan& made, const SettleBench& bench) {
                                        {"is_left_out", patch.is_left_out}});
   }
   details["definition"] =
-      "error is the root mean square distance of the scan's points, as laid, from their true places; held "
-      "patches are those that the fit did not use, and their distances are to the object's surface";
+      "error is the root mean square distance of the scan's points after the fit from their true places; "
+      "held patches are those that the fit did not use, and their distances are to the object's surface";
   bench.findings.push_back(file_name(made) + " lies " + three_figures(laid.error_mm) + " \u00b1 " +
                            three_figures(laid.half_width_mm) + " mm off its true place in 99 of 100 cases");
   if (left_out > 0)
@@ -129,7 +129,7 @@ ToothScan settle(const ToothScan& asked, const SettleBench& bench) {
   ToothScan made = asked;
   const Object& object = bench.objects.at(asked.object.name);
   const brep::Solid& solid = bench.object(asked.object.name);
-  if (solid.empty()) throw std::runtime_error("'" + asked.object.name + "' is empty: it has no teeth");
+  if (solid.empty()) throw std::runtime_error("'" + asked.object.name + "' is empty, so it has no teeth");
   const brep::Mesh scan = read_scan(asked, bench);
   const Stopwatch watch(bench.timings, "tooth_scan_fit");
   brep::ToothScanOptions options;
@@ -138,7 +138,7 @@ ToothScan settle(const ToothScan& asked, const SettleBench& bench) {
   if (const double sample_mm = std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z}); sample_mm > 0.0)
     options.sample_mm = sample_mm;
   else
-    bench.findings.push_back("WARN error: '" + asked.object.name + "' comes from no scan: samples of " +
+    bench.findings.push_back("WARN error: '" + asked.object.name + "' comes from no scan, so samples of " +
                              plain(options.sample_mm) + " mm are assumed for the error of its surface");
   options.scan = file_name(asked);
   options.fixed = "'" + asked.object.name + "'";
@@ -173,7 +173,7 @@ void triangles(const ToothScan& asked, const MeshBench& bench, MeshSide& made) {
   made.findings.push_back(made.lineage);
   if (of.scan_mm2 == 0.0)
     made.findings.push_back(
-        "WARN no crown's surface comes from the scan alone: take a smaller 'blend_mm', or a larger "
+        "WARN no crown's surface comes from the scan alone: choose a smaller 'blend_mm', or a larger "
         "'depth_mm' or 'radius_mm'");
 }
 
@@ -193,7 +193,7 @@ void bound(const ToothScan& asked, const BoundBench& bench, Object& made) {
                                                        .radius_mm = options.radius_mm,
                                                        .apart_mm = brep::scan_blend_allowance_mm(options)});
   made.bound.reshaped = {asked.object.name};
-  made.shared_values.push_back("the place at which the scan of teeth was laid");
+  made.shared_values.push_back("the position in which the scan of teeth was fitted");
   made.ends_with_universe = true;
 }
 
@@ -202,7 +202,7 @@ void bound(const ToothScan& asked, const BoundBench& bench, Object& made) {
 Operation tooth_scan_operation() {
   return Describe<ToothScan>(
              "tooth_scan",
-             "Lays a scan of teeth onto an object and replaces the object's crowns by the scan's.",
+             "Fits a scan of teeth to an object and replaces the object's crowns by those of the scan.",
              Makes::Object)
       .takes(field("object", &ToothScan::object,
                    "The object with the teeth: one jaw alone, because the scan would also replace the other "
@@ -210,7 +210,7 @@ Operation tooth_scan_operation() {
                  .required()
                  .positional("object"))
       .takes(field("path", &ToothScan::path,
-                   std::string("The scan, which may be open, with holes and in any pose: ") +
+                   std::string("The mesh of the scan, which may be open, have holes and be in any pose: ") +
                        brep::mesh_formats_read + ", relative to the plan's folder.")
                  .required()
                  .positional("scan")
@@ -223,46 +223,47 @@ Operation tooth_scan_operation() {
               .required()
               .from(3))
       .takes(field("scan_points", &ToothScan::scan_points,
-                   "The same places on the scan in the same order, in mm in the scan's own frame, as LPS.")
+                   "The same places on the scan, in the same order, in mm in the scan's own frame converted "
+                   "to LPS.")
                  .required()
                  .from(3))
       .takes(field("crowns", &ToothScan::crowns,
                    "Points on the crowns that are replaced. Default: all crowns that the scan shows."))
       .takes(field("radius_mm", &ToothScan::radius_mm,
-                   "How far about each of 'crowns' is replaced; half a molar is about 6.")
+                   "The surface within this distance of each point of 'crowns' is replaced; half a molar is "
+                   "about 6.")
                  .from(2.0)
                  .to(30.0)
                  .read_if<ToothScan>([](const ToothScan& asked) { return !asked.crowns.empty(); },
-                                     "applies only about 'crowns': add them"))
+                                     "applies only to 'crowns': add 'crowns'"))
       .takes(
           field(
               "depth_mm", &ToothScan::depth_mm,
-              "Crowns are fitted and replaced from their tips to this depth; beyond that the scan shows gum.")
+              "Crowns are fitted and replaced from their tips to this depth, below which the scan shows gum.")
               .from(2.0)
               .to(12.0))
-      .takes(
-          field("blend_mm", &ToothScan::blend_mm,
-                "The width of the border in which the surface changes from the scan's to the object's, also "
-                "around holes of the scan.")
-              .from(0.3)
-              .to(5.0))
+      .takes(field("blend_mm", &ToothScan::blend_mm,
+                   "The width of the border in which the surface changes gradually from that of the scan to "
+                   "that of the object, also around holes of the scan.")
+                 .from(0.3)
+                 .to(5.0))
       .takes(field("reach_mm", &ToothScan::reach_mm,
-                   "What the object has within this distance of the scan is replaced; give more if streaks "
-                   "stick out farther.")
+                   "The object's surface within this distance of the scan is replaced. Increase it if "
+                   "streaks protrude farther.")
                  .from(0.5)
                  .to(8.0))
       .takes(field("cell_mm", &ToothScan::cell_mm,
-                   "The size of the new triangles' cells. The surface lies within 0.87 of it from the scan: "
-                   "smaller cells show narrower gaps between teeth and take longer.")
+                   "The size of the cells of the new triangles. The surface lies within 0.87 of a cell from "
+                   "the scan. Smaller cells show narrower gaps between teeth and take longer.")
                  .from(0.1)
                  .to(1.0))
-      .takes(
-          field("frame", &ToothScan::frame,
-                "Directions of x, y and z in the scan's file, in place of the file's statement: LPS, RAS, or "
-                "three other letters of L or R, A or P, S or I. Default: the file's statement, else LPS."))
+      .takes(field(
+          "frame", &ToothScan::frame,
+          "Directions of x, y and z in the scan's file: LPS, RAS, or other letters of L or R, A or P, S or "
+          "I. It overrides the file's statement. Default: the file's statement, or LPS if there is none."))
       .takes(field("unit", &ToothScan::unit,
-                   "The unit of the file's lengths, in place of the file's statement. Default: the file's "
-                   "statement, else mm.")
+                   "The unit of the file's lengths. It overrides the file's statement. Default: the file's "
+                   "statement, or mm if there is none.")
                  .one_of({"um", "mm", "cm", "m", "inch", "foot"}))
       .example(R"({"id": "sharp", "do": "tooth_scan", "object": "maxilla", "path": "upper_scan.stl",
         "points": [[-24, -52, -58], [0, -83, -58], [24, -52, -58]],

@@ -27,7 +27,7 @@ std::string text_of_colour(const glm::vec3& colour) {
 
 glm::vec3 need_colour(const std::string& text) {
   const std::optional<glm::vec3> colour = colour_of_text(text);
-  if (!colour) throw std::runtime_error("'" + text + "' is no colour: give #RRGGBB, for example #cc7a29");
+  if (!colour) throw std::runtime_error("'" + text + "' is not a colour: write #RRGGBB, for example #cc7a29");
   return *colour;
 }
 

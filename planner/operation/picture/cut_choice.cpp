@@ -9,7 +9,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// The samples with the grey tones of --tones; by default from the smallest to the largest sample.
+/// The samples, with the grey tones of --tones; by default from the smallest sample to the largest.
 voxel::CutTones tones_of(const Render& render, voxel::GreyOwners samples) {
   if (render.tones.empty()) {
     double black = std::numeric_limits<double>::infinity(), white = -black;
@@ -43,7 +43,7 @@ glm::ivec2 size_of(const Render& render) {
   constexpr int most = 8192;
   if (!read || width < 1 || height < 1 || width > most || height > most)
     throw std::runtime_error("--size: '" + text +
-                             "' is not a size: give WxH of 1 to 8192 pixels, for example 512x512");
+                             "' is not a size: write WxH, each from 1 to 8192 pixels, for example 512x512");
   return {width, height};
 }
 
@@ -53,8 +53,8 @@ std::optional<voxel::CutTones> cut_tones_of(const Render& render,
   std::vector<voxel::SampleSource> sources;
   for (const Object* object : made)
     if (object->voxel.symbol) sources.push_back({*object->voxel.symbol, object->voxel.octree});
-  // Parts of an object of one scan that were filled or grown take their samples from that scan, too, and
-  // moved with it.
+  // Parts that were filled or grown in an object of one scan have samples of that scan, too, moved with the
+  // object.
   const auto first = std::find_if(objects.begin(), objects.end(),
                                   [](const voxel::DrawnObject& object) { return object.grey.has_value(); });
   for (const voxel::DrawnObject& object : objects)
@@ -75,14 +75,16 @@ std::vector<voxel::Cutaway> cuts_of(const Render& render) {
     const auto n = numbers_of<4>("--cut-plane", plane, "1,0,0,12.5");
     const glm::dvec3 normal(n[0], n[1], n[2]);
     if (!(glm::length(normal) > 0.0))
-      throw std::runtime_error(std::string("--cut-plane: '") + plane + "' has a normal without length");
+      throw std::runtime_error(std::string("--cut-plane: '") + plane +
+                               "' has a normal without length: write a direction, for example 0,1,0");
     cuts.emplace_back(voxel::HalfSpace{glm::normalize(normal), n[3]});
   }
   for (const std::string& box : render.cut_boxes) {
     const auto n = numbers_of<6>("--cut-box", box, "0,-100,0,80,0,90");
     const voxel::Box removed{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
     if (!glm::all(glm::lessThan(removed.low_mm, removed.high_mm)))
-      throw std::runtime_error(std::string("--cut-box: '") + box + "' is empty: give the lower corner first");
+      throw std::runtime_error(std::string("--cut-box: '") + box +
+                               "' is empty: write the lower corner first");
     cuts.emplace_back(removed);
   }
   return cuts;

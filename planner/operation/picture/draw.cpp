@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// More sections of one surface than this count as a typing error.
+/// More sections of one surface than this are refused as a typing error.
 constexpr double most_sections = 2000.0;
 
 const std::map<std::string, brep::FacetShading> facet_shadings{{"flat", brep::FacetShading::Flat},
@@ -73,21 +73,21 @@ std::string name_of(const std::string& name) {
   return fs::path(name).stem().string();
 }
 
-/// An entry of the answer and the legend: a drawn surface, line set or slice.
+/// An entry in the answer and the legend: a drawn surface, set of lines, or slice.
 struct Item {
   std::string name, kind;
   std::optional<glm::vec3> colour;  ///< none: its own tones
   Json said = Json::object();
 };
 
-/// A scene that owns the triangles that it draws.
+/// A scene, with the triangles that it draws.
 struct DrawnItems {
   std::deque<brep::Triangles> triangles;
   brep::DrawnScene scene;
   std::vector<Item> items;  ///< in the scene's numbers
 };
 
-/// Lines start with the second default colour, because the first, for bone, is too pale for lines.
+/// Lines begin with the second default colour, because the first one, that of bone, is too pale for lines.
 glm::vec3 colour_of_item(const Draw& asked, std::size_t number, bool is_of_lines) {
   return number < asked.colours.size() ? need_colour(asked.colours[number])
                                        : colour_of(is_of_lines ? number + 1 : number);
@@ -98,7 +98,7 @@ void add_surfaces(const Draw& asked, const FileBench& bench, DrawnItems& drawing
     const Stopwatch watch(bench.timings, "read");
     drawing.triangles.push_back(triangles_named(object.name, bench));
     const brep::Triangles& triangles = drawing.triangles.back();
-    if (triangles.faces.empty()) throw std::runtime_error(object.name + ": has no triangles to be drawn");
+    if (triangles.faces.empty()) throw std::runtime_error(object.name + ": has no triangles to draw");
     const glm::vec3 colour = colour_of_item(asked, drawing.items.size(), asked.shading == "wire");
     drawing.scene.surfaces.push_back({&triangles, colour});
     drawing.items.push_back(
@@ -125,7 +125,7 @@ brep::DrawnLines lines_of_file(const std::string& path, std::vector<std::string>
   return lines;
 }
 
-/// The sections of a surface with horizontal planes at multiples of a distance.
+/// The sections of a surface with horizontal planes, at multiples of a distance.
 brep::DrawnLines lines_of_surface(const Draw& asked, const std::string& name, const FileBench& bench) {
   const brep::Mesh mesh = brep::mesh_of(brep::joined_surface(triangles_named(name, bench)).surface);
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -165,7 +165,7 @@ void add_contours(const Draw& asked, const FileBench& bench, DrawnItems& drawing
                                                           : lines_of_surface(asked, object.name, bench);
     if (lines.lines_mm.empty())
       throw std::runtime_error(object.name +
-                               ": no plane at a multiple of --apart cuts it: choose a smaller one");
+                               ": no plane at a multiple of --apart cuts it: choose a smaller distance");
     lines.colour = colour_of_item(asked, drawing.items.size(), true);
     drawing.items.push_back({name_of(object.name),
                              "contours",
@@ -193,7 +193,7 @@ brep::DrawnLines edges_of(const voxel::Box& box) {
   return lines;
 }
 
-/// The box of all that is drawn, and of the whole scan.
+/// The bounding box of everything that is drawn, and of the whole scan.
 void add_box(const std::optional<voxel::Scene>& scene, DrawnItems& drawing, std::size_t number) {
   const brep::ViewExtent drawn = brep::extent(drawing.scene, {1, 0, 0}, {0, 1, 0}, {0, 0, 1});
   voxel::Box box{drawn.low_mm, drawn.high_mm};
@@ -209,7 +209,7 @@ void add_box(const std::optional<voxel::Scene>& scene, DrawnItems& drawing, std:
                         {{"low_mm", to_json(box.low_mm)}, {"high_mm", to_json(box.high_mm)}}});
 }
 
-/// The octree inside of which slices show samples.
+/// The octree whose inside shows samples in slices; none if no object limits them.
 voxel::Octree shown_inside(const std::string& name, const voxel::Lattice& lattice, const FileBench& bench) {
   if (bench.step == nullptr && is_mesh(name)) {
     const glm::dvec3 spacing = lattice.spacing_mm();
@@ -219,7 +219,7 @@ voxel::Octree shown_inside(const std::string& name, const voxel::Lattice& lattic
   const auto* octree = std::get_if<voxel::Octree>(&file.tree);
   if (octree == nullptr)
     throw std::runtime_error(name +
-                             ": is not a binary octree: make one with octotomy octree --window LOW:HIGH");
+                             ": is not a binary octree: make one by octotomy octree --window LOW:HIGH");
   return *octree;
 }
 
@@ -272,7 +272,7 @@ glm::ivec2 size_of(const Draw& asked) {
   return size_of(said);
 }
 
-/// The camera of `render`: same directions, margin and millimetres.
+/// A camera with the directions, margin and millimetres of the operation `render`.
 brep::Camera camera_of(const Draw& asked, const brep::DrawnScene& scene) {
   const voxel::View view = voxel::parse_view(asked.view);
   brep::Camera camera;
@@ -283,7 +283,8 @@ brep::Camera camera_of(const Draw& asked, const brep::DrawnScene& scene) {
   const brep::ViewExtent whole = brep::extent(scene, view.right, view.up, view.look);
   const glm::dvec2 low(whole.low_mm), high(whole.high_mm);
   camera.centre_mm = asked.centre_mm ? view.project(*asked.centre_mm) : 0.5 * (low + high);
-  // As voxel::frame_about(): a margin of a twentieth. A flat scene seen on edge has no extent of its own.
+  // The margin is a twentieth, as in voxel::frame_about(). A flat scene that is seen edge-on has no extent in
+  // one direction.
   const double extent_mm =
       std::max({high.x - low.x, high.y - low.y, 1e-3 * (whole.high_mm.z - whole.low_mm.z), 1e-3});
   const double across_mm = 1.05 * extent_mm * camera.size_px.x / std::min(camera.size_px.x, camera.size_px.y);
@@ -307,7 +308,7 @@ brep::DrawOptions options_of(const Draw& asked, const brep::DrawnScene& scene) {
   return options;
 }
 
-/// Pixels of a picture, from the top left.
+/// The pixels of --pick, counted from the top left.
 glm::ivec2 picked_pixel(const std::string& text, const glm::ivec2& size_px) {
   const auto n = numbers_of<2>("--pick", text, "256,300");
   const glm::dvec2 pixel(n[0], n[1]);
@@ -439,9 +440,9 @@ void check(const Draw& asked, const FieldLocation& place) {
   const auto refuse = [&](const std::string& field, const std::string& why) { place.at(field).refuse(why); };
   const bool has_places = !asked.axial.empty() || !asked.coronal.empty() || !asked.sagittal.empty();
   if (asked.objects.empty() && asked.contours.empty() && asked.scan.name.empty())
-    place.refuse("there is nothing to draw: give surfaces, 'contours' or a 'scan' with positions of slices");
+    place.refuse("there is nothing to draw: name surfaces, 'contours', or a 'scan' with positions of slices");
   if (!asked.scan.name.empty() && !has_places)
-    refuse("scan", "is drawn as slices: give their positions by 'axial', 'coronal' or 'sagittal'");
+    refuse("scan", "is drawn only as slices: state their positions by 'axial', 'coronal' or 'sagittal'");
   if (asked.colours.size() > asked.objects.size() + asked.contours.size())
     refuse("colours", "has more colours than there are surfaces and contours");
   for (const std::string& colour : asked.colours) need_colour(colour);
@@ -449,7 +450,7 @@ void check(const Draw& asked, const FieldLocation& place) {
   if (!asked.level.empty() && !(asked.level[1] > 0.0))
     refuse("level", "must be CENTRE and WIDTH, with a width above zero");
   if (asked.light && !(glm::length(*asked.light) > 0.0))
-    refuse("light", "has no direction: give numbers that are not all zero, for example -1,1,2");
+    refuse("light", "has no direction: write numbers that are not all zero, for example -1,1,2");
   if (place.scope == nullptr) return;
   check_output_path(asked.out, {".png", ".jpg", ".webp"}, place.at("path"));
   try {
@@ -478,97 +479,100 @@ constexpr const char* of_scan = "applies only to a scan's slices: add 'scan'";
 
 Operation draw_operation() {
   return Describe<Draw>("draw",
-                        "Draws surfaces as facets or wire frames, contours as lines and slices at their "
-                        "places in space.",
+                        "Draws surfaces as facets or wire frames, contours as lines, and slices at their "
+                        "positions in space.",
                         Makes::File)
       .takes(
           field("objects", &Draw::objects,
                 "Surfaces, drawn triangle by triangle. On the command line: mesh files, which may be open.")
               .positional("files"))
-      .takes(field("path", &Draw::out, "A .png, .jpg or .webp file.").required().called("out"))
+      .takes(field("path", &Draw::out, "The picture: a .png, .jpg or .webp file.").required().called("out"))
       .takes(field("contours", &Draw::contours,
                    "Objects drawn as lines: horizontal sections of surfaces. On the command line also a "
                    ".json file of contours.")
                  .repeated())
-      .takes(field("apart_mm", &Draw::apart_mm, "Distance of the horizontal sections of surfaces.")
+      .takes(field("apart_mm", &Draw::apart_mm, "Distance between the horizontal sections of surfaces.")
                  .greater_than(0.0)
                  .read_if<Draw>(
                      [](const Draw& asked) {
                        return std::any_of(asked.contours.begin(), asked.contours.end(),
                                           [](const ObjectName& of) { return !is_contour_file(of.name); });
                      },
-                     "applies only to sections of surfaces: add them to 'contours'"))
-      .takes(field("scan", &Draw::scan, "A scan, of which slices are drawn at their places in space."))
-      .takes(field("axial", &Draw::axial, "z of slices, mm, one or more.")
+                     "applies only to sections of surfaces: add surfaces to 'contours'"))
+      .takes(field("scan", &Draw::scan, "A scan whose slices are drawn at their positions in space."))
+      .takes(field("axial", &Draw::axial, "Positions z of one or more axial slices, mm.")
                  .comma_separated()
                  .read_if<Draw>(has_scan, of_scan))
-      .takes(field("coronal", &Draw::coronal, "y of slices, mm, one or more.")
+      .takes(field("coronal", &Draw::coronal, "Positions y of one or more coronal slices, mm.")
                  .comma_separated()
                  .read_if<Draw>(has_scan, of_scan))
-      .takes(field("sagittal", &Draw::sagittal, "x of slices, mm, one or more.")
+      .takes(field("sagittal", &Draw::sagittal, "Positions x of one or more sagittal slices, mm.")
                  .comma_separated()
                  .read_if<Draw>(has_scan, of_scan))
       .takes(field("window", &Draw::window,
-                   "Samples that slices show: LOW:HIGH or LOW:, or a tissue. Default: all.")
+                   "Samples that slices show: LOW:HIGH or LOW: in sample units, or a tissue. Default: all.")
                  .read_if<Draw>(has_scan, of_scan))
       .takes(field("level", &Draw::level,
-                   "Slices' grey tones as a centre and a width. Default: 500 and 2000 for Hounsfield units.")
+                   "Grey tones of slices as a centre and a width in sample units. Default: 500 and 2000 for "
+                   "Hounsfield units.")
                  .from(2)
                  .to(2)
                  .comma_separated()
                  .for_example("CENTRE,WIDTH, for example 500,2000")
                  .read_if<Draw>(has_scan, of_scan))
       .takes(field("within", &Draw::within,
-                   "Slices show only samples inside of this object; on the command line a binary octree or a "
-                   "mesh. Default: all samples.")
+                   "An object: slices show only the samples inside it. On the command line a binary octree "
+                   "or a mesh. Default: all samples.")
                  .read_if<Draw>(has_scan, of_scan))
-      .takes(field("box", &Draw::box, "Draws the edges of the box about everything and the whole scan."))
+      .takes(field("box", &Draw::box,
+                   "Draws the edges of the bounding box of everything drawn and the whole scan."))
       .takes(field("view", &Draw::view,
-                   "anterior, posterior, left, right, superior, inferior, or AZ,EL in degrees."))
+                   "The view: anterior, posterior, left, right, superior, inferior, or AZ,EL in degrees."))
       .takes(field("size", &Draw::size, "WxH in pixels."))
-      .takes(field("width_mm", &Draw::width_mm,
-                   "Width that the picture shows. Default: the extent of the drawn objects.")
-                 .greater_than(0.0))
       .takes(
-          field("centre_mm", &Draw::centre_mm,
-                "X,Y,Z in LPS of a point in the picture's middle. Default: the middle of the drawn objects.")
+          field("width_mm", &Draw::width_mm,
+                "Width in mm of the field that the picture shows. Default: the extent of the drawn objects.")
+              .greater_than(0.0))
+      .takes(
+          field(
+              "centre_mm", &Draw::centre_mm,
+              "X,Y,Z in LPS of the point at the picture's middle. Default: the middle of the drawn objects.")
               .called("centre"))
       .takes(field("eye_mm", &Draw::eye_mm,
-                   "Perspective: the eye's distance from the middle of the drawn objects. Default: "
-                   "orthographic, in "
-                   "true scale.")
+                   "For a perspective picture: the distance of the eye from the middle of the drawn objects. "
+                   "Default: an orthographic picture in true scale.")
                  .greater_than(0.0))
-      .takes(
-          field("shading", &Draw::shading,
-                "flat (one tone a triangle), gouraud (corners' tones interpolated), phong (corners' normals "
-                "interpolated) or wire (edges).")
-              .one_of({"flat", "gouraud", "phong", "wire"})
-              .read_if<Draw>(draws_facets, "applies only to surfaces: add one"))
-      .takes(
-          field("light", &Draw::light,
-                "RIGHT,UP,FRONT in the picture, the direction from the surface to the only lamp. Default: a "
-                "lamp at the upper left and a weaker one at the lower right.")
-              .read_if<Draw>(shades, of_shaded))
-      .takes(field("ambient", &Draw::ambient, "Light from everywhere, as a share of white.")
+      .takes(field("shading", &Draw::shading,
+                   "Shading: flat (one tone for each triangle), gouraud (interpolates the tones of corners), "
+                   "phong (interpolates the normals of corners) or wire (edges only).")
+                 .one_of({"flat", "gouraud", "phong", "wire"})
+                 .read_if<Draw>(draws_facets, "applies only to surfaces: add a surface"))
+      .takes(field("light", &Draw::light,
+                   "RIGHT,UP,FRONT in the picture: the direction from the surface to a single lamp. Default: "
+                   "a lamp at the upper left and a weaker one at the lower right.")
+                 .read_if<Draw>(shades, of_shaded))
+      .takes(field("ambient", &Draw::ambient, "Ambient light, as a share of white.")
                  .from(0.0)
                  .to(1.0)
                  .read_if<Draw>(shades, of_shaded))
-      .takes(field("gloss", &Draw::gloss, "Strength of the lamp's mirror image.")
+      .takes(field("gloss", &Draw::gloss, "Strength of the highlight, in which surfaces mirror the lamp.")
                  .from(0.0)
                  .to(1.0)
                  .read_if<Draw>(shades, of_shaded))
-      .takes(field("cull", &Draw::cull, "Leaves out triangles that face away.")
+      .takes(field("cull", &Draw::cull, "Leaves out triangles that face away from the viewer.")
                  .read_if<Draw>([](const Draw& asked) { return shades(asked) || asked.hide; },
                                 "applies only to shaded surfaces, and to wire frames with 'hide'"))
       .takes(
           field("hide", &Draw::hide, "Triangles of a wire frame hide the edges behind them.")
               .read_if<Draw>([](const Draw& asked) { return asked.shading == "wire" && draws_facets(asked); },
                              "applies only to wire frames: add 'shading' wire"))
-      .takes(field("colours", &Draw::colours, "#RRGGBB of the surfaces in their order, then of the contours.")
+      .takes(field("colours", &Draw::colours,
+                   "Colours #RRGGBB of the surfaces in their order, then of the contours.")
                  .repeated()
                  .called("colour"))
       .takes(field("picks", &Draw::picks,
-                   "X,Y of a pixel, from the top left, whose object and point are reported; may be repeated.")
+                   "X,Y of a pixel, counted from the top left. The object and point there are reported; may "
+                   "be repeated.")
                  .repeated()
                  .called("pick"))
       .takes(field("annotate", &Draw::annotate,
@@ -577,8 +581,8 @@ Operation draw_operation() {
                  .read_if<Draw>([](const Draw& asked) { return asked.annotate; },
                                 "applies only to annotated pictures: add 'annotate'"))
       .takes(field("grid_mm", &Draw::grid_mm,
-                   "Draws lines at multiples of this distance, mm; a margin that is added at the right and "
-                   "below shows their places in the view.")
+                   "Draws lines at multiples of this distance, mm. An added margin at the right and below "
+                   "shows their positions in the view.")
                  .from(0.1)
                  .to(1000.0)
                  .called("grid"))

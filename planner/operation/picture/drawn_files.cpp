@@ -19,26 +19,26 @@
 namespace octotomy::planner {
 namespace {
 
-/// Makes the object a grey octree's window.
+/// Makes the object the window of a grey octree.
 void set_window(voxel::DrawnObject& object, const voxel::GreyOctree& grey, const Render& render) {
   const SampleWindow& window = render.window;
   object.octree = voxel::combine(grey.universe(), voxel::Expression(window_on(grey, window)));
-  // The depth is interpolated at the lower bound. With an upper bound inside the object this would be wrong,
-  // so samples are kept then only for pictures whose depth does not come from samples.
+  // The depth of the surface is interpolated at the lower bound, which would be wrong inside an object with
+  // an upper bound. Then samples are only kept for pictures that do not compute a depth from them.
   const bool gives_no_depth =
       is_decided(render) || render.shading == "density" || render.shading == "gradient";
   if (!window.high || gives_no_depth) object.grey = grey;
   object.threshold = window.low;
 }
 
-/// A file's name without folder and ending; of a folder, its own name.
+/// The name of a file without folder and extension; of a folder, its name.
 std::string name_of(const std::filesystem::path& path) {
   const std::filesystem::path last = path.has_filename() ? path.filename() : path.parent_path().filename();
   const std::filesystem::path stem = last.stem();
   return stem.extension() == ".nii" ? stem.stem().string() : stem.string();
 }
 
-/// The object of a file, for drawing.
+/// The object in a file, for drawing.
 voxel::DrawnObject drawn_of_file(const std::filesystem::path& path, const Render& render,
                                  const std::optional<voxel::Universe>& universe, const FileBench& bench) {
   if (is_mesh(path)) return {name_of(path), voxels_of_mesh(path, universe, render.voxel_mm, bench)};
@@ -57,7 +57,7 @@ voxel::DrawnObject drawn_of_file(const std::filesystem::path& path, const Render
       object.counted_in_grey = object.grey.has_value();
     } else {
       const auto& partial = std::get<voxel::PartialOctree>(file.tree);
-      // Shares are no densities: pictures along rays find no samples.
+      // Shares are not densities, so pictures along rays find no samples here.
       if (render.count || is_ray_picture(render)) {
         object.octree = partial.touching;
         object.inside = partial.inside;
@@ -95,7 +95,7 @@ std::vector<voxel::DrawnObject> drawn_of_files(const Render& render, const std::
     objects.push_back(drawn_of_file(file.name, render, universe, bench));
     voxel::DrawnObject& object = objects.back();
     if (universe && object.octree.universe() != *universe) {
-      // Samples of another lattice cannot be traversed along this universe's columns.
+      // Samples on another lattice cannot be traversed along the columns of this universe.
       object.octree = voxel::combine(*universe, voxel::Expression(object.octree));
       object.grey.reset();
       object.counted_in_grey = false;
@@ -122,7 +122,7 @@ std::vector<ObjectName> files_of(const Render& render) {
   for (const std::string& text : render.lets) {
     const auto equals = text.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-      throw std::runtime_error("--let: '" + text + "' binds nothing: give NAME=FILE");
+      throw std::runtime_error("--let: '" + text + "' has no name: write NAME=FILE");
     known.push_back(text.substr(0, equals));
     if (!bound.emplace(known.back(), text.substr(equals + 1)).second)
       throw std::runtime_error("--let: '" + known.back() + "' is bound twice");
@@ -137,7 +137,7 @@ std::vector<ObjectName> files_of(const Render& render) {
   }
   for (const std::string& name : known)
     if (std::find(names.begin(), names.end(), name) == names.end())
-      throw std::runtime_error("--let " + name + ": the expression does not name it" +
+      throw std::runtime_error("--let " + name + ": the expression does not use this name: leave it out" +
                                suggestion(name, names) + ": leave it out");
   return files;
 }

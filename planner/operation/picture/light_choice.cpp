@@ -16,11 +16,12 @@ bool is_lit(const Render& render) {
 bool has_gloss(const Render& render) {
   return is_lit(render) && render.shading != "composite";
 }
-constexpr const char* of_lit = "applies only to lit surfaces: choose another 'shading', and no 'relief'";
+constexpr const char* of_lit =
+    "applies only to lit surfaces: choose another 'shading', and leave out 'relief'";
 constexpr const char* of_gloss =
     "applies only to mirrored light, which composite pictures do not have: leave it out";
 
-/// A light as typed; no strength if the text states none.
+/// A light as the user typed it; the strength is none if the text states none.
 struct TypedLight {
   glm::vec3 towards{0.0f};
   std::optional<float> strength;
@@ -31,15 +32,15 @@ TypedLight typed_light(const std::string& text) {
   if (n.size() != 3 && n.size() != 4)
     throw std::runtime_error(
         "--light: '" + text +
-        "' is not a light: give RIGHT,UP,FRONT, for example -1,1,1, or with a strength -1,1,1,0.5");
+        "' is not a light: write RIGHT,UP,FRONT, for example -1,1,1, or with a strength -1,1,1,0.5");
   TypedLight light{{n[0], n[1], -n[2]}, std::nullopt};
   const float length = glm::length(light.towards);
   if (!(length > 0.0f && length < 1e18f))
     throw std::runtime_error("--light: '" + text +
-                             "' has no direction: give RIGHT,UP,FRONT, for example -1,1,1");
+                             "' has no direction: write RIGHT,UP,FRONT, for example -1,1,1");
   if (n.size() == 4) {
     if (!(n[3] >= 0.0 && n[3] <= 1.0))
-      throw std::runtime_error("--light: '" + text + "' has a strength that is not from 0 to 1");
+      throw std::runtime_error("--light: '" + text + "' has a strength outside of 0 to 1");
     light.strength = static_cast<float>(n[3]);
   }
   return light;
@@ -49,22 +50,20 @@ TypedLight typed_light(const std::string& text) {
 
 std::vector<Field> light_fields() {
   std::vector<Field> fields;
-  fields.push_back(
-      field("lights", &Render::lights,
-            "RIGHT,UP,FRONT or RIGHT,UP,FRONT,STRENGTH: the direction towards a light, in the picture, "
-            "and its strength, 0 to 1; may be repeated. Default: two lights, from the upper left "
-            "and the lower right.")
-          .repeated()
-          .to(8)
-          .called("light")
-          .read_if<Render>(is_lit, of_lit));
-  fields.push_back(
-      field("ambient", &Render::ambient, "Share of light from everywhere, 0 to 1. Default: 0.06.")
-          .from(0.0)
-          .to(1.0)
-          .read_if<Render>(is_lit, of_lit));
+  fields.push_back(field("lights", &Render::lights,
+                         "RIGHT,UP,FRONT or RIGHT,UP,FRONT,STRENGTH: the direction in the picture towards a "
+                         "light, and its strength from 0 to 1; may be repeated. Default: two lights, at the "
+                         "upper left and the lower right.")
+                       .repeated()
+                       .to(8)
+                       .called("light")
+                       .read_if<Render>(is_lit, of_lit));
+  fields.push_back(field("ambient", &Render::ambient, "Strength of the ambient light, 0 to 1. Default: 0.06.")
+                       .from(0.0)
+                       .to(1.0)
+                       .read_if<Render>(is_lit, of_lit));
   fields.push_back(field("diffuse", &Render::diffuse,
-                         "Share of the first light that a surface facing it scatters, 0 to 1; the second "
+                         "Share of the first light that a surface facing it scatters, 0 to 1. The second "
                          "default light changes in proportion. Default: 0.9.")
                        .from(0.0)
                        .to(1.0)
@@ -76,12 +75,12 @@ std::vector<Field> light_fields() {
                        .read_if<Render>(has_gloss, of_gloss));
   fields.push_back(
       field("specular_exponent", &Render::specular_exponent,
-            "How sharply the highlight is peaked, 1 to 1000. Default: 48.")
+            "Sharpness of the highlight: the exponent of the mirrored light, 1 to 1000. Default: 48.")
           .from(1.0)
           .to(1000.0)
           .read_if<Render>(has_gloss, of_gloss)
           .read_if<Render>([](const Render& render) { return render.specular.value_or(1.0) > 0.0; },
-                           "applies only to mirrored light, and 'specular' is 0: give a larger 'specular'"));
+                           "applies only to mirrored light, but 'specular' is 0: state a larger 'specular'"));
   return fields;
 }
 
@@ -90,7 +89,8 @@ void check_lights(const Render& render) {
   for (const std::string& light : render.lights)
     has_default_strength = !typed_light(light).strength || has_default_strength;
   if (render.diffuse && !has_default_strength)
-    throw std::runtime_error("--diffuse: every light has a strength of its own: leave it out");
+    throw std::runtime_error(
+        "--diffuse has no effect, because every light states its strength: leave it out");
 }
 
 std::vector<voxel::Light> lights_of(const Render& render) {

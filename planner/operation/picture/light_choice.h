@@ -6,17 +6,17 @@
 #include "planner/operation/picture/render.h"
 #include "voxel/view/shade.h"
 
-// The lights of pictures and the shares in which surfaces return them (thesis 5.1).
+// The lights of pictures, and the shares of light that surfaces reflect (thesis 5.1).
 namespace octotomy::planner {
 
 /// The fields of the lights and the shares.
 std::vector<Field> light_fields();
 
-/// Throws std::runtime_error for lights that cannot be read and for shares that would have no effect.
+/// Throws std::runtime_error if a light cannot be read, or if a share would have no effect.
 void check_lights(const Render& render);
 
-/// The lights as typed, or the default ones; the diffuse share sets the strength of lights without one. Empty
-/// if nothing was chosen. Throws as check_lights().
+/// The typed lights, or the default ones. The diffuse share determines the strength of lights that state
+/// none. Empty if the user chose nothing. Throws as check_lights().
 std::vector<voxel::Light> lights_of(const Render& render);
 
 }  // namespace octotomy::planner

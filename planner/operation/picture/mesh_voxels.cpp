@@ -22,7 +22,7 @@ voxel::Universe universe_about(const brep::Triangles& triangles, const std::opti
     }
   const glm::dvec3 extent_mm = box.high_mm - box.low_mm;
   const double longest_mm = std::max({extent_mm.x, extent_mm.y, extent_mm.z});
-  if (!(longest_mm > 0.0)) throw std::runtime_error("has no extent to be drawn");
+  if (!(longest_mm > 0.0)) throw std::runtime_error("has no extent, so it cannot be drawn");
   return voxel::universe_around(box, voxel_mm.value_or(longest_mm / voxels_along));
 }
 
@@ -34,19 +34,18 @@ voxel::Octree voxels_of_mesh(const std::filesystem::path& path,
   brep::Triangles triangles;
   {
     const Stopwatch watch(bench.timings, "read");
-    // Welded, because each open edge would be a rim, and rims cost time.
+    // Equal points are joined, because each open edge would be a rim, and rims are slow.
     triangles = brep::joined_surface(read_mesh_in(path)).surface;
   }
   const auto refuse = [&](const std::string& why) { throw std::runtime_error(path.string() + ": " + why); };
-  if (triangles.faces.empty()) refuse("has no triangles to be drawn");
+  if (triangles.faces.empty()) refuse("has no triangles to draw");
   const Stopwatch watch(bench.timings, "voxelise");
   const voxel::Universe about = universe ? *universe : universe_about(triangles, voxel_mm);
   voxel::Octree octree = convert::voxelise_by_winding_number(about, triangles, bench.progress("voxelising"));
   if (octree.is_empty())
     refuse(
-        "encloses no voxel to be drawn: it is a sheet, inside out, thinner than a voxel, or elsewhere; "
-        "octotomy "
-        "info reports which");
+        "encloses no voxel, so it cannot be drawn: it is a sheet, inside out, thinner than a voxel or "
+        "outside of the universe; octotomy info reports the reason");
   return octree;
 }
 

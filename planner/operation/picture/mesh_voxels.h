@@ -9,9 +9,9 @@
 
 namespace octotomy::planner {
 
-/// The inside of a mesh in a file, closed or not, as voxels for drawing: in the universe, or in one around
-/// the mesh with voxels of a stated length, by default 1/400 of its extent. Throws std::runtime_error, naming
-/// the path, for a mesh that encloses no voxel.
+/// The inside of a mesh in a file, closed or not, as voxels for drawing. They are in the stated universe, or
+/// in a universe around the mesh with voxels of the stated length, by default 1/400 of the mesh's extent.
+/// Throws std::runtime_error that names the path if the mesh encloses no voxel.
 voxel::Octree voxels_of_mesh(const std::filesystem::path& path,
                              const std::optional<voxel::Universe>& universe,
                              const std::optional<double>& voxel_mm, const FileBench& bench);

@@ -33,14 +33,15 @@ struct Montage {
   std::vector<std::string> inputs() const { return {}; }
 };
 
-/// A position to a tenth of a millimetre, in characters that can be drawn in pictures: "-19", "2.5".
+/// A position to a tenth of a millimetre as text, such as "-19" or "2.5", in characters that pictures can
+/// show.
 std::string rounded_text(double position_mm) {
   char text[32];
   std::snprintf(text, sizeof text, "%g", std::round(10.0 * position_mm) / 10.0 + 0.0);
   return text;
 }
 
-/// An axis of the patient and the positions of the scan's own slices along it, ascending.
+/// An axis of the patient, and the ascending positions along it of the scan's own slices.
 struct Stack {
   int axis = 2;
   double first_mm = 0.0, spacing_mm = 1.0;
@@ -50,7 +51,7 @@ struct Stack {
 Stack stack_of(const voxel::Lattice& lattice, const std::string& plane) {
   Stack stack;
   stack.axis = plane == "axial" ? 2 : plane == "coronal" ? 1 : 0;
-  // The lattice's axis that runs most along the patient's.
+  // The axis of the lattice that is most nearly parallel to an axis of the patient.
   int along = 0;
   const glm::dmat3 steps(lattice.lps_from_voxel);
   for (int k = 1; k < 3; ++k)
@@ -63,7 +64,8 @@ Stack stack_of(const voxel::Lattice& lattice, const std::string& plane) {
   return stack;
 }
 
-/// Positions of the slices: the middle ones of the scan's own slices, or equally spaced from --first on.
+/// The positions of the slices: the middle ones of the scan's own slices, or equally spaced positions that
+/// begin at --first.
 std::vector<double> positions_of(const Montage& asked, const Stack& stack) {
   const double step_mm = asked.apart_mm.value_or(stack.spacing_mm);
   double first_mm = 0.0;
@@ -84,7 +86,7 @@ std::vector<double> positions_of(const Montage& asked, const Stack& stack) {
                                " at " + grouped(positions.back(), 1) +
                                " mm lies outside of the scan, which " + "reaches from " + grouped(low_mm, 1) +
                                " to " + grouped(high_mm, 1) +
-                               " mm: give fewer by --count, another --first or a smaller --apart");
+                               " mm: choose a smaller --count, another --first or a smaller --apart");
   }
   return positions;
 }
@@ -114,7 +116,7 @@ FileAnswer on_files(const Montage& asked, const FileBench& bench) {
   for (const double position_mm : positions) {
     tiles.push_back(tile_of(asked, scene, position_mm, level, bench));
     const nlohmann::ordered_json& said = tiles.back().said;
-    // All slices have the grey tones of the first, so that they can be compared.
+    // All slices have the grey tones of the first slice, so that they can be compared.
     const double black = said["window"][0], white = said["window"][1];
     if (level.empty()) level = {0.5 * (black + white), white - black};
     inside.push_back(said["inside_pixels"]);
@@ -129,7 +131,7 @@ FileAnswer on_files(const Montage& asked, const FileBench& bench) {
   if (size_px.x > voxel::most_sheet_px || size_px.y > voxel::most_sheet_px)
     throw std::runtime_error("a picture of " + std::to_string(size_px.x) + " x " + std::to_string(size_px.y) +
                              " pixels is larger than " + std::to_string(voxel::most_sheet_px) +
-                             " a side: give fewer slices by --count, or a larger --pixel");
+                             " a side: choose fewer slices by --count, or a larger --pixel");
   std::vector<std::uint8_t> rgb(3 * static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y),
                                 gap_tone);
   for (std::size_t i = 0; i < tiles.size(); ++i) {
@@ -185,29 +187,32 @@ void check(const Montage& asked, const FieldLocation& place) {
 Operation montage_operation() {
   return Describe<Montage>("montage", "Draws consecutive slices of a scan side by side.", Makes::File)
       .takes(field("scan", &Montage::scan, "The scan.").required().positional("file"))
-      .takes(field("path", &Montage::out, "A .png, .jpg or .webp file.").required().called("out"))
-      .takes(field("plane", &Montage::plane, "Plane of the slices, which are drawn as by 'slice'.")
-                 .one_of({"axial", "coronal", "sagittal"}))
+      .takes(
+          field("path", &Montage::out, "The picture: a .png, .jpg or .webp file.").required().called("out"))
+      .takes(
+          field("plane", &Montage::plane, "Plane of the slices. They are drawn as by the operation 'slice'.")
+              .one_of({"axial", "coronal", "sagittal"}))
       .takes(field("count", &Montage::count, "Number of slices.").from(1).to(400))
-      .takes(field("columns", &Montage::columns, "Slices in a row. Default: about as many as rows.")
-                 .from(1)
-                 .to(400))
+      .takes(
+          field("columns", &Montage::columns, "Number of slices in a row. Default: about the number of rows.")
+              .from(1)
+              .to(400))
       .takes(field("first_mm", &Montage::first_mm,
-                   "z, y or x of the first slice. Default: the slices are centred in the scan."))
+                   "Position z, y or x of the first slice, mm. Default: the slices are centred in the scan."))
       .takes(field("apart_mm", &Montage::apart_mm,
                    "Distance from one slice to the next. Default: the spacing of the scan's samples.")
                  .greater_than(0.0))
+      .takes(field("level", &Montage::level,
+                   "Grey tones as a centre and a width in sample units. Default: those that 'slice' chooses "
+                   "for the first slice.")
+                 .from(2)
+                 .to(2)
+                 .comma_separated()
+                 .for_example("CENTRE,WIDTH, for example 500,2000"))
       .takes(
-          field(
-              "level", &Montage::level,
-              "Grey tones as a centre and a width. Default: those that 'slice' chooses for the first slice.")
-              .from(2)
-              .to(2)
-              .comma_separated()
-              .for_example("CENTRE,WIDTH, for example 500,2000"))
-      .takes(field("pixel_mm", &Montage::pixel_mm, "Edge of a pixel. Default: the scan's smallest spacing.")
-                 .greater_than(0.0))
-      .takes(field("plain", &Montage::plain, "Leaves out positions, letters and scale bar."))
+          field("pixel_mm", &Montage::pixel_mm, "Edge of a pixel, mm. Default: the scan's smallest spacing.")
+              .greater_than(0.0))
+      .takes(field("plain", &Montage::plain, "Leaves out the positions, letters and scale bar."))
       .reads_scans()
       .example(R"({"id": "series", "do": "montage", "scan": "ct", "path": "series.png", "count": 9})")
       .on_files(

@@ -10,7 +10,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// Average visits to the nodes of one status, level by level; null where a level has none.
+/// The average visits to the nodes of one status at each level; null for levels without such nodes.
 Json averages(const std::vector<voxel::LevelCount>& visits, const std::vector<voxel::LevelCount>& existing,
               std::uint64_t voxel::LevelCount::*status) {
   Json list = Json::array();

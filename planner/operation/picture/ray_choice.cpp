@@ -22,7 +22,7 @@ std::vector<std::string> pieces_of(const std::string& text) {
   return pieces;
 }
 
-/// The range LOW:HIGH of the first two pieces; none if they are not a range.
+/// The range LOW:HIGH in the first two parts of a text; none if they are not a range.
 std::optional<std::array<double, 2>> range_of(const std::vector<std::string>& pieces) {
   if (pieces.size() < 2) return std::nullopt;
   const std::optional<double> low = number_in(pieces[0]), high = number_in(pieces[1]);
@@ -35,8 +35,9 @@ voxel::RangeWeight weight_of(const std::string& text) {
   const auto range = range_of(pieces);
   const std::optional<double> weight = pieces.size() == 3 ? number_in(pieces[2]) : 0.0;
   if (!range || pieces.size() > 3 || !weight || *weight < 0.0 || *weight > voxel::RangeWeight::max_weight)
-    throw std::runtime_error("--dissolve: '" + text +
-                             "' is not a range: give LOW:HIGH, or LOW:HIGH:SHARE with a share from 0 to 100");
+    throw std::runtime_error(
+        "--dissolve: '" + text +
+        "' is not a range: write LOW:HIGH, or LOW:HIGH:SHARE with a share from 0 to 100");
   return {(*range)[0], (*range)[1], *weight};
 }
 
@@ -45,8 +46,9 @@ voxel::DensityColour density_colour_of(const std::string& text) {
   const auto range = range_of(pieces);
   const auto colour = pieces.size() == 3 ? colour_of_text(pieces[2]) : std::nullopt;
   if (!range || !colour)
-    throw std::runtime_error("--density-colour: '" + text +
-                             "' is not a coloured range: give LOW:HIGH:#RRGGBB, for example 300:700:#cc7a29");
+    throw std::runtime_error(
+        "--density-colour: '" + text +
+        "' is not a coloured range: write LOW:HIGH:#RRGGBB, for example 300:700:#cc7a29");
   return {(*range)[0], (*range)[1], *colour};
 }
 
@@ -60,27 +62,27 @@ bool shows_surface_colours(const Render& render) {
   return !render.relief && std::find(painted.begin(), painted.end(), render.shading) != painted.end();
 }
 
-/// Refuses options without an effect on a relief, which is black lines on white.
+/// Refuses options that have no effect on a relief, because it is drawn in black lines on white.
 void check_relief(const Render& render) {
   if (!render.colours.empty() || !render.opacities.empty() || !render.colour_by.empty() || render.annotate ||
       render.grid_mm || render.stereo_deg || render.cut_face != "plain")
     throw std::runtime_error(
-        "--relief: is drawn in black lines: leave out --colour, --opacity, --colour-by, --annotate, --grid, "
-        "--stereo and --cut-face");
+        "--relief is drawn in black lines only: leave out --colour, --opacity, --colour-by, --annotate, "
+        "--grid, --stereo and --cut-face");
 }
 
 }  // namespace
 
 std::vector<Field> ray_fields() {
   std::vector<Field> fields;
-  fields.push_back(
-      field("decide", &Render::decide,
-            "What ends a ray through the samples of one scan or grey octree: range (a sample in the window), "
-            "derivative (samples rise along the ray by steeper_per_mm) or gradient (samples change by "
-            "steeper_per_mm in any direction). Default: the objects' surfaces.")
-          .one_of({"range", "derivative", "gradient"})
-          .read_if<Render>([](const Render& render) { return !is_ray_picture(render); },
-                           "applies only to pictures of surfaces: choose another 'shading'"));
+  fields.push_back(field("decide", &Render::decide,
+                         "Where a ray through the samples of one scan or grey octree ends: range (at a "
+                         "sample in the window), derivative (where samples rise along the ray by at least "
+                         "steeper_per_mm) or gradient (where they change by at least steeper_per_mm in any "
+                         "direction). Default: at the objects' surfaces.")
+                       .one_of({"range", "derivative", "gradient"})
+                       .read_if<Render>([](const Render& render) { return !is_ray_picture(render); },
+                                        "applies only to pictures of surfaces: choose another 'shading'"));
   fields.push_back(
       field("steeper_per_mm", &Render::steeper_per_mm,
             "Change of samples, in their unit per mm, above which rays end.")
@@ -88,41 +90,39 @@ std::vector<Field> ray_fields() {
           .called("steeper")
           .read_if<Render>(decides_by_change,
                            "applies only to 'decide' derivative or gradient: choose one of them"));
-  fields.push_back(field("peel", &Render::peel,
-                         "Number of layers to take off: the surface shown lies behind this many stretches of "
-                         "the ray on which 'decide' (default: range) holds.")
-                       .from(1)
-                       .to(1000)
-                       .read_if<Render>([](const Render& render) { return !is_ray_picture(render); },
-                                        "applies only to pictures of surfaces: choose another 'shading'"));
   fields.push_back(
-      field(
-          "dissolve", &Render::dissolve,
-          "LOW:HIGH or LOW:HIGH:SHARE in sample units: the share of its attenuation that a range has in the "
-          "radiograph, 0 (default; dissolved) to 100 (heightened); may be repeated, the first range that "
-          "holds a sample applies.")
-          .repeated()
-          .read_if<Render>([](const Render& render) { return render.shading == "radiograph"; },
-                           "applies only to radiographs: add 'shading' radiograph"));
+      field("peel", &Render::peel,
+            "Number of layers that are removed. A layer is a stretch of the ray on which the condition of "
+            "'decide' (default: range) holds; the picture shows the surface behind these layers.")
+          .from(1)
+          .to(1000)
+          .read_if<Render>([](const Render& render) { return !is_ray_picture(render); },
+                           "applies only to pictures of surfaces: choose another 'shading'"));
+  fields.push_back(field("dissolve", &Render::dissolve,
+                         "LOW:HIGH or LOW:HIGH:SHARE in sample units: multiplies the attenuation of the "
+                         "samples in a range by SHARE, from 0 (default; dissolved) to 100 (heightened); may "
+                         "be repeated. The first range that contains a sample applies.")
+                       .repeated()
+                       .read_if<Render>([](const Render& render) { return render.shading == "radiograph"; },
+                                        "applies only to radiographs: add 'shading' radiograph"));
   fields.push_back(
-      field(
-          "gradient_opacity", &Render::gradient_opacity,
-          "CLEAR:OPAQUE in sample units per mm: in composite pictures, matter whose samples change by CLEAR "
-          "or less is clear, by OPAQUE or more as opaque as its transfer function says. Default: opacity "
-          "from density alone.")
+      field("gradient_opacity", &Render::gradient_opacity,
+            "CLEAR:OPAQUE in sample units per mm, for composite pictures: places where samples change by "
+            "CLEAR or less are transparent, and places where they change by OPAQUE or more have the transfer "
+            "function's opacity. Default: opacity depends on the samples only.")
           .read_if<Render>([](const Render& render) { return render.shading == "composite"; },
                            "applies only to composite pictures: add 'shading' composite"));
   fields.push_back(
-      field(
-          "density_colours", &Render::density_colours,
-          "LOW:HIGH:#RRGGBB in sample units: the colour of the visible voxels whose samples lie in a range; "
-          "may be repeated, the first range that holds a sample applies.")
+      field("density_colours", &Render::density_colours,
+            "LOW:HIGH:#RRGGBB in sample units: the colour of visible voxels whose samples lie in a range; "
+            "may be repeated. The first range that contains a sample applies.")
           .repeated()
           .called("density-colour")
-          .read_if<Render>(shows_surface_colours,
-                           "applies only to coloured surfaces: choose another 'shading', and no 'relief'")
+          .read_if<Render>(
+              shows_surface_colours,
+              "applies only to coloured surfaces: choose another 'shading', and leave out 'relief'")
           .read_if<Render>([](const Render& render) { return render.colour_by.empty(); },
-                           "and 'colour_by' colour the same surface: leave one out"));
+                           "and 'colour_by' colour the same surface: leave out one of them"));
   return fields;
 }
 
@@ -180,7 +180,7 @@ std::optional<voxel::GradientOpacity> gradient_opacity_of(const Render& render) 
   if (!range || pieces.size() != 2 || (*range)[0] < 0.0 || !((*range)[1] > (*range)[0]))
     throw std::runtime_error(
         "--gradient-opacity: '" + render.gradient_opacity +
-        "' is not a ramp: give CLEAR:OPAQUE, for example 20:200, with 0 <= CLEAR < OPAQUE");
+        "' is not a ramp: write CLEAR:OPAQUE, for example 20:200, with 0 <= CLEAR < OPAQUE");
   return voxel::GradientOpacity{(*range)[0], (*range)[1]};
 }
 

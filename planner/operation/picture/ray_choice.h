@@ -9,27 +9,27 @@
 #include "voxel/view/decide.h"
 #include "voxel/view/radiograph.h"
 
-// How pictures use the samples along rays (thesis 4.4.2.3), and how surfaces show their density (5.2.1.2).
+// Choices for the samples along rays (thesis 4.4.2.3), and for surfaces that show their density (5.2.1.2).
 namespace octotomy::planner {
 
 /// The fields of decision functions, layers, ranges, opacity and density.
 std::vector<Field> ray_fields();
 
-/// Throws std::runtime_error for text that cannot be read, and for combinations in which one option has no
-/// effect.
+/// Throws std::runtime_error if a text cannot be read, or if options are combined so that one has no effect.
 void check_ray_choices(const Render& render);
 
-/// Whether rays end by a decision function, not at the objects' surfaces.
+/// Whether rays end where a decision function holds, instead of at the objects' surfaces.
 bool is_decided(const Render& render);
 /// Whether surfaces show their samples.
 bool shows_densities(const Render& render);
-/// The decision for an object's samples; of a window LOW:HIGH, the range. Precondition: is_decided().
+/// The decision function for an object's samples; of kind range, the range is LOW:HIGH of its window.
+/// Precondition: is_decided().
 voxel::Decision decision_of(const Render& render, double low, double high);
-/// The ranges that radiographs dissolve or heighten.
+/// The ranges that radiographs dissolve or heighten, with their weights.
 std::vector<voxel::RangeWeight> weights_of(const Render& render);
-/// The opacity that composite pictures take from the gradient.
+/// The ramp by which composite pictures compute opacity from the gradient; none if not requested.
 std::optional<voxel::GradientOpacity> gradient_opacity_of(const Render& render);
-/// The colours of ranges of density.
+/// The colours of ranges of samples.
 std::vector<voxel::DensityColour> density_colours_of(const Render& render);
 
 }  // namespace octotomy::planner

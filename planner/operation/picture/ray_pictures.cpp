@@ -39,7 +39,7 @@ struct RayPicture {
   std::optional<glm::vec2> values;
 };
 
-/// Lit pixels are those that let through less than half of the light from behind.
+/// Pixels count as lit if less than half of the light from behind passes.
 RayPicture picture_of(const voxel::Composite& composite) {
   RayPicture picture;
   picture.rgb = voxel::over(composite, glm::vec3(1.0f));
@@ -57,7 +57,7 @@ RayPicture picture_of(const voxel::Composite& composite) {
 RayPicture picture_of(const voxel::RayImage& image) {
   const auto [low, high] = std::minmax_element(image.values.begin(), image.values.end());
   RayPicture picture;
-  // Bone is white on films.
+  // Bone is white, as on films.
   picture.rgb = voxel::grey_tones(image, *low, *high > *low ? *high : *low + 1.0);
   picture.lit_pixels = static_cast<std::uint64_t>(std::count_if(
       image.values.begin(), image.values.end(), [lowest = *low](float value) { return value > lowest; }));
@@ -87,11 +87,12 @@ void check_rays(const Render& render) {
     refuse("--expression", "an expression has no samples along rays: choose another --shading");
   if (render.eye_mm || render.stereo_deg)
     refuse(render.eye_mm ? "--eye" : "--stereo",
-           "--shading " + render.shading + " is drawn orthographic and for one eye only");
+           "--shading " + render.shading +
+               " is drawn orthographic and for one eye only: leave out --eye and --stereo");
   if (render.shading != "composite" && !render.transfer.empty())
     refuse("--transfer", "only --shading composite has a transfer function");
   if (render.shading != "composite" && !(render.cut_planes.empty() && render.cut_boxes.empty()))
-    refuse("--shading", render.shading + " is not cut; composite is");
+    refuse("--shading", render.shading + " cannot be cut: choose composite, or leave the cuts out");
 }
 
 SampleWindow ray_window(const Render& render) {

@@ -13,7 +13,7 @@
 namespace octotomy::planner {
 namespace {
 
-/// The heights of the grid's corners above the plane of the farthest lit depth, mm.
+/// The heights in mm of the grid's corners above the plane of the farthest lit depth.
 struct Heights {
   glm::ivec2 corners{0};
   double cell_px = 1.0;
@@ -21,7 +21,7 @@ struct Heights {
   float at(int x, int y) const { return mm[static_cast<std::size_t>(y * corners.x + x)]; }
 };
 
-/// Fills a convex polygon with white.
+/// Fills a convex polygon of the picture with white.
 void fill_white(const voxel::Canvas& canvas, const std::vector<glm::dvec2>& polygon) {
   double top = polygon.front().y, bottom = top;
   for (const glm::dvec2& p : polygon) {
@@ -79,7 +79,8 @@ Relief relief_of(const voxel::Picture& picture, int cells) {
   const Heights heights = heights_of(picture, cells, relief);
   relief.rgb.assign(3 * picture.depth_mm.size(), 255);
   const voxel::Canvas canvas{picture.size_px, &relief.rgb};
-  // Isometric: the plane's two axes run down to the left and the right at 30 degrees, heights go up.
+  // An isometric projection: the two axes of the plane go down to the left and to the right at 30 degrees,
+  // and heights go up.
   const double cell_mm = heights.cell_px * picture.pixel_mm;
   const glm::dvec2 right(std::sqrt(0.75), 0.5), down(-std::sqrt(0.75), 0.5), up(0.0, -1.0);
   const auto flat = [&](int x, int y) {
@@ -102,7 +103,7 @@ Relief relief_of(const voxel::Picture& picture, int cells) {
     for (int x = std::max(0, far - heights.corners.y + 2); x <= std::min(far, heights.corners.x - 2); ++x) {
       const int y = far - x;
       const std::vector<glm::dvec2> cell{at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)};
-      // Two triangles, because a bent cell is not convex in the picture.
+      // A cell is drawn as two triangles, because a bent cell may not be convex in the picture.
       fill_white(canvas, {cell[0], cell[1], cell[2]});
       fill_white(canvas, {cell[0], cell[2], cell[3]});
       voxel::draw_lines(canvas, {{cell[0], cell[1], cell[2], cell[3], cell[0]}}, pen);

@@ -34,7 +34,7 @@ class Drawing {
     const int u = across == 0 ? 1 : 0, v = across == 2 ? 1 : 2;
     const glm::ivec3 dims = lattice_.dims;
     const glm::dvec3 mm = lattice_.spacing_mm();
-    // The patient's head is up and the back is down, whichever way the axis is stored.
+    // The patient's head is at the top and the back at the bottom, in whichever direction the axis is stored.
     const bool is_upright = v == 2 ? lattice_.lps_from_voxel[2].z > 0.0 : lattice_.lps_from_voxel[1].y < 0.0;
     glm::ivec3 p(0);
     p[across] = dims[across] * (2 * column + 1) / (2 * columns);
@@ -74,7 +74,7 @@ RemovedPicture removed_picture(const voxel::Scene& before, const voxel::Scene& a
   const auto* const was = std::get_if<voxel::Int16Samples>(&before.samples);
   const auto* const is = std::get_if<voxel::Int16Samples>(&after.samples);
   if (was == nullptr || is == nullptr || !(before.lattice == after.lattice))
-    throw voxel::InvalidInput(before.source + ": only int16 samples of one lattice can be compared");
+    throw voxel::InvalidInput(before.source + ": only int16 samples on the same lattice can be compared");
   return Drawing(before.lattice, *was, *is).run();
 }
 

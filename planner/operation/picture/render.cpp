@@ -60,23 +60,23 @@ std::string name_of(const std::map<std::string, Value>& values, Value value) {
   return {};
 }
 
-/// The file or object of `distance:NAME`.
+/// The file or object NAME in a text distance:NAME.
 std::string other_of(const std::string& text) {
   const std::string kind = "distance:";
   if (!text.starts_with(kind) || text.size() == kind.size())
-    throw std::runtime_error("--colour-by: '" + text +
-                             "' is nothing to colour by: give distance:FILE, for example "
-                             "distance:before.octree");
+    throw std::runtime_error(
+        "--colour-by: '" + text +
+        "' cannot colour a surface: write distance:FILE, for example distance:before.octree");
   return text.substr(kind.size());
 }
 
-/// The drawn objects. The first one is coloured by its distance to another object, where this is requested.
+/// The objects to draw. The first one is coloured by its distance to another object if this is requested.
 struct Scene {
   std::vector<voxel::DrawnObject> objects;
   std::string coloured_by;  ///< the other one's name
 };
 
-/// Makes the scene. If a distance is requested, the last of `objects` is the other object.
+/// Makes the scene. If a distance is requested, the last of `objects` is the other object and is not drawn.
 Scene scene_of(const Render& render, std::vector<voxel::DrawnObject> objects, Timings& timings) {
   Scene scene{std::move(objects), {}};
   if (!render.colour_by.empty()) {
@@ -97,7 +97,7 @@ glm::ivec2 pixel_of(const std::string& text, const glm::ivec2& size_px) {
   const glm::dvec2 pixel(numbers[0], numbers[1]);
   if (pixel != glm::floor(pixel) || !glm::all(glm::greaterThanEqual(pixel, glm::dvec2(0.0))) ||
       !glm::all(glm::lessThan(pixel, glm::dvec2(size_px))))
-    throw std::runtime_error("--pick: '" + text + "' is no pixel of a picture of " +
+    throw std::runtime_error("--pick: '" + text + "' lies outside of a picture of " +
                              std::to_string(size_px.x) + " x " + std::to_string(size_px.y));
   return glm::ivec2(pixel);
 }
@@ -111,7 +111,8 @@ voxel::Annotation annotation_of(const Render& render, const Scene& scene) {
   return annotation;
 }
 
-/// Two pictures of one size, the left eye's at the left: for parallel viewing, or a stereoscope.
+/// Combines two pictures of one size side by side, with that of the left eye on the left, for parallel
+/// viewing or a stereoscope.
 std::vector<std::uint8_t> side_by_side(const voxel::Picture& left, const voxel::Picture& right) {
   std::vector<std::uint8_t> rgb;
   rgb.reserve(left.rgb.size() + right.rgb.size());
@@ -122,7 +123,7 @@ std::vector<std::uint8_t> side_by_side(const voxel::Picture& left, const voxel::
   return rgb;
 }
 
-/// The samples that cut faces and surfaces show; none: colours.
+/// Whether the picture shows samples on cut faces or surfaces, and not only colours.
 struct Samples {
   std::optional<voxel::CutTones> on_cuts;
   std::optional<voxel::CutTones> on_surfaces;
@@ -130,7 +131,7 @@ struct Samples {
   double highest = std::numeric_limits<double>::infinity();
 };
 
-/// The samples that the picture reads. Throws std::runtime_error where no object has any.
+/// The samples that the picture reads. Throws std::runtime_error if no object has samples.
 Samples samples_of(const Render& render, const std::vector<voxel::DrawnObject>& objects,
                    const std::vector<const Object*>& made) {
   Samples samples;
@@ -142,13 +143,14 @@ Samples samples_of(const Render& render, const std::vector<voxel::DrawnObject>& 
         std::string(on_cuts                       ? "--cut-face grey"
                     : render.shading == "density" ? "--shading density"
                                                   : "--density-colour") +
-        ": no object has samples; give a scan or grey octree first, and a --window LOW:");
+        ": no object has samples: name a scan or grey octree first, with a --window LOW:");
   if (on_cuts) samples.on_cuts = tones;
   if (on_surfaces) samples.on_surfaces = tones;
   return samples;
 }
 
-/// Draws the objects or, with a decision function, the surface that it finds in the only object's samples.
+/// Draws the objects. With a decision function, draws the surface that the function finds in the samples of
+/// the only object.
 voxel::Picture drawn_picture(const Render& render, const std::vector<voxel::DrawnObject>& objects,
                              double highest, const voxel::RenderOptions& options) {
   if (!is_decided(render)) return voxel::render(objects, options);
@@ -162,7 +164,8 @@ voxel::Picture drawn_picture(const Render& render, const std::vector<voxel::Draw
   return voxel::decide(object, options, decision);
 }
 
-/// `counted` are the objects in which visits are counted, if these differ from the drawn ones; else empty.
+/// Draws the objects. `counted` are the objects in which visits are counted, if they are not those that are
+/// drawn; else empty.
 RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> drawn,
                          const std::vector<voxel::DrawnObject>& counted, Samples samples, Timings& timings,
                          const std::stop_token& stop) {
@@ -174,7 +177,7 @@ RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> d
   std::vector<glm::ivec2> picks;
   for (const std::string& pick : render.picks) picks.push_back(pixel_of(pick, options.size_px));
   if (!render.expression.empty()) {
-    // Uses the frame of the operands, because the frame of the expression would require building it.
+    // The frame is that of the operands, because the frame of the expression would require its evaluation.
     const voxel::Frame frame = voxel::frame_about(drawn, options.view, options.size_px);
     if (!options.centre_mm) options.centre_mm = frame.centre_mm;
     if (!options.width_mm) options.width_mm = frame.width_mm;
@@ -239,10 +242,10 @@ RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> d
   return made;
 }
 
-/// Checks the grammar and the names of an expression of a plan's objects.
+/// Checks the grammar of an expression, and that its names are objects of the plan.
 void check_expression(const Render& render, const FieldLocation& place) {
   try {
-    // Only the grammar and the names matter, so every name is bound to one arbitrary object.
+    // Every name stands for the same object here, because only the grammar and the names are checked.
     voxel::parse_expression(render.expression, {[&](std::string_view name) -> voxel::Expression {
                                                   place.need_object(std::string(name));
                                                   return voxel::Sphere{};
@@ -256,16 +259,16 @@ void check_expression(const Render& render, const FieldLocation& place) {
 void check(const Render& render, const FieldLocation& place) {
   const auto refuse = [&](const std::string& field, const std::string& why) { place.at(field).refuse(why); };
   const std::size_t drawn = render.objects.size() + (render.expression.empty() ? 0 : 1);
-  if (drawn == 0) throw std::runtime_error("nothing to draw: give objects or an expression");
+  if (drawn == 0) throw std::runtime_error("there is nothing to draw: name objects or state an expression");
   check_lights(render);
   check_ray_choices(render);
   if (!render.expression.empty() &&
       (!render.colour_by.empty() || render.cut_face != "plain" || shows_densities(render)))
     refuse("expression",
-           "has no surface to colour by distance or samples: leave out 'colour_by', 'cut_face', "
+           "has no surface that distance or samples could colour: leave out 'colour_by', 'cut_face', "
            "'density_colours' and the shading density");
   if (render.colours.size() > drawn || render.opacities.size() > drawn)
-    refuse("colours", "and opacities: give at most one of each an object");
+    refuse("colours", "and opacities: state at most one of each for an object");
   if (render.grid_mm && (render.eye_mm || render.stereo_deg))
     refuse("grid_mm", "needs a picture in true scale: leave out 'eye_mm' and 'stereo_deg'");
   for (const std::string& colour : render.colours) need_colour(colour);
@@ -276,7 +279,7 @@ void check(const Render& render, const FieldLocation& place) {
   } else {
     if (!render.transfer.empty()) refuse("transfer", "only --shading composite has a transfer function");
     if (render.cut_face == "grey" && render.cut_planes.empty() && render.cut_boxes.empty())
-      refuse("cut_face", "there is no cut: give --cut-plane or --cut-box");
+      refuse("cut_face", "there is no cut: add --cut-plane or --cut-box");
   }
   if (place.scope == nullptr) return;
   check_output_path(render.path, {".png", ".jpg", ".webp"}, place.at("path"));
@@ -371,13 +374,14 @@ FileAnswer on_files(const Render& asked, const FileBench& bench) {
 }
 
 // Conditions of fields.
-constexpr const char* along_rays = "pictures along rays read all samples alike: leave it out";
+constexpr const char* along_rays =
+    "does not apply to pictures along rays, which read all samples: leave it out";
 
 bool draws_surfaces(const Render& render) {
   return !is_ray_picture(render);
 }
 
-/// The file that NAME=FILE binds.
+/// The file in a text NAME=FILE.
 std::string bound_file(const std::string& text) {
   return text.substr(std::min(text.size(), text.find('=') + 1));
 }
@@ -453,94 +457,91 @@ voxel::Annotation annotation_of(const Render& render, const std::vector<voxel::D
 Operation render_operation() {
   return Describe<Render>("render", "Draws scans' windows and octrees as shaded surfaces.", Makes::File)
       .takes(field("objects", &Render::objects,
-                   "Objects to draw; on the command line octrees (.octree), or scans: DICOM folders or "
-                   "files, NIfTI, NRRD, MetaImage, images, raw files. Optional if there is an expression.")
+                   "Objects to draw; on the command line octrees (.octree) or scans: DICOM folders or files, "
+                   "NIfTI, NRRD, MetaImage, images, raw files. May be left out if there is an expression.")
                  .from(1)
                  .positional("files"))
-      .takes(field(
-          "expression", &Render::expression,
-          "A Boolean expression, drawn after the objects; it needs no step or file. It uses & | - ^ ~ and "
-          "parentheses, for example \"skull - cut\". On the command line 'let' binds its names. Along an "
-          "axis it is evaluated only where it is visible. The picture spans the objects that it "
-          "names."))
-      .takes(field("path", &Render::path, "The .png, .jpg or .webp file within the result's folder.")
+      .takes(field("expression", &Render::expression,
+                   "A Boolean expression of objects with & | - ^ ~ and parentheses, for example \"skull - "
+                   "cut\". It is drawn after the objects and needs no step or file. On the command line, "
+                   "'let' states the files of its names. In views along an axis it is evaluated only where "
+                   "it is visible. The picture spans the objects that it names."))
+      .takes(field("path", &Render::path, "Path of the .png, .jpg or .webp file within the result's folder.")
                  .in_plans_only())
       .takes(field("view", &Render::view,
-                   "anterior, posterior, left, right, superior, inferior, or AZ,EL in degrees."))
+                   "The view: anterior, posterior, left, right, superior, inferior, or AZ,EL in degrees."))
       .takes(field("size", &Render::size, "WxH in pixels."))
-      .takes(
-          field("width_mm", &Render::width_mm, "Width that the picture shows. Default: the objects' extents.")
-              .greater_than(0.0))
+      .takes(field("width_mm", &Render::width_mm,
+                   "Width in mm of the field that the picture shows. Default: the extent of the objects.")
+                 .greater_than(0.0))
       .takes(field("centre_mm", &Render::centre_mm,
-                   "X,Y,Z in LPS of a point in the picture's middle. Default: the objects' middle.")
+                   "X,Y,Z in LPS of the point at the picture's middle. Default: the middle of the objects.")
                  .called("centre"))
-      .takes(
-          field("eye_mm", &Render::eye_mm,
-                "Perspective: the eye's distance from the middle of the scan. Default: orthographic, in true "
-                "scale.")
-              .greater_than(0.0))
+      .takes(field("eye_mm", &Render::eye_mm,
+                   "For a perspective picture: the distance of the eye from the middle of the scan. Default: "
+                   "an orthographic picture in true scale.")
+                 .greater_than(0.0))
       .takes(field("stereo_deg", &Render::stereo_deg,
-                   "Two pictures side by side, the left eye's at the left, and the angle between them.")
+                   "Draws two pictures side by side for both eyes, that of the left eye on the left. The "
+                   "number is the angle between them.")
                  .from(0.1)
                  .to(30.0))
       .takes(field("algorithm", &Render::algorithm,
-                   "node_trace, ray_cast, front_to_back or back_to_front. Default: the fastest for the view.")
+                   "Algorithm: node_trace, ray_cast, front_to_back or back_to_front. Default: the fastest "
+                   "for the view.")
                  .one_of(names_of(algorithms)))
-      .takes(
-          field(
-              "shading", &Render::shading,
-              "depth, gradient, context, partial_volume, grey_gradient, silhouette, outline or density (the "
-              "samples of visible voxels, darker with depth); mip (largest "
-              "sample), radiograph (X-rays, in true scale) or composite (by a transfer function).")
-              .one_of(all_shadings()))
-      .takes(field("colours", &Render::colours, "#RRGGBB, one an object in their order.")
+      .takes(field("shading", &Render::shading,
+                   "Shading of surfaces: depth, gradient, context, partial_volume, grey_gradient, "
+                   "silhouette, outline or density (the samples of visible voxels, darker with depth). "
+                   "Pictures along rays: mip (largest sample), radiograph (X-rays, in true scale) or "
+                   "composite (by a transfer function).")
+                 .one_of(all_shadings()))
+      .takes(field("colours", &Render::colours, "Colours #RRGGBB, one for each object in their order.")
                  .repeated()
                  .called("colour")
                  .read_if<Render>(draws_surfaces, along_rays)
                  .read_if<Render>([](const Render& render) { return render.shading != "density"; },
                                   "does not apply to the shading density, which shows samples: leave it out"))
-      .takes(field("opacities", &Render::opacities, "0 (hidden) to 1, one an object in their order.")
+      .takes(field("opacities", &Render::opacities,
+                   "Opacities from 0 (hidden) to 1, one for each object in their order.")
                  .repeated()
                  .called("opacity")
                  .read_if<Render>(draws_surfaces, along_rays))
-      .takes(
-          field("colour_by", &Render::colour_by,
-                "distance:NAME colours the first object by its surface's distance outside (orange) or inside "
-                "(blue) another one; on the command line a file."))
+      .takes(field("colour_by", &Render::colour_by,
+                   "distance:NAME colours the surface of the first object by its distance to another object "
+                   "NAME: orange outside, blue inside. On the command line NAME is a file."))
       .takes(field("range_mm", &Render::range_mm,
                    "The distance at which the scale of 'colour_by' ends. Default: 5.")
                  .greater_than(0.0)
                  .read_if<Render>([](const Render& render) { return !render.colour_by.empty(); },
                                   "needs 'colour_by': add it"))
-      .takes(
-          field("transfer", &Render::transfer,
-                "How samples look in composite pictures: bone, skin, vessels (CT in HU; default: bone), or a "
-                "JSON file of points with sample, colour and per_mm."))
-      .takes(
-          field("cut_planes", &Render::cut_planes,
-                "NX,NY,NZ,OFFSET_MM in LPS: removes everything on the normal's side of the plane; the offset "
-                "is the plane's place along the normal; may be repeated.")
-              .repeated()
-              .called("cut-plane"))
+      .takes(field("transfer", &Render::transfer,
+                   "The transfer function of composite pictures: bone, skin or vessels (CT in HU; default: "
+                   "bone), or a JSON file of points with sample, colour and per_mm."))
+      .takes(field("cut_planes", &Render::cut_planes,
+                   "NX,NY,NZ,OFFSET_MM in LPS: removes everything on the normal's side of a plane; OFFSET_MM "
+                   "is the plane's position along the normal; may be repeated.")
+                 .repeated()
+                 .called("cut-plane"))
       .takes(field("cut_boxes", &Render::cut_boxes,
-                   "X0,Y0,Z0,X1,Y1,Z1 in LPS mm: removes everything in the box; may be repeated.")
+                   "X0,Y0,Z0,X1,Y1,Z1 in LPS mm: removes everything in a box; may be repeated.")
                  .repeated()
                  .called("cut-box"))
       .takes(field("cut_face", &Render::cut_face,
-                   "What cut faces show: plain (the object's colour) or grey (the scan's samples).")
+                   "Appearance of cut faces: plain (the object's colour) or grey (the scan's samples).")
                  .one_of({"plain", "grey"}))
       .takes(
           field("tones", &Render::tones,
-                "BLACK:WHITE in sample units of grey cut faces and of the shading density. Default: the "
-                "samples' range.")
+                "BLACK:WHITE: the samples that are black and white on grey cut faces and in the shading "
+                "density. Default: the samples' range.")
               .read_if<Render>(
                   [](const Render& render) {
                     return render.cut_face == "grey" || render.shading == "density";
                   },
                   "applies only to grey cut faces and to the shading density: add 'cut_face' or 'shading'"))
       .takes(field("picks", &Render::picks,
-                   "X,Y of a pixel, from the top left (of the left eye's picture), whose object and point "
-                   "are reported; may be repeated.")
+                   "X,Y of a pixel, counted from the top left (of the left eye's picture). The object and "
+                   "point there are reported; may be repeated.")
                  .repeated()
                  .called("pick"))
       .takes(field("annotate", &Render::annotate,
@@ -549,40 +550,43 @@ Operation render_operation() {
                  .read_if<Render>([](const Render& render) { return render.annotate; },
                                   "applies only to annotated pictures: add 'annotate'"))
       .takes(field("grid_mm", &Render::grid_mm,
-                   "Draws lines at multiples of this distance, mm; a margin that is added at the right and "
-                   "below shows their places in the view.")
+                   "Draws lines at multiples of this distance, mm. An added margin at the right and below "
+                   "shows their positions in the view.")
                  .from(0.1)
                  .to(1000.0)
                  .called("grid"))
-      .takes(field("count", &Render::count, "Counts the octree nodes that the algorithm visits."))
+      .takes(field("count", &Render::count, "Counts the octree's nodes that the algorithm visits."))
       .takes(light_fields())
       .takes(ray_fields())
-      .takes(
-          field("relief", &Render::relief,
-                "Instead of the picture, its depths as a surface of this many cells along the longer side, "
-                "seen isometrically, in black lines.")
-              .from(4)
-              .to(512)
-              .read_if<Render>(draws_surfaces,
-                               "applies only to pictures with depths: choose another 'shading'"))
+      .takes(field("relief", &Render::relief,
+                   "Instead of the picture, draws its depths as a surface in black lines, seen "
+                   "isometrically. The number is the cells along the longer side.")
+                 .from(4)
+                 .to(512)
+                 .read_if<Render>(draws_surfaces,
+                                  "applies only to pictures with depths: choose another 'shading'"))
       .verb_takes(
-          field("lets", &Render::lets, "NAME=FILE: the file of a name in the expression; may be repeated.")
+          field("lets", &Render::lets, "NAME=FILE: the file for a name in the expression; may be repeated.")
               .repeated()
               .called("let")
               .read_if<Render>([](const Render& render) { return !render.expression.empty(); },
                                "needs 'expression': add it"))
-      .verb_takes(field("out", &Render::out, "A .png, .jpg or .webp file.").required())
-      .verb_takes(field("window", &Render::window, "LOW:HIGH or LOW: in sample units, or a tissue.")
-                      .read_if<Render>(draws_surfaces, along_rays)
-                      .read_if<Render>(draws_samples, "only scans and grey octrees have one: leave it out")
-                      .read_if<Render>([](const Render& render) { return !render.steeper_per_mm; },
-                                       "changes of samples end the rays at any sample value: leave it out"))
-      .verb_takes(field("voxel_mm", &Render::voxel_mm,
-                        "Edge of a voxel. Default: as fine as the scan, at most 512 a side.")
-                      .greater_than(0.0)
-                      .read_if<Render>(
-                          [](const Render& render) { return !is_octree(first_file(render)); },
-                          "the first file is an octree, whose voxels are used for everything: leave it out"))
+      .verb_takes(field("out", &Render::out, "The picture: a .png, .jpg or .webp file.").required())
+      .verb_takes(
+          field("window", &Render::window,
+                "The samples of drawn objects: LOW:HIGH or LOW: in sample units, or a tissue.")
+              .read_if<Render>(draws_surfaces, along_rays)
+              .read_if<Render>(draws_samples, "applies only to scans and grey octrees: leave it out")
+              .read_if<Render>(
+                  [](const Render& render) { return !render.steeper_per_mm; },
+                  "has no effect, because a change of samples ends rays at any sample value: leave it out"))
+      .verb_takes(
+          field("voxel_mm", &Render::voxel_mm,
+                "Edge of a voxel. Default: the scan's finest spacing, with at most 512 voxels a side.")
+              .greater_than(0.0)
+              .read_if<Render>([](const Render& render) { return !is_octree(first_file(render)); },
+                               "does not apply, because the first file is an octree and determines the "
+                               "voxels: leave it out"))
       .reads_scans()
       .uses(uses)
       .example(R"({"id": "front", "do": "render", "objects": ["rest", "advanced"], "path": "front.png",

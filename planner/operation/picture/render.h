@@ -15,7 +15,7 @@
 #include "voxel/view/drawn_object.h"
 #include "voxel/view/render.h"
 
-// A picture of objects: its fields, and the functions that its ways of drawing share.
+// A picture of objects: its fields, and the functions that all its kinds share.
 namespace octotomy::planner {
 
 struct Render {
@@ -36,7 +36,7 @@ struct Render {
   std::string title;
   std::optional<double> grid_mm;
   bool count = false;
-  /// Drawn after the objects; empty: none.
+  /// A Boolean expression that is drawn after the objects; empty: none.
   std::string expression;
   // Light (thesis 5.1).
   std::vector<std::string> lights;
@@ -56,17 +56,19 @@ struct Render {
   std::optional<double> voxel_mm;
 };
 
-/// A drawn picture with its results.
+/// A drawn picture, with its results.
 struct RenderedPicture {
   glm::ivec2 size_px{0};
   std::vector<std::uint8_t> rgb;
   double pixel_mm = 1.0;
-  glm::dvec2 centre_mm{0.0};               ///< for pictures along rays, in the view's millimetres
-  std::optional<PictureFrame> frame = {};  ///< for pictures in true scale
+  glm::dvec2 centre_mm{0.0};               ///< only for pictures along rays: position of the picture's middle
+                                           ///< in the view's millimetres
+  std::optional<PictureFrame> frame = {};  ///< only for pictures in true scale
   nlohmann::ordered_json said = nlohmann::ordered_json::object();
 };
 
-/// Exactly `Count` finite numbers between commas; throws std::runtime_error with `what`.
+/// Reads exactly `Count` finite numbers between commas. Throws std::runtime_error that begins with `what` and
+/// states the example.
 template <std::size_t Count>
 std::array<double, Count> numbers_of(const std::string& what, const std::string& text,
                                      const std::string& example) {
@@ -79,24 +81,25 @@ std::array<double, Count> numbers_of(const std::string& what, const std::string&
   return numbers;
 }
 
-/// View, size, frame, shading and cuts, without the grey tones of cut faces. Throws std::runtime_error for
-/// fields that cannot be read. Precondition: no ray picture.
+/// The view, size, frame, shading and cuts of a picture, without the grey tones of cut faces. Throws
+/// std::runtime_error for fields that cannot be read. Precondition: it is no picture along rays.
 voxel::RenderOptions options_of(const Render& render);
-/// The samples that cut faces show, and the sample values that are black and white; none if there are no samples. In
-/// a plan, `made` holds the objects: each place shows the samples of the window that owns the place, moved with it.
-/// For files `made` is empty: objects without samples show those of the first object with samples, at the samples'
-/// own places. Throws std::runtime_error for tones that cannot be read.
+/// The samples that cut faces show, with the values that are black and white; none if there are no samples.
+/// In a plan, `made` has the objects. Each point then shows the sample of the window whose object contains
+/// the point, moved with the object. For files `made` is empty. Objects without samples then show those of
+/// the first object with samples, at the positions of these samples. Throws std::runtime_error for tones that
+/// cannot be read.
 std::optional<voxel::CutTones> cut_tones_of(const Render& render,
                                             const std::vector<voxel::DrawnObject>& objects,
                                             const std::vector<const Object*>& made);
 /// WxH in pixels.
 glm::ivec2 size_of(const Render& render);
-/// The planes of the cuts, with normalised normals.
+/// The planes of the cuts, with unit normals.
 std::vector<voxel::Cutaway> cuts_of(const Render& render);
 /// Draws the requested grid, whose margin makes the picture larger, and the annotation.
 void finish(RenderedPicture& picture, const voxel::ImagePlane& plane, const Render& render,
             const std::optional<voxel::Annotation>& annotation);
-/// Title, sides, scale, and a legend of the objects that are neither hidden nor coloured by a scalar.
+/// The title, sides, scale, and a legend of the objects that are visible and not coloured by distance.
 voxel::Annotation annotation_of(const Render& render, const std::vector<voxel::DrawnObject>& objects);
 
 }  // namespace octotomy::planner

@@ -25,18 +25,18 @@
 namespace octotomy::planner {
 namespace {
 
-/// The least width in pixels of a curved picture without a stated pixel size. A dental arch then fills a
-/// screen's width.
+/// The least width in pixels of a curved picture if no size of a pixel is stated. A dental arch then fills
+/// the width of a screen.
 constexpr int least_curve_px = 800;
 
 namespace fs = std::filesystem;
 
-/// The samples that are cut: a scan, or a tree of any kind.
+/// The samples that are drawn: those of a scan, or of an octree of any kind.
 struct Subject {
   std::variant<const voxel::Scene*, voxel::GreyOctree, voxel::Octree> samples;
   voxel::Lattice lattice;
   std::string unit = "1";
-  bool is_share = false;  ///< of voxels, from 0 to 1
+  bool is_share = false;  ///< filled shares of voxels, from 0 to 1
 };
 
 Subject subject_of(const voxel::Scene& scene, const Slice& slice) {
@@ -65,49 +65,49 @@ double finest_mm(const voxel::Lattice& lattice) {
   return std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
 }
 
-/// A mesh's inside, in voxels as wide as a pixel if a pixel's width is stated.
+/// The inside of a mesh as voxels, which are as wide as a pixel if that width is stated.
 Subject subject_of_mesh(const fs::path& path, const Slice& slice, const FileBench& bench) {
   Subject subject{voxels_of_mesh(path, std::nullopt, slice.pixel_mm, bench), {}, "1"};
   subject.lattice = std::get<voxel::Octree>(subject.samples).universe().lattice();
   return subject;
 }
 
-/// Which sheet is drawn, in words and in millimetres.
+/// The plane or curve that is drawn, in words and in millimetres.
 struct CutSheet {
   std::string plane;
   std::optional<double> position_mm;  ///< none for a curve
   voxel::Sheet sheet;
 };
 
-/// A position along an axis, or the scan's middle there.
+/// A position along an axis: the stated one, or the scan's middle.
 double position_of(const std::string& plane, const std::string& text, const voxel::Lattice& lattice,
                    int axis) {
   if (text == "middle") return lattice.lps_mm(0.5 * glm::dvec3(lattice.dims - 1))[axis];
   const std::optional<double> position_mm = number_in(text);
   if (!position_mm)
-    throw std::runtime_error(plane + ": '" + text + "' is no position: give millimetres, or middle");
+    throw std::runtime_error(plane + ": '" + text + "' is not a position: write millimetres, or middle");
   return *position_mm;
 }
 
-/// The view that looks along a direction with `up` as near upwards as it can be.
+/// The view that looks along a direction, with an up direction as near to `up` as possible.
 voxel::View view_along(const glm::dvec3& direction, const std::optional<glm::dvec3>& wanted_up) {
   if (!(glm::length(direction) > 0.0))
-    throw std::runtime_error("oblique: the direction has no length: give X,Y,Z, for example 0,1,1");
+    throw std::runtime_error("oblique: the direction has no length: write X,Y,Z, for example 0,1,1");
   voxel::View view;
   view.look = glm::normalize(direction);
   const auto across = [&](const glm::dvec3& up) { return up - view.look * glm::dot(up, view.look); };
   glm::dvec3 up = across(wanted_up.value_or(glm::dvec3(0, 0, 1)));
-  // The head's up direction is up in the picture, unless the plane is within a degree of horizontal: then the
-  // face is up, as in axial slices.
+  // The head's up direction is up in the picture. If the plane is within a degree of horizontal, the face is
+  // up instead, as in axial slices.
   if (!wanted_up && glm::length(up) < std::sin(glm::radians(1.0))) up = across(glm::dvec3(0, -1, 0));
   if (!(glm::length(up) > 0.0))
-    throw std::runtime_error("up: points along the viewing direction: choose another");
+    throw std::runtime_error("up: points along the viewing direction: choose another direction");
   view.up = glm::normalize(up);
   view.right = glm::cross(view.look, view.up);
   return view;
 }
 
-/// Points from the words of the command line, or from the file that the only word names.
+/// Points from the words of the command line, or from the file if the only word names one.
 std::vector<glm::dvec3> curve_points(const std::vector<std::string>& words) {
   std::vector<glm::dvec3> points;
   if (words.size() != 1) {
@@ -118,7 +118,7 @@ std::vector<glm::dvec3> curve_points(const std::vector<std::string>& words) {
   }
   if (!fs::exists(words.front()))
     throw std::runtime_error("--curve: '" + words.front() +
-                             "' is no file; give one, or two and more points X,Y,Z in mm");
+                             "' is not a file: name a file, or write at least two points X,Y,Z in mm");
   const nlohmann::json json = read_json(words.front());
   const nlohmann::json list = json.is_object() ? json.value("points_mm", nlohmann::json()) : json;
   const bool fits =
@@ -127,13 +127,14 @@ std::vector<glm::dvec3> curve_points(const std::vector<std::string>& words) {
                std::all_of(point.begin(), point.end(), [](const auto& x) { return x.is_number(); });
       });
   if (!fits)
-    throw std::runtime_error(words.front() + ": is no curve: {\"points_mm\": [[x, y, z], ...]} is expected");
+    throw std::runtime_error(words.front() +
+                             ": is not a curve: it must be {\"points_mm\": [[x, y, z], ...]}");
   for (const nlohmann::json& point : list) points.emplace_back(point[0], point[1], point[2]);
   return points;
 }
 
-/// A rectangle in a plane, around the projection of `slice.centre_mm` onto the plane; by default around that
-/// of the lattice's middle.
+/// A rectangle in a plane, around the projection of `slice.centre_mm` onto the plane; by default around the
+/// projection of the lattice's middle.
 voxel::Sheet rectangle_of(const Slice& slice, const voxel::Lattice& lattice, const voxel::View& view,
                           double position_mm, double pixel_mm) {
   Render said;
@@ -171,7 +172,7 @@ CutSheet cut_of(const Slice& slice, const voxel::Lattice& lattice) {
   const auto asked =
       std::count_if(named.begin(), named.end(), [](const Named& each) { return !each.position.empty(); }) +
       (slice.oblique.empty() ? 0 : 1) + (slice.curve_mm.empty() ? 0 : 1);
-  if (asked > 1) throw std::runtime_error("give one of axial, coronal, sagittal, oblique and curve");
+  if (asked > 1) throw std::runtime_error("state only one of axial, coronal, sagittal, oblique and curve");
   if (!slice.curve_mm.empty()) {
     voxel::CurveOptions options;
     options.points_mm = slice.curve_mm;
@@ -220,7 +221,7 @@ voxel::SheetSamples samples_of(const Slice& slice, const Subject& subject, const
   return voxel::sample(*std::get<const voxel::Scene*>(subject.samples), sheet, interpolation, {stop, {}});
 }
 
-/// Black and white, in sample units.
+/// The samples that are black and white.
 voxel::Range shown_range(const Slice& slice, const Subject& subject, const voxel::SheetSamples& samples) {
   if (!slice.level.empty()) {
     const double centre = slice.level[0], width = slice.level[1];
@@ -241,7 +242,7 @@ voxel::Range shown_range(const Slice& slice, const Subject& subject, const voxel
   if (slice.window) {
     shown = {slice.window->low, slice.window->high.value_or(percentile(1.0))};
   } else if (subject.unit == "HU") {
-    shown = {-500.0, 1500.0};  // bone and, darker, soft tissue: level 500, width 2000
+    shown = {-500.0, 1500.0};  // shows bone and, darker, soft tissue: level 500, width 2000
   } else {
     shown = {percentile(0.01), percentile(0.99)};
   }
@@ -251,17 +252,18 @@ voxel::Range shown_range(const Slice& slice, const Subject& subject, const voxel
 
 glm::vec3 outline_colour(const Slice& slice, const std::vector<Outlined>& objects, std::size_t i) {
   if (i < slice.colours.size()) return need_colour(slice.colours[i]);
-  // Outlines begin with the second default colour, because bone's own colour resembles the picture's greys.
+  // Outlines begin with the second default colour, because that of bone resembles the greys of the picture.
   return objects[i].is_hatched ? interference_colour() : colour_of(i + 1);
 }
 
-/// Whether a pixel lies on a line of the hatching: diagonals 2 pixels wide, 8 apart along a row.
+/// Whether a pixel lies on a line of the hatching. The lines are diagonals, 2 pixels wide and 8 pixels apart
+/// along a row.
 bool is_hatch(std::size_t pixel, const glm::ivec2& size_px) {
   const std::size_t width = static_cast<std::size_t>(size_px.x);
   return (pixel % width + pixel / width) % 8 < 2;
 }
 
-/// Draws the objects' outlines and hatching; returns what was drawn.
+/// Draws the outlines and hatching of objects. Returns descriptions of what was drawn.
 Json draw_outlines(const Slice& slice, const std::vector<Outlined>& objects, const voxel::Sheet& sheet,
                    std::vector<std::uint8_t>& rgb, Timings& timings) {
   Json list = Json::array();
@@ -286,7 +288,7 @@ Json draw_outlines(const Slice& slice, const std::vector<Outlined>& objects, con
   return list;
 }
 
-/// Maps (column, row, 0, 1) to LPS; none for a curve.
+/// The map from (column, row, 0, 1) to LPS; none for a curve.
 std::optional<glm::dmat4> lps_from_pixel(const CutSheet& cut) {
   if (!cut.position_mm) return std::nullopt;
   const voxel::Sheet& sheet = cut.sheet;
@@ -299,11 +301,11 @@ std::optional<glm::dmat4> lps_from_pixel(const CutSheet& cut) {
       sheet.columns_mm.size() > 1 ? glm::normalize(glm::cross(right, down)) : glm::dvec3(0.0);
   glm::dmat4 matrix(glm::dvec4(right, 0), glm::dvec4(down, 0), glm::dvec4(across, 0),
                     glm::dvec4(sheet.columns_mm.front(), 1));
-  for (int column = 0; column < 4; ++column) matrix[column] += 0.0;  // takes the sign from -0
+  for (int column = 0; column < 4; ++column) matrix[column] += 0.0;  // turns -0 into 0
   return matrix;
 }
 
-/// The facts of a slice's picture: SlicePicture::said.
+/// The facts about the picture of a slice, for SlicePicture::said.
 struct SliceRecord {
   std::string plane;
   std::optional<double> position_mm;  ///< none for a curve
@@ -314,7 +316,7 @@ struct SliceRecord {
   std::vector<double> window;
   std::string unit, interpolation;
   std::int64_t inside_pixels = 0;
-  std::optional<std::vector<double>> values;  ///< the least and the greatest; none if nothing is inside
+  std::optional<std::vector<double>> values;  ///< least and greatest sample; none if no pixel lies inside
   std::vector<std::string> findings;
   Json outlines;
   std::optional<double> scale_bar_mm;
@@ -354,20 +356,21 @@ SliceRecord record_of_slice(const Slice& slice, const Subject& subject, const Cu
   if (values)
     made.values = {values->low, values->high};
   else
-    made.findings.emplace_back("no pixel lies in the scan: the curve passes beside it");
+    made.findings.emplace_back(
+        "no pixel lies in the scan, because the curve passes beside it: choose points in the scan");
   return made;
 }
 
-/// The grid of a plane, in the millimetres of the view in which it is looked at.
+/// The grid of a plane, in the millimetres of the view that looks at the plane.
 voxel::Grid grid_of(const CutSheet& cut, double spacing_mm) {
   const std::optional<glm::dmat4> matrix = lps_from_pixel(cut);
   if (!matrix || cut.sheet.columns_mm.size() < 2)
-    throw std::runtime_error("--grid: a grid is of planes; a curved picture has none");
+    throw std::runtime_error("--grid applies only to planes: leave it out for a curved picture");
   const glm::dmat3 mm_from_pixel = PictureFrame{cut.sheet.size_px(), *matrix}.view_mm_from_pixel();
   return {spacing_mm, glm::dvec2(mm_from_pixel * glm::dvec3(-0.5, -0.5, 1.0)), cut.sheet.pixel_mm};
 }
 
-/// Letters, a scale and a legend.
+/// The letters, scale and legend of a picture.
 void annotate(SlicePicture& picture, SliceRecord& record, const Slice& slice, const CutSheet& cut,
               const std::vector<Outlined>& objects) {
   voxel::ImagePlane plane;
@@ -394,7 +397,7 @@ SlicePicture drawn(const Slice& slice, const Subject& subject, const std::vector
   const voxel::Range shown = shown_range(slice, subject, samples);
   picture.rgb = voxel::grey_tones(samples.image, shown.low, shown.high);
   SliceRecord record = record_of_slice(slice, subject, cut, samples, shown);
-  // Pixels outside of the scan are black, not the border's grey.
+  // Pixels outside of the scan are black, instead of having the grey of the border.
   for (std::size_t i = 0; i < samples.inside.size(); ++i)
     if (samples.inside[i] == 0) std::fill_n(picture.rgb.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, 0);
   record.outlines = draw_outlines(slice, objects, cut.sheet, picture.rgb, timings);
@@ -411,7 +414,8 @@ SlicePicture drawn(const Slice& slice, const Subject& subject, const std::vector
 }
 
 // Conditions of fields.
-constexpr const char* no_samples = "a binary octree and a mesh have no samples: leave it out";
+constexpr const char* no_samples =
+    "does not apply to a binary octree or a mesh, which have no samples: leave it out";
 
 bool is_curved(const Slice& slice) {
   return !slice.curve_mm.empty() || !slice.curve.empty();
@@ -423,9 +427,9 @@ bool cuts_samples(const Slice& slice) {
 
 void check(const Slice& slice, const FieldLocation& place) {
   if (slice.window && !slice.level.empty())
-    place.at("level").refuse("states the same as 'window': leave one out");
+    place.at("level").refuse("states the same as 'window': leave out one of them");
   if (slice.grid_mm && !slice.curve_mm.empty())
-    place.at("grid_mm").refuse("applies only to planes; a curved picture has none");
+    place.at("grid_mm").refuse("applies only to planes: leave it out for a curved picture");
   if (slice.colours.size() > slice.objects.size() + slice.hatched.size())
     place.at("colours").refuse("has more colours than there are objects and hatched objects");
   if (!slice.level.empty() && !(slice.level[1] > 0.0))
@@ -454,15 +458,15 @@ void write(const Slice& slice, const AnswerBench& bench, Exported& made) {
   made.details = std::move(picture.said);
 }
 
-/// The voxels of a file with a binary octree, or with a mesh.
+/// The voxels in a file of a binary octree or a mesh.
 voxel::Octree octree_on_file(const fs::path& path, const Subject& subject, const FileBench& bench) {
   if (is_mesh(path)) return voxels_of_mesh(path, std::nullopt, finest_mm(subject.lattice), bench);
   const voxel::OctreeFile file = read_timed(path, bench.timings);
   const auto* octree = std::get_if<voxel::Octree>(&file.tree);
   if (octree == nullptr)
-    throw std::runtime_error(path.string() +
-                             ": only a binary octree has an outline: choose an object with octotomy octree "
-                             "--window LOW:HIGH");
+    throw std::runtime_error(
+        path.string() +
+        ": only a binary octree has an outline: choose an object by octotomy octree --window LOW:HIGH");
   return *octree;
 }
 
@@ -507,24 +511,29 @@ SlicePicture slice_of(const Slice& slice, const voxel::Scene& scene, const std::
 
 Operation slice_operation() {
   return Describe<Slice>("slice",
-                         "Draws a plane or a curved sheet of a scan in true scale, with octrees' outlines.",
+                         "Draws a plane or a curved sheet of a scan in true scale, with outlines of objects.",
                          Makes::File)
       .takes(field("scan", &Slice::scan, "The scan; on the command line also an .octree file or a mesh.")
                  .required()
                  .positional("file"))
-      .takes(field("path", &Slice::path, "The .png, .jpg or .webp file within the result's folder.")
+      .takes(field("path", &Slice::path, "Path of the .png, .jpg or .webp file within the result's folder.")
                  .in_plans_only())
+      .takes(field("axial", &Slice::axial,
+                   "An axial plane: z in mm, or middle, which is the default if no plane is stated. It is "
+                   "seen from below, with the patient's left on the right."))
+      .takes(field("coronal", &Slice::coronal,
+                   "A coronal plane: y in mm, or middle. It is seen from the front."))
+      .takes(field("sagittal", &Slice::sagittal,
+                   "A sagittal plane: x in mm, or middle. It is seen from the patient's left."))
       .takes(
-          field("axial", &Slice::axial,
-                "z in mm, or middle, which is drawn if no plane is given; from below, the patient's left is "
-                "on the right."))
-      .takes(field("coronal", &Slice::coronal, "y in mm, or middle; from the front."))
-      .takes(field("sagittal", &Slice::sagittal, "x in mm, or middle; from the patient's left."))
-      .takes(field("oblique", &Slice::oblique, "A point, LPS mm, and the viewing direction.").from(2).to(2))
-      .takes(field("curve_mm", &Slice::curve_mm, "Two or more points of a curved sheet, left to right.")
+          field("oblique", &Slice::oblique, "An oblique plane: a point in LPS mm, and the viewing direction.")
+              .from(2)
+              .to(2))
+      .takes(field("curve_mm", &Slice::curve_mm,
+                   "A curved sheet: two or more of its points, from left to right.")
                  .from(2)
                  .in_plans_only())
-      .takes(field("height_mm", &Slice::height_mm, "Height of a curved sheet.")
+      .takes(field("height_mm", &Slice::height_mm, "Height of a curved sheet, mm.")
                  .greater_than(0.0)
                  .read_if<Slice>(is_curved, "applies only to curved sheets: add 'curve'"))
       .takes(
@@ -532,12 +541,14 @@ Operation slice_operation() {
                 "The direction that is up in an oblique or curved picture. Default: towards the head.")
               .direction()
               .read_if<Slice>([](const Slice& slice) { return is_curved(slice) || !slice.oblique.empty(); },
-                              "applies only to oblique and curved pictures: axial, coronal and sagittal "
-                              "pictures have their own"))
-      .takes(field("window", &Slice::window, "Black and white as LOW:HIGH, or a tissue.")
+                              "applies only to oblique and curved pictures, because axial, coronal and "
+                              "sagittal pictures have a fixed up direction: leave it out"))
+      .takes(field("window", &Slice::window,
+                   "The samples that are black and white: LOW:HIGH in sample units, or a tissue.")
                  .read_if<Slice>(cuts_samples, no_samples))
       .takes(field("level", &Slice::level,
-                   "Black and white as a centre and a width. Default: 500 and 2000 for Hounsfield units.")
+                   "Grey tones as a centre and a width in sample units. Default: 500 and 2000 for Hounsfield "
+                   "units.")
                  .from(2)
                  .to(2)
                  .comma_separated()
@@ -547,41 +558,42 @@ Operation slice_operation() {
                  .repeated()
                  .called("octree"))
       .takes(field("hatched", &Slice::hatched,
-                   "Objects to draw with a hatched inside, in red if no colour is given: for example the "
+                   "Objects that are drawn with a hatched inside, by default in red: for example the "
                    "interference of pieces.")
                  .repeated())
       .takes(field("colours", &Slice::colours,
-                   "Colours, #RRGGBB, of the outlines in their order, then of the hatched objects.")
+                   "Colours #RRGGBB of the outlines in their order, then of the hatched objects.")
                  .repeated()
                  .called("colour"))
+      .takes(field("pixel_mm", &Slice::pixel_mm,
+                   "Edge of a pixel, mm. Default: the scan's smallest spacing; finer in a curved picture "
+                   "with fewer than 800 columns.")
+                 .greater_than(0.0))
       .takes(
-          field("pixel_mm", &Slice::pixel_mm,
-                "Edge of a pixel. Default: the scan's smallest spacing; finer in a curved picture of fewer "
-                "than 800 columns.")
-              .greater_than(0.0))
-      .takes(field("size", &Slice::size, "WxH in pixels. Default: all of the scan.")
-                 .read_if<Slice>([](const Slice& slice) { return !is_curved(slice); },
-                                 "applies only to planes; a curve's picture is as long as the curve"))
+          field("size", &Slice::size, "Size of the picture, WxH in pixels. Default: the whole scan.")
+              .read_if<Slice>(
+                  [](const Slice& slice) { return !is_curved(slice); },
+                  "applies only to planes, because a curve's picture is as long as the curve: leave it out"))
       .takes(field("centre_mm", &Slice::centre_mm,
-                   "X,Y,Z in LPS of a point whose place on the plane is the picture's middle. Default: the "
-                   "scan's middle.")
+                   "X,Y,Z in LPS of a point whose projection onto the plane is the picture's middle. "
+                   "Default: the scan's middle.")
                  .called("centre")
                  .read_if<Slice>([](const Slice& slice) { return !slice.size.empty(); },
-                                 "applies only to pictures of a 'size': add it"))
-      .takes(field("interpolate", &Slice::interpolate, "How to interpolate between samples.")
+                                 "applies only with 'size': add 'size'"))
+      .takes(field("interpolate", &Slice::interpolate, "Interpolation between samples.")
                  .one_of({"nearest", "linear", "cubic"})
                  .read_if<Slice>(cuts_samples, no_samples))
-      .takes(field("plain", &Slice::plain, "No letters and no scale bar."))
+      .takes(field("plain", &Slice::plain, "Leaves out the letters and the scale bar."))
       .takes(field("grid_mm", &Slice::grid_mm,
-                   "Draws lines at multiples of this distance, mm; a margin that is added at the right and "
-                   "below shows their places in the view of the plane.")
+                   "Draws lines at multiples of this distance, mm. An added margin at the right and below "
+                   "shows their positions in the view of the plane.")
                  .from(0.1)
                  .to(1000.0)
                  .called("grid"))
-      .verb_takes(field("out", &Slice::out, "A .png, .jpg or .webp file.").required())
-      .verb_takes(
-          field("curve", &Slice::curve,
-                "X,Y,Z in mm of two or more points, left to right, or a JSON file with them as points_mm."))
+      .verb_takes(field("out", &Slice::out, "The picture: a .png, .jpg or .webp file.").required())
+      .verb_takes(field("curve", &Slice::curve,
+                        "A curved sheet: X,Y,Z in mm of two or more points, from left to right, or a JSON "
+                        "file with these as points_mm."))
       .reads_scans()
       .example(R"({"id": "axial", "do": "slice", "scan": "ct", "path": "axial.png", "axial": "40",
         "objects": ["maxilla"]})")

@@ -26,9 +26,9 @@ struct Slice {
   std::optional<SampleWindow> window;
   std::vector<double> level;
   std::vector<ObjectName> objects, hatched;
-  std::vector<std::string> colours;  ///< of the objects, then of the hatched ones
+  std::vector<std::string> colours;  ///< colours of the objects, then of the hatched objects
   std::optional<double> pixel_mm;
-  std::string size;  ///< empty: all of the scan
+  std::string size;  ///< WxH in pixels; empty: the whole scan
   std::optional<glm::dvec3> centre_mm;
   std::string interpolate = "linear";
   bool plain = false;
@@ -40,12 +40,12 @@ struct Slice {
 
 /// An object whose outline is drawn.
 struct Outlined {
-  std::string name;  ///< the path of its file, or the object's name
+  std::string name;  ///< path of its file, or name of the object
   voxel::Octree octree;
-  bool is_hatched = false;  ///< its inside is drawn, too
+  bool is_hatched = false;  ///< its inside is hatched
 };
 
-/// A picture, its position, and its results.
+/// A picture of a slice, with its position and its results.
 struct SlicePicture {
   voxel::Sheet sheet;
   voxel::SheetSamples samples;
@@ -55,8 +55,8 @@ struct SlicePicture {
   nlohmann::ordered_json said;
 };
 
-/// Draws a slice of a scan, as the operation `slice` does. Throws std::runtime_error for fields that cannot
-/// be read; std::invalid_argument where a plane without a size misses the scan; Stopped.
+/// Draws a slice of a scan as the operation `slice` does. Throws std::runtime_error for fields that cannot be
+/// read; std::invalid_argument if a plane without a size misses the scan; Stopped.
 SlicePicture slice_of(const Slice& slice, const voxel::Scene& scene, const std::vector<Outlined>& objects,
                       Timings& timings, const std::stop_token& stop);
 

@@ -31,7 +31,7 @@ voxel::TransferFunction read_transfer(const std::filesystem::path& path) {
   const SortedJson json = read_json(path);
   check_keys(json, source, {"octotomy_transfer", "surface_per_mm", "points"});
   if (!json.contains("octotomy_transfer") || json["octotomy_transfer"] != 1)
-    refuse(source, "is no transfer function of version 1: begin it with \"octotomy_transfer\": 1");
+    refuse(source, "is not a transfer function of version 1: begin it with \"octotomy_transfer\": 1");
   voxel::TransferFunction transfer;
   if (json.contains("surface_per_mm"))
     transfer.surface_per_mm = number_of(json["surface_per_mm"], source + ": surface_per_mm");

@@ -25,10 +25,12 @@ MadeScan made(const AverageDown& step, const ScanBench& bench) {
 }  // namespace
 
 Operation average_down_operation() {
-  return Describe<AverageDown>("average_down", "Makes fewer samples, each the mean of several.", Makes::Scan)
+  return Describe<AverageDown>("average_down",
+                               "Reduces the number of samples: each new sample is the mean of several.",
+                               Makes::Scan)
       .takes(field("scan", &AverageDown::scan, "The scan.").required())
       .takes(field("factor", &AverageDown::factor,
-                   "Number of samples along an axis that become one: a number, or one for each axis.")
+                   "Number of samples along an axis that become one: one number, or one for each axis.")
                  .required()
                  .from(1)
                  .to(3))

@@ -36,16 +36,18 @@ MadeScan made(const ClampStreaks& step, const ScanBench& bench) {
 }  // namespace
 
 Operation clamp_streaks_operation() {
-  return Describe<ClampStreaks>("clamp_streaks",
-                                "Clamps samples near metal to the range low..high, to limit metal artefacts.",
-                                Makes::Scan)
+  return Describe<ClampStreaks>(
+             "clamp_streaks",
+             "Limits samples near metal to the range 'low' to 'high', to reduce metal artefacts.",
+             Makes::Scan)
       .takes(field("scan", &ClampStreaks::scan, "The scan.").required())
-      .takes(field("metal", &ClampStreaks::metal, "Samples from this value on are metal."))
-      .takes(field("low", &ClampStreaks::low, "Samples near metal below this value are raised to it."))
-      .takes(field("high", &ClampStreaks::high,
-                   "Samples near metal above this value that are not metal are lowered to it."))
+      .takes(field("metal", &ClampStreaks::metal, "Samples of at least this value are metal."))
       .takes(
-          field("reach_mm", &ClampStreaks::reach_mm, "Distance from metal within which samples are clamped.")
+          field("low", &ClampStreaks::low, "Samples near metal that are below this value are raised to it."))
+      .takes(field("high", &ClampStreaks::high,
+                   "Samples near metal that are above this value, but are not metal, are lowered to it."))
+      .takes(
+          field("reach_mm", &ClampStreaks::reach_mm, "Distance from metal within which samples are limited.")
               .greater_than(0.0))
       .example(R"({"id": "held", "do": "clamp_streaks", "scan": "ct", "reach_mm": 20})")
       .on_files("clamp_streaks=METAL,LOW,HIGH,REACH")

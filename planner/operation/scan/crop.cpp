@@ -16,7 +16,9 @@ MadeScan made(const Crop& step, const ScanBench& bench) {
   const voxel::Scene& scene = bench.samples(step.scan.name);
   const voxel::Box box{glm::min(step.low_mm, step.high_mm), glm::max(step.low_mm, step.high_mm)};
   const voxel::VoxelRange range = voxel::range_within(scene.lattice, box);
-  if (range.is_empty()) throw std::runtime_error(scene.source + ": no sample lies in the box of crop");
+  if (range.is_empty())
+    throw std::runtime_error(scene.source +
+                             ": no sample lies in the box of crop, which must overlap the scan");
   return {voxel::crop(scene, range), {{"first_sample", {range.low.x, range.low.y, range.low.z}}}};
 }
 
@@ -25,7 +27,7 @@ MadeScan made(const Crop& step, const ScanBench& bench) {
 Operation crop_operation() {
   return Describe<Crop>("crop", "Keeps the samples of a scan within a box.", Makes::Scan)
       .takes(field("scan", &Crop::scan, "The scan.").required())
-      .takes(field("low_mm", &Crop::low_mm, "A corner of the box, LPS.").required())
+      .takes(field("low_mm", &Crop::low_mm, "A corner of the box, LPS mm.").required())
       .takes(field("high_mm", &Crop::high_mm, "The opposite corner, LPS.").required())
       .example(
           R"({"id": "face", "do": "crop", "scan": "ct", "low_mm": [-90, -120, -80],

@@ -14,7 +14,7 @@ struct CropSamples {
 void check(const CropSamples& step, const FieldLocation& place) {
   for (const glm::dvec3& index : {step.first, step.last})
     if (index != glm::floor(index) || glm::any(glm::greaterThan(glm::abs(index), glm::dvec3(1e6))))
-      place.refuse("indices are whole numbers from 0, both included");
+      place.refuse("indices must be whole numbers from 0; both samples are included");
 }
 
 MadeScan made(const CropSamples& step, const ScanBench& bench) {
@@ -27,9 +27,11 @@ Operation crop_samples_operation() {
   return Describe<CropSamples>("crop_samples", "Keeps the samples of a scan between two indices.",
                                Makes::Scan)
       .takes(field("scan", &CropSamples::scan, "The scan.").required())
-      .takes(field("first", &CropSamples::first, "Indices [i, j, k] of the first sample that stays, from 0.")
-                 .required())
-      .takes(field("last", &CropSamples::last, "Indices of the last sample that stays.").required())
+      .takes(
+          field("first", &CropSamples::first, "Indices [i, j, k] of the first sample that is kept, from 0.")
+              .required())
+      .takes(
+          field("last", &CropSamples::last, "Indices [i, j, k] of the last sample that is kept.").required())
       .example(
           R"({"id": "part", "do": "crop_samples", "scan": "ct", "first": [0, 0, 10],
         "last": [255, 255, 90]})")

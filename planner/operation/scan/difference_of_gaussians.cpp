@@ -21,18 +21,17 @@ MadeScan made(const DifferenceOfGaussians& step, const ScanBench& bench) {
 }  // namespace
 
 Operation difference_of_gaussians_operation() {
-  return Describe<DifferenceOfGaussians>(
-             "difference_of_gaussians",
-             "Makes a scan whose zeros are edges by the difference of two Gaussians, scaled to approximate "
-             "marr_hildreth.",
-             Makes::Scan)
+  return Describe<DifferenceOfGaussians>("difference_of_gaussians",
+                                         "Makes a scan that is zero at edges, by the difference of two "
+                                         "Gaussians. It is scaled to approximate marr_hildreth.",
+                                         Makes::Scan)
       .takes(field("scan", &DifferenceOfGaussians::scan, "The scan.").required())
       .takes(
           field("sigma_mm", &DifferenceOfGaussians::sigma_mm, "Standard deviation of the narrower Gaussian.")
               .required()
               .greater_than(0.0))
       .takes(field("ratio", &DifferenceOfGaussians::ratio,
-                   "The wider standard deviation as a multiple of the narrower.")
+                   "Standard deviation of the wider Gaussian, as a multiple of the narrower one's.")
                  .greater_than(1.0)
                  .to(100.0))
       .example(R"({"id": "edges", "do": "difference_of_gaussians", "scan": "ct", "sigma_mm": 1.5})")

@@ -24,12 +24,12 @@ MadeScan made(const EdgePreserving& step, const ScanBench& bench) {
 }  // namespace
 
 Operation edge_preserving_operation() {
-  return Describe<EdgePreserving>("edge_preserving", "Smooths a scan along its edges and not across them.",
+  return Describe<EdgePreserving>("edge_preserving", "Smooths a scan along its edges, but not across them.",
                                   Makes::Scan)
       .takes(field("scan", &EdgePreserving::scan, "The scan.").required())
       .takes(field("iterations", &EdgePreserving::iterations, "Steps of the diffusion.").from(1))
       .takes(field("conductance", &EdgePreserving::conductance,
-                   "Edges above this multiple of the mean gradient stay.")
+                   "Edges with a gradient above this multiple of the mean gradient are preserved.")
                  .greater_than(0.0))
       .example(R"({"id": "calm", "do": "edge_preserving", "scan": "ct", "iterations": 5})")
       .on_files("edge_preserving=ITERATIONS,CONDUCTANCE")

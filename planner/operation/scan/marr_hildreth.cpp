@@ -20,7 +20,7 @@ MadeScan made(const MarrHildreth& step, const ScanBench& bench) {
 
 Operation marr_hildreth_operation() {
   return Describe<MarrHildreth>("marr_hildreth",
-                                "Makes a scan whose zeros are edges by Marr and Hildreth's operator.",
+                                "Makes a scan that is zero at edges, by Marr and Hildreth's operator.",
                                 Makes::Scan)
       .takes(field("scan", &MarrHildreth::scan, "The scan.").required())
       .takes(field("sigma_mm", &MarrHildreth::sigma_mm, "Standard deviation of the Gaussian.")

@@ -29,7 +29,7 @@ Operation median_operation() {
                           Makes::Scan)
       .takes(field("scan", &Median::scan, "The scan.").required())
       .takes(field("radius_samples", &Median::radius_samples,
-                   "Samples on each side: a number, or one for each axis.")
+                   "Number of samples on each side that are included: one number, or one for each axis.")
                  .required()
                  .from(1)
                  .to(3))

@@ -32,29 +32,30 @@ MadeScan made(const BiasField& step, const ScanBench& bench) {
                  {"field", {corrected.field_low, corrected.field_high}}}};
   if (!step.threshold)
     made.findings.push_back("the field is fitted to samples above " + plain(corrected.threshold) +
-                            ", a threshold guessed from the histogram by Otsu's method: if these are not the "
-                            "patient's tissue, give 'threshold'");
+                            ", a threshold that Otsu's method guessed from the histogram: if these are not "
+                            "the patient's tissue, state 'threshold'");
   return made;
 }
 
 }  // namespace
 
 Operation n4_bias_field_operation() {
-  return Describe<BiasField>(
-             "n4_bias_field",
-             "Evens out the brightness of an MR scan: divides it by the slowly changing field "
-             "that N4 estimates.",
-             Makes::Scan)
+  return Describe<BiasField>("n4_bias_field",
+                             "Corrects the brightness of an MR scan: divides it by the slowly changing field "
+                             "that N4 estimates.",
+                             Makes::Scan)
       .takes(field("scan", &BiasField::scan, "The MR scan.").required())
-      .takes(field("threshold", &BiasField::threshold,
-                   "Samples above it determine the field. Default: Otsu's threshold, which is a guess.")
-                 .from(0.0)
-                 .to(1e9))
+      .takes(
+          field("threshold", &BiasField::threshold,
+                "Samples above this value determine the field. Default: Otsu's threshold, which is a guess.")
+              .from(0.0)
+              .to(1e9))
       .takes(field("knots_mm", &BiasField::knots_mm,
-                   "Largest distance of the spline's knots at the first level.")
+                   "Largest distance between the spline's knots at the first level.")
                  .from(1.0)
                  .to(10000.0))
-      .takes(field("levels", &BiasField::levels, "Levels of the fit; each halves the distance of the knots.")
+      .takes(field("levels", &BiasField::levels,
+                   "Number of levels of the fit. Each level halves the distance between knots.")
                  .from(1)
                  .to(6))
       .takes(field("iterations", &BiasField::iterations, "Largest number of iterations at each level.")

@@ -8,12 +8,13 @@
 
 namespace octotomy::planner {
 
-/// One number for all axes, or one for each. Precondition: check_axes() passes.
+/// The numbers for the three axes, from one number for all or one for each. Precondition: check_axes()
+/// passes.
 inline glm::ivec3 of_axes(const std::vector<int>& numbers) {
   return numbers.size() == 1 ? glm::ivec3(numbers[0]) : glm::ivec3(numbers[0], numbers[1], numbers[2]);
 }
 
-/// Refuses any other count of numbers than one or three.
+/// Refuses lists that have neither one number nor three.
 inline void check_axes(const std::vector<int>& numbers, const FieldLocation& place) {
   if (numbers.size() != 1 && numbers.size() != 3) place.refuse("must be one number, or one for each axis");
 }

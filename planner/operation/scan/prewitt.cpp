@@ -19,7 +19,7 @@ MadeScan made(const Prewitt& step, const ScanBench& bench) {
 Operation prewitt_operation() {
   return Describe<Prewitt>(
              "prewitt",
-             "Makes a scan of the strength of edges by Prewitt's operator, a plane through 27 samples.",
+             "Makes a scan of the strength of edges by Prewitt's operator, which fits a plane to 27 samples.",
              Makes::Scan)
       .takes(field("scan", &Prewitt::scan, "The scan.").required())
       .example(R"({"id": "edges", "do": "prewitt", "scan": "ct"})")

@@ -18,32 +18,32 @@ struct RemoveHeadrest {
   std::vector<glm::dvec3> keep_mm;
 };
 
-/// A smaller kept part is a strap's buckle, a wire or noise.
+/// Smaller parts that are kept are not reported, because they are a strap's buckle, a wire or noise.
 constexpr double least_kept_mm3 = 1000.0;
 
-/// Reports the removed parts, and kept parts that may be a support. Recommends no value, because another
-/// number must not cut off a part that could not be separated reliably.
+/// Adds findings on the removed parts, and on kept parts that may be a support. They recommend no value of a
+/// field, because no value must cut off a part that could not be separated reliably.
 std::vector<std::string> findings_of(const voxel::HeadrestRemoval& removal) {
   const auto cm3 = [](double mm3) { return plain(std::round(mm3 / 100.0) / 10.0) + " cm\u00b3"; };
   std::vector<std::string> findings;
   if (removal.voxels == 0)
     findings.emplace_back(
-        "nothing was removed: no board, foam or holder was found behind the patient's coronal middle; remove "
-        "a support that lies closely against the head by a crop step or a mask");
+        "nothing was removed, because no board, foam or holder was found behind the patient's coronal "
+        "middle: remove a support that touches the head by a crop step or a mask");
   if (removal.bone_mm3 >= least_kept_mm3)
     findings.push_back("of the " + cm3(removal.solid_mm3 + removal.foam_mm3) + " removed, " +
                        cm3(removal.bone_mm3) + " are as dense as bone (" + plain(voxel::dense_hu) +
-                       " and more): look at the picture of the removed parts");
+                       " and more): check the picture of the removed parts");
   if (removal.front_mm3 >= least_kept_mm3)
     findings.push_back(
         cm3(removal.front_mm3) + " beside the patient lie in front of its coronal middle (y = " +
         plain(std::round(removal.middle_y_mm)) + " mm) and were kept, " + cm3(removal.extruded_front_mm3) +
-        " of them part of a board or cradle: the patient may lie on the face or the side, or the "
-        "scan's frame may be turned");
+        " of them part of a board or cradle: check whether the patient lies face down or on the side, or the "
+        "scan's frame is rotated");
   if (removal.behind_mm3 >= least_kept_mm3)
     findings.push_back(cm3(removal.behind_mm3) +
-                       " behind the patient's coronal middle may be a support, but cannot be separated "
-                       "reliably, and were kept: remove them by a crop step or a mask");
+                       " behind the patient's coronal middle may be a support, but were kept, because they "
+                       "cannot be separated reliably: remove them by a crop step or a mask");
   return findings;
 }
 
@@ -83,17 +83,18 @@ Operation remove_headrest_operation() {
                                   Makes::Scan)
       .takes(field("scan", &RemoveHeadrest::scan, "The scan.").required())
       .takes(field("threshold", &RemoveHeadrest::threshold,
-                   "Samples from this value on are solid, in the scan's unit."))
+                   "Samples of at least this value are solid, in the scan's unit."))
+      .takes(field("near_mm", &RemoveHeadrest::near_mm,
+                   "Parts that lie wholly within this distance of the patient are kept, unless they are foam "
+                   "or part of a board."))
       .takes(field(
-          "near_mm", &RemoveHeadrest::near_mm,
-          "Parts wholly within this distance of the patient stay, unless they are foam or part of a board."))
-      .takes(
-          field("detach_mm", &RemoveHeadrest::detach_mm,
-                "Links behind the patient that are thinner than a ball of this radius are cut. Default: 6."))
+          "detach_mm", &RemoveHeadrest::detach_mm,
+          "Connections behind the patient that are thinner than a ball of this radius are cut. Default: 6."))
       .takes(field("board_mm", &RemoveHeadrest::board_mm,
-                   "The thickest solid board. A couch with air around it may be twice as thick. Default: 40.")
+                   "The largest thickness of a solid board. A couch with air around it may be twice as "
+                   "thick. Default: 40.")
                  .greater_than(0.0))
-      .takes(field("keep_mm", &RemoveHeadrest::keep_mm, "Points of parts that stay, LPS."))
+      .takes(field("keep_mm", &RemoveHeadrest::keep_mm, "Points of parts that are kept, LPS mm."))
       .example(R"({"id": "head", "do": "remove_headrest", "scan": "ct"})")
       .on_files("remove_headrest=THRESHOLD,NEAR,DETACH,BOARD (needs --removed)")
       .scan(made);

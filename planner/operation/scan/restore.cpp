@@ -17,7 +17,8 @@ MadeScan made(const Restore& step, const ScanBench& bench) {
   const voxel::OctreeFile file = voxel::read_octree(path);
   const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree);
   if (grey == nullptr)
-    throw std::runtime_error(path.string() + ": holds no samples: give the file that remove_headrest wrote");
+    throw std::runtime_error(path.string() +
+                             ": contains no samples: name the file that remove_headrest wrote");
   MadeScan made{bench.samples(step.scan.name)};
   made.details = {{"samples_restored", voxel::restore(made.scene, *grey)}, {"path", step.path.string()}};
   return made;
@@ -26,7 +27,7 @@ MadeScan made(const Restore& step, const ScanBench& bench) {
 }  // namespace
 
 Operation restore_operation() {
-  return Describe<Restore>("restore", "Puts back the samples that remove_headrest stored in a file.",
+  return Describe<Restore>("restore", "Restores the samples that remove_headrest stored in a file.",
                            Makes::Scan)
       .takes(field("scan", &Restore::scan, "The scan.").required())
       .takes(

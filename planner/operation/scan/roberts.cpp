@@ -18,8 +18,8 @@ MadeScan made(const Roberts& step, const ScanBench& bench) {
 
 Operation roberts_operation() {
   return Describe<Roberts>("roberts",
-                           "Makes a scan of the strength of edges by Roberts's operator, the sharpest one; "
-                           "its samples lie between the scan's.",
+                           "Makes a scan of the strength of edges by Roberts's operator, which is the "
+                           "sharpest. The new samples lie between the scan's samples.",
                            Makes::Scan)
       .takes(field("scan", &Roberts::scan, "The scan.").required())
       .example(R"({"id": "edges", "do": "roberts", "scan": "ct"})")

@@ -30,7 +30,7 @@ MadeScan made(const ScaleSpaceStep& step, const ScanBench& bench) {
   Json stack = Json::array();
   for (std::size_t level = 0; level < space.sigmas_mm.size(); ++level)
     stack.push_back({{"sigma_mm", space.sigmas_mm[level]}, {"maxima", space.maxima[level]}});
-  // Lists only the largest, because a scan may have thousands of small regions.
+  // The answer lists only the largest regions, because a scan may have thousands of small ones.
   constexpr std::size_t most_listed = 20;
   Json largest = Json::array();
   for (std::size_t i = 0; i < std::min(most_listed, space.samples.size()); ++i)
@@ -47,23 +47,21 @@ MadeScan made(const ScaleSpaceStep& step, const ScanBench& bench) {
 }  // namespace
 
 Operation scale_space_operation() {
-  return Describe<ScaleSpaceStep>(
-             "scale_space",
-             "Makes a label map that separates touching objects: each region belongs to one maximum of the "
-             "blurred scan, followed from coarse to fine.",
-             Makes::Scan)
+  return Describe<ScaleSpaceStep>("scale_space",
+                                  "Makes a label map that separates touching objects. Each region belongs to "
+                                  "one maximum of the blurred scan, which is followed from coarse to fine.",
+                                  Makes::Scan)
       .takes(field("scan", &ScaleSpaceStep::scan, "The scan.").required())
       .takes(
           field("sigma_mm", &ScaleSpaceStep::sigma_mm,
                 "Standard deviation of the coarsest blur: about half the width of the objects to separate.")
               .required()
               .greater_than(0.0))
-      .takes(
-          field(
-              "window", &ScaleSpaceStep::window,
-              "Samples that belong to regions: 'LOW:HIGH' or 'LOW:' in the scan's unit, or a tissue's name.")
-              .required()
-              .for_example("\"300:\""))
+      .takes(field("window", &ScaleSpaceStep::window,
+                   "The samples that belong to regions: 'LOW:HIGH' or 'LOW:' in the scan's unit, or a "
+                   "tissue's name.")
+                 .required()
+                 .for_example("\"300:\""))
       .takes(field("objects", &ScaleSpaceStep::objects,
                    "Whether the objects are brighter or darker than their surroundings.")
                  .one_of({"bright", "dark"}))

@@ -29,11 +29,14 @@ MadeScan made(const Shape& step, const ScanBench& bench) {
 }  // namespace
 
 Operation shape_operation() {
-  return Describe<Shape>("shape", "Interpolates the slices of a window by their shape.", Makes::Scan)
+  return Describe<Shape>("shape", "Interpolates new slices of a window from the shapes in its slices.",
+                         Makes::Scan)
       .takes(field("scan", &Shape::scan, "The scan.").required())
-      .takes(
-          field("spacing_mm", &Shape::spacing_mm, "Distance of the new slices.").required().greater_than(0.0))
-      .takes(field("window", &Shape::window, "The window: LOW:HIGH or LOW: in the scan's unit, or a tissue.")
+      .takes(field("spacing_mm", &Shape::spacing_mm, "Distance between the new slices.")
+                 .required()
+                 .greater_than(0.0))
+      .takes(field("window", &Shape::window,
+                   "The samples of the object: LOW:HIGH or LOW: in the scan's unit, or a tissue.")
                  .required()
                  .for_example("\"300:3000\""))
       .example(R"({"id": "shaped", "do": "shape", "scan": "ct", "spacing_mm": 1, "window": "bone"})")

@@ -29,13 +29,13 @@ MadeScan made(const Slices& step, const ScanBench& bench) {
 }  // namespace
 
 Operation slices_operation() {
-  return Describe<Slices>("slices", "Makes slices at another distance.", Makes::Scan)
+  return Describe<Slices>("slices", "Resamples a scan to slices at another distance.", Makes::Scan)
       .takes(field("scan", &Slices::scan, "The scan.").required())
-      .takes(field("spacing_mm", &Slices::spacing_mm, "Distance of the new slices.")
+      .takes(field("spacing_mm", &Slices::spacing_mm, "Distance between the new slices.")
                  .required()
                  .greater_than(0.0))
       .takes(field("kernel", &Slices::kernel,
-                   "The kernel between slices. Default: linear; for label maps, nearest.")
+                   "The kernel that interpolates between slices. Default: linear; for label maps, nearest.")
                  .one_of({"nearest", "linear", "cubic", "lanczos"}))
       .example(R"({"id": "even", "do": "slices", "scan": "ct", "spacing_mm": 1, "kernel": "cubic"})")
       .on_files("slices=MM,KERNEL (nearest, linear, cubic, lanczos)")

@@ -16,8 +16,8 @@
 #include "voxel/space/progress.h"
 #include "voxel/space/scene.h"
 
-// The inputs of an operation's functions. Each kernel has its own bench, which gives access to that kernel's
-// answers only. All are in one header, because an operation uses most of them.
+// The inputs of an operation's functions. Each kernel has a separate bench, which gives access to that
+// kernel's answers only. All benches are in one header, because an operation uses most of them.
 namespace octotomy::voxel {
 struct DicomSource;
 }  // namespace octotomy::voxel
@@ -26,17 +26,17 @@ namespace octotomy::planner {
 
 class Action;
 
-/// A scan while steps need its samples.
+/// A scan in memory, for steps that need its samples.
 struct LoadedScan {
   std::shared_ptr<const voxel::Scene> shared;  ///< witnesses keep it
   voxel::GreyOctree grey;
 
   const voxel::Scene& scene() const { return *shared; }
 };
-/// Returns a scan by its name in the document.
+/// Returns a scan of the document by its name.
 using Scans = std::function<const LoadedScan&(const std::string& name)>;
 
-/// The facts of a scan that a report needs, without its samples.
+/// The facts about a scan that a report needs, without the samples.
 struct ScanRecord {
   std::string name;
   std::filesystem::path path;
@@ -49,19 +49,19 @@ struct ScanRecord {
   std::vector<voxel::Finding> audit;
   std::vector<voxel::Hole> holes;
   voxel::Identity identity = {};
-  std::string made_by = {};  ///< the step that made it, in words; empty: it was read
+  std::string made_by = {};  ///< the step that made the scan, in words; empty: the scan was read
   nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< reported by that step
 };
 
-/// The bench of operations that make a scan of another one.
+/// The inputs of operations that make a scan from another scan.
 struct ScanBench {
-  /// The samples of an earlier scan.
+  /// The samples of an earlier scan, by name.
   std::function<const voxel::Scene&(const std::string& name)> samples;
   Timings& timings;
   voxel::Progress progress;
-  std::filesystem::path folder = {};  ///< paths of files are relative to it
-  /// The scans with their octrees, and the objects before the step. Null where no plan is evaluated: an
-  /// operation that takes objects is a step of plans only.
+  std::filesystem::path folder = {};  ///< folder to which paths of files are relative
+  /// All scans with their octrees, and the objects before the step. Null if no plan is evaluated: an
+  /// operation on objects can only be a step of a plan.
   const Scans* scans = nullptr;
   const Objects* objects = nullptr;
 };
@@ -70,25 +70,26 @@ struct ScanBench {
 struct MadeScan {
   voxel::Scene scene;
   nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< further results of the operation
-  std::optional<voxel::GreyOctree> removed = {};  ///< samples taken out, so that they can be put back
+  std::optional<voxel::GreyOctree> removed = {};  ///< samples that were removed, so that a later step can
+                                                  ///< restore them
   std::vector<std::string> findings = {};
 };
 
-/// The bench of operations that compute values of their own before the kernels run, such as a plane of best
-/// fit.
+/// The inputs of operations that compute values before the kernels run, such as a plane of best fit.
 struct SettleBench {
   const Objects& objects;
   const Scans& scan;
   Timings& timings;
   voxel::Progress progress;
-  std::filesystem::path folder = {};  ///< paths of files are relative to it
-  /// Reported facts about the computed values.
+  std::filesystem::path folder = {};  ///< folder to which paths of files are relative
+  /// Facts about the computed values, for the report.
   nlohmann::ordered_json& details;
   std::vector<std::string>& findings;
-  /// The step that made an earlier object, as typed; null where there is none, as in a verb on files.
+  /// The step that made an earlier object, as the user typed it; null if there is none, for example in a verb
+  /// on files.
   std::function<const Action*(const std::string& name)> maker_of = {};
 
-  /// An earlier object's solid. Throws std::runtime_error if the object has none.
+  /// The solid of an earlier object. Throws std::runtime_error if the object has none.
   const brep::Solid& object(const std::string& name) const;
 };
 
@@ -99,80 +100,81 @@ struct VoxelBench {
   const Scans& scan;
   Timings& timings;
   voxel::Progress progress;
-  std::filesystem::path folder = {};  ///< paths of files are relative to it
+  std::filesystem::path folder = {};  ///< folder to which paths of files are relative
   const std::vector<ScanRecord>& scans;
 
-  /// An earlier object's answer in this kernel.
+  /// The voxel kernel's answer for an earlier object.
   const VoxelSide& object(const std::string& name) const { return objects.at(name).voxel; }
   bool is_tool(const std::string& name) const { return objects.at(name).is_tool; }
   const LoadedScan& loaded(const std::string& name) const { return scan(name); }
-  /// The box of all the universe's voxels.
+  /// The box around all voxels of the universe, LPS mm.
   voxel::Box box_mm() const;
-  /// The expression's voxels of the universe; timed.
+  /// The voxels of the universe in an expression. Their time is measured.
   voxel::Octree combined(const voxel::Expression& expression) const;
-  /// The part of a symbol within the universe: an object ends there, and stays cut when it moves on.
+  /// The part of a symbol within the universe. An object ends at the universe's border, and stays cut there
+  /// when it moves.
   voxel::Expression within_universe(const voxel::Expression& symbol) const;
 };
 
 /// The mesh kernel's bench.
 struct MeshBench {
-  glm::dvec3 low_mm, high_mm;  ///< corners of the universe, LPS
+  glm::dvec3 low_mm, high_mm;  ///< corners of the universe, LPS mm
   const Objects& objects;
   const Scans& scan;
   verify::MeshExpressions& expressions;
   Timings& timings;
   voxel::Progress progress;
-  std::filesystem::path folder = {};  ///< paths of files are relative to it
+  std::filesystem::path folder = {};  ///< folder to which paths of files are relative
 
-  /// An earlier object's answer in this kernel. Precondition: it has one.
+  /// The mesh kernel's answer for an earlier object. Precondition: there is one.
   const brep::Solid& object(const std::string& name) const { return *objects.at(name).mesh.whole; }
-  /// The scan's samples as they are, not resampled to voxels.
+  /// The unchanged samples of a scan, not resampled to voxels.
   const voxel::Scene& samples(const std::string& name) const { return scan(name).scene(); }
 };
 
-/// The bench of a certificate's bound, after both kernels have answered.
+/// The inputs of a function that sets a certificate's bound, after both kernels have answered.
 struct BoundBench {
   const voxel::Universe& universe;
   const Objects& objects;
   const Scans& scan;
-  std::filesystem::path folder = {};  ///< paths of files are relative to it
+  std::filesystem::path folder = {};  ///< folder to which paths of files are relative
 };
 
-/// The bench of operations that make numbers or files from objects.
+/// The inputs of operations that compute numbers or write files from objects.
 struct AnswerBench {
   const voxel::Universe& universe;
   const Objects& objects;
   const std::vector<ScanRecord>& scans;
   Timings& timings;
   std::stop_token stop = {};
-  /// Called with the current task and its fraction done, 0..1; may be empty.
+  /// Called with the current task and its completed share, 0 to 1; may be empty.
   std::function<void(const std::string& doing, double fraction)> report = {};
-  std::filesystem::path folder = {};      ///< files are written below it
-  std::vector<std::string> origins = {};  ///< where the objects come from, for files' headers
-  /// Values that several operations share, by keys that the operations choose.
+  std::filesystem::path folder = {};      ///< folder below which files are written
+  std::vector<std::string> origins = {};  ///< the origin of the objects, for the headers of files
+  /// Values that several operations use, by keys that the operations choose.
   std::map<std::string, std::shared_ptr<const void>>& kept;
-  Scans scan = {};  ///< those that measurements and files use
+  Scans scan = {};  ///< the scans that measurements and files need
 
-  /// The scan's samples as they are.
+  /// The unchanged samples of a scan.
   const voxel::Scene& samples(const std::string& name) const { return scan(name).scene(); }
 
   voxel::Progress progress(const std::string& doing) const;
 };
 
-/// The bench of a verb that answers from files by itself, and of the step of the same operation, which writes the
-/// same kind of file from objects.
+/// The inputs of a verb that answers from files without a plan, and of the same operation as a step, which
+/// writes the same kind of file from objects.
 struct FileBench {
   Timings& timings;
   std::stop_token stop = {};
-  /// Called with the current task and its fraction done, 0..1; may be empty.
+  /// Called with the current task and its completed share, 0 to 1; may be empty.
   std::function<void(const std::string& doing, double fraction)> report = {};
-  /// Reads a scan according to the command line's options, with `slices_final` as in voxel::ReadOptions;
-  /// timed.
+  /// Reads a scan with the command line's options. `slices_final` is that of voxel::ReadOptions. The time is
+  /// measured.
   std::function<voxel::Scene(const std::filesystem::path& path, const voxel::SlicesFinal& slices_final)>
       scan_reader = {};
-  /// The bench of the step; null for a verb, whose names of objects are paths of files.
+  /// The inputs of the step; null for a verb, in which names of objects are paths of files.
   const AnswerBench* step = nullptr;
-  /// The DICOM series that a scan was read from; null if it is of another kind.
+  /// The DICOM series from which a scan was read; null if the scan is not DICOM.
   std::function<std::shared_ptr<const voxel::DicomSource>(const std::filesystem::path& path,
                                                           const voxel::Scene& scene)>
       dicom_source = {};
@@ -184,14 +186,15 @@ struct FileBench {
   voxel::Progress progress(const std::string& doing) const;
 };
 
-/// A verb's output: a JSON object, placed after the members common to all answers, and a table for people.
+/// A verb's output: a JSON object, whose members follow the common members of all answers, and a table for
+/// people.
 struct FileAnswer {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   std::vector<std::pair<std::string, std::string>> rows = {};
   std::vector<std::string> findings = {};  ///< also printed as warnings
 };
 
-/// A file that an operation wrote, or the reason why it did not.
+/// A file that an operation wrote, or the reason why it wrote none.
 struct Exported {  // NOLINT(bugprone-exception-escape)
   std::string id;
   std::string object;

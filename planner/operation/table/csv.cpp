@@ -49,8 +49,8 @@ std::vector<std::vector<std::string>> parse_csv(std::string_view text) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // the byte-order mark of spreadsheets
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos)
     refuse(1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + zero, '\n')),
-           "a byte 0: it is no text, or not UTF-8");
-  // Spreadsheets separate cells by semicolons if the locale's decimal point is a comma.
+           "a byte 0, so it is no text or not UTF-8: save it as UTF-8");
+  // Spreadsheets separate cells by semicolons if the decimal point of their locale is a comma.
   const std::string_view heading = text.substr(0, text.find_first_of("\r\n"));
   const bool has_semicolons =
       heading.find(',') == std::string_view::npos && heading.find(';') != std::string_view::npos;
@@ -67,7 +67,8 @@ std::vector<std::vector<std::string>> parse_csv(std::string_view text) {
     } else if (symbol == '"' && row.back().empty()) {
       std::string& cell = row.back();
       for (++at;; ++at) {
-        if (at >= text.size()) refuse(rows.size() + 1, "a quote is not closed");
+        if (at >= text.size())
+          refuse(rows.size() + 1, "a quote is not closed: close it, or double quotes within a cell");
         if (text[at] != '"') {
           cell += text[at];
         } else if (at + 1 < text.size() && text[at + 1] == '"') {
@@ -78,7 +79,7 @@ std::vector<std::vector<std::string>> parse_csv(std::string_view text) {
       }
       ++at;
       if (at < text.size() && text[at] != between && text[at] != '\r' && text[at] != '\n')
-        refuse(rows.size() + 1, "text follows a closed quote");
+        refuse(rows.size() + 1, "text follows a closed quote: double quotes within a cell");
     } else {
       row.back() += symbol;
       ++at;
@@ -90,7 +91,8 @@ std::vector<std::vector<std::string>> parse_csv(std::string_view text) {
 
 std::vector<std::vector<std::string>> parse_tsv(std::string_view text) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // the byte-order mark of spreadsheets
-  if (text.find('\0') != std::string_view::npos) refuse(1, "a byte 0: it is no text, or not UTF-8");
+  if (text.find('\0') != std::string_view::npos)
+    refuse(1, "a byte 0, so it is no text or not UTF-8: save it as UTF-8");
   std::vector<std::vector<std::string>> rows;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());

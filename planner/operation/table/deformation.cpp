@@ -22,7 +22,7 @@ Svd svd_of(const glm::dmat3& map) {
 }  // namespace
 
 bool keeps_lengths(const glm::dmat4& matrix) {
-  constexpr double rigid_to = 1e-5;  // the numbers are copied with six decimals
+  constexpr double rigid_to = 1e-5;  // tolerance of a matrix that was copied with six decimals
   const glm::dmat3 turn(matrix);
   const glm::dmat3 off = glm::transpose(turn) * turn - glm::dmat3(1.0);
   double worst = 0.0;

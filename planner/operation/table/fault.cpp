@@ -16,7 +16,7 @@ const Kind* as(const std::exception& error) {
   return dynamic_cast<const Kind*>(&error);
 }
 
-/// Both kernels have the same codes in the same order, and Fault begins with them.
+/// The error codes of both kernels are equal and have the same order, and Fault begins with them.
 template <typename Code>
 Fault fault_of_code(Code code) {
   static_assert(static_cast<int>(Code::Resource) == static_cast<int>(Fault::Resource));
@@ -66,7 +66,8 @@ std::string message_of(const std::exception& error) {
     return error.what() + voxel::way_out_of(of_system->code().value());
   if (as<std::bad_alloc>(error) != nullptr) return "out of memory: use larger voxels or a smaller scan";
   if (fault_of(error) != Fault::Internal) return error.what();
-  return "a mistake in the program, not in its use: " + std::string(error.what()) + "; please report it";
+  return "this is a mistake in the program, not in its use: " + std::string(error.what()) +
+         "; please report it";
 }
 
 bool is_no_answer(const std::exception& error) {

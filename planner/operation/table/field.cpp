@@ -14,7 +14,7 @@ std::string unit_of_name(const std::string& name) {
                                                                            {"degrees", "\u00b0"}}};
   for (const auto& [ending, unit] : endings)
     if (name.ends_with(ending)) return unit;
-  // Thresholds are in the unit of the scan's samples, and switches have no unit.
+  // Thresholds have no fixed unit, because they are in the unit of the scan's samples. Switches have no unit.
   return "";
 }
 

@@ -8,10 +8,10 @@
 
 namespace octotomy::planner {
 
-/// Reads the file of a step's field while the document is checked, so that a file of another kind is refused at that
-/// field. `place` is the field's; `file` is relative to the document's folder. Does nothing if the file is missing: the
-/// step then fails when it is evaluated, as an import of a missing mesh does. Throws what `read` throws, with the
-/// field's place.
+/// Reads the file of a step's field while the document is checked, so that a file of the wrong kind is
+/// refused at that field. `place` is the place of the field; `file` is relative to the document's folder.
+/// Does nothing if the file is missing; the step then fails when it is evaluated, like an import of a missing
+/// mesh. Throws the errors of `read`, with the field's place.
 void check_field_file(const FieldLocation& place, const std::filesystem::path& file,
                       const std::function<void(const std::filesystem::path&)>& read);
 

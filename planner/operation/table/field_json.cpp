@@ -23,7 +23,7 @@ std::string for_example(const Field& field) {
   return field.sample.empty() ? "" : ", for example " + field.sample;
 }
 
-/// The range in words: "above zero", "from 0 to 1".
+/// A field's range in words, such as "above zero" or "from 0 to 1".
 std::string range_text(const Field& field) {
   const auto bound = [](double value) { return value == 0.0 ? std::string("zero") : number_text(value); };
   std::string low, high;
@@ -39,7 +39,7 @@ bool in_range(const Field& field, double value) {
          !(field.most && value > *field.most) && !(field.below && value >= *field.below);
 }
 
-/// Reads one value. The overloads of read() are the types of Slot.
+/// Reads one value from JSON. The overloads of read() are for the types of Slot.
 class Reader {
  public:
   Reader(const Field& field, const SortedJson& json, const FieldLocation& place)
@@ -58,7 +58,7 @@ class Reader {
     *value = text(json_, place_);
     if (!field_.words.empty() &&
         std::find(field_.words.begin(), field_.words.end(), *value) == field_.words.end())
-      place_.refuse("'" + *value + "' is not known here" + suggestion(*value, field_.words));
+      place_.refuse("'" + *value + "' is not allowed here" + suggestion(*value, field_.words));
   }
   void read(std::filesystem::path* value) const { *value = text(json_, place_); }
   void read(ObjectName* value) const {
@@ -100,7 +100,7 @@ class Reader {
   void read(glm::dvec3* value) const {
     *value = point(json_, place_);
     if (field_.is_direction && *value == glm::dvec3(0.0))
-      place_.refuse("has no direction: give for example [1, 0, 0]");
+      place_.refuse("has no direction: write for example [1, 0, 0]");
   }
   template <typename Value>
   void read(std::optional<Value>* value) const {
@@ -127,7 +127,7 @@ class Reader {
   }
   void read(std::vector<ObjectName>* value) const {
     each("names of earlier steps", [&](const SortedJson& entry, const FieldLocation& at) {
-      if (!entry.is_string()) place_.refuse("must hold names of earlier steps, not " + type_of(entry));
+      if (!entry.is_string()) place_.refuse("must contain names of earlier steps, not " + type_of(entry));
       value->push_back({entry.get<std::string>()});
       FieldLocation{place_.where, at.scope}.need_object(value->back().name);
     });
@@ -166,7 +166,7 @@ class Reader {
  private:
   static std::string text(const SortedJson& json, const FieldLocation& place) {
     if (!json.is_string()) place.refuse("must be a text in quotes, not " + type_of(json));
-    if (json.get_ref<const std::string&>().empty()) place.refuse("is empty: give a value");
+    if (json.get_ref<const std::string&>().empty()) place.refuse("is empty: state a value");
     return json.get<std::string>();
   }
   double number(const SortedJson& json, const FieldLocation& place) const {
@@ -189,7 +189,8 @@ class Reader {
     if (json.is_array()) return {point(json, place), "", ""};
     if (!json.is_string()) place.refuse("must be three numbers [x, y, z] or the name of a landmark");
     const std::string said = text(json, place);
-    if (place.scope == nullptr) place.refuse("'" + said + "' names a landmark of a plan: give X,Y,Z");
+    if (place.scope == nullptr)
+      place.refuse("'" + said + "' names a landmark, which only plans have: write X,Y,Z");
     Mark mark;
     const std::size_t at = said.find('@');
     mark.landmark = said.substr(0, at);
@@ -221,7 +222,7 @@ Json json_of(const glm::dvec3& value) {
   return {value.x, value.y, value.z};
 }
 
-/// Prints one value; null if there is none.
+/// Prints one value as JSON; null if there is none.
 struct Printer {
   const Field& field;
 
@@ -286,7 +287,7 @@ struct Printer {
 const SortedJson vector_schema = {
     {"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
 
-/// The schema of a field's type, without its sentence.
+/// The JSON schema of a field's type, without the field's description.
 struct Schema {
   const Field& field;
 
@@ -319,7 +320,7 @@ struct Schema {
   }
   template <typename Value>
   Json operator()(const std::vector<Value>*) const {
-    Field entry = field;  // `least` and `most` count the entries and bound none of them
+    Field entry = field;  // here `least` and `most` limit the number of entries, not the entries
     entry.least = entry.most = std::nullopt;
     Json schema{{"type", "array"}, {"items", Schema{entry}(static_cast<const Value*>(nullptr))}};
     if (field.least) schema["minItems"] = static_cast<int>(*field.least);
@@ -364,11 +365,11 @@ double need_number(const std::string& word, const Field& field) {
 SortedJson point_in(const std::string& word) {
   const std::vector<double> point = comma_numbers(word);
   if (point.size() != 3)
-    throw std::runtime_error("'" + word + "' is no point: give X,Y,Z, for example -10,25.5,40");
+    throw std::runtime_error("'" + word + "' is not a point: write X,Y,Z, for example -10,25.5,40");
   return point;
 }
 
-/// One word of the command line as JSON, by the field's type.
+/// One word of the command line as JSON, according to the field's type.
 struct JsonOfWord {
   const Field& field;
   const std::string& word;
@@ -393,7 +394,7 @@ struct JsonOfWord {
   SortedJson operator()(const Records&) const { return word; }
 };
 
-/// The form of one word in help.
+/// The form of one word of a field, for help.
 struct Form {
   std::string operator()(const bool*) const { return ""; }
   std::string operator()(const int*) const { return "N"; }
@@ -457,8 +458,8 @@ void need_fields_read(const std::vector<Field>& fields, const SortedJson& object
   }
 }
 
-/// Whether the operation reads a field for this value. need_fields_read() refuses a field that is given but
-/// not read.
+/// Whether the operation reads a field for its present value. need_fields_read() refuses a stated field that
+/// is not read.
 static bool is_read(const Field& field, const void* owner) {
   const auto* conditional = field.slot.target<ConditionalSlot>();
   return conditional == nullptr ||

@@ -5,9 +5,9 @@
 
 namespace octotomy::planner {
 
-/// Members keep the order of insertion. For JSON that is written.
+/// JSON for writing: members keep the order of insertion.
 using Json = nlohmann::ordered_json;
-/// Members are sorted by name. For JSON that is only read, by name.
+/// JSON for reading: members are sorted by name.
 using SortedJson = nlohmann::json;
 
 }  // namespace octotomy::planner

@@ -51,7 +51,7 @@ void need_shallow_json(std::string_view text) {
 
 void OneOfEachKey::add(const std::string& key) {
   if (!open_.back().insert(key).second)
-    refuse("", "the key '" + key + "' occurs twice in one object: keep one");
+    refuse("", "the key '" + key + "' occurs twice in one object: delete one of them");
 }
 
 SortedJson read_json(const std::filesystem::path& path) {
@@ -71,7 +71,7 @@ void write_json(const nlohmann::ordered_json& json, const std::filesystem::path&
 }
 
 void check_keys(const SortedJson& object, const std::string& where, const std::vector<std::string>& known) {
-  if (!object.is_object()) refuse(where, "must be an object with the keys of this kind of file");
+  if (!object.is_object()) refuse(where, "must be a JSON object with the keys of this kind of file");
   for (const auto& [key, unused] : object.items())
     if (std::find(known.begin(), known.end(), key) == known.end())
       refuse(where, "unknown key '" + key + "'" + suggestion(key, known));

@@ -9,30 +9,30 @@
 #include <string_view>
 #include <vector>
 
-// JSON files written by users. All functions throw std::runtime_error whose message begins with `where`: the
-// file, then the position in it.
+// Reads and writes JSON files of users. All functions throw std::runtime_error whose message begins with
+// `where`: the file, then the position in the file.
 namespace octotomy::planner {
 
-/// If `where` is empty, the message contains `what` alone.
+/// Throws std::runtime_error "WHERE: WHAT". If `where` is empty, the message is `what` alone.
 [[noreturn]] void refuse(const std::string& where, const std::string& what);
 
-/// A value's type for error messages: "a number", "a JSON array".
+/// The type of a JSON value for error messages, such as "a number" or "a JSON array".
 std::string type_of(const nlohmann::json& value);
 
-/// The largest depth of JSON. Copying and writing recurse once a level, so deeper JSON could exhaust the
-/// stack.
+/// The largest allowed depth of JSON. Copying and writing need one recursion for each level, so deeper JSON
+/// could exhaust the stack.
 inline constexpr int most_json_levels = 512;
-/// The depth of brackets outside of strings, computed without parsing. Linear.
+/// The depth of brackets outside of strings, computed without parsing. Cost: linear.
 int json_levels(std::string_view text);
-/// Throws if a text is deeper than most_json_levels.
+/// Throws if a text is nested deeper than most_json_levels.
 void need_shallow_json(std::string_view text);
 
-/// A parser's message without the bytes that it read last: they may belong to a file that holds a secret.
-/// Line and column stay.
+/// A parser's message without the bytes that it read last, because they may belong to a file with a secret.
+/// Line and column remain.
 std::string without_last_read(std::string message);
 
-/// Refuses a key that occurs twice in one object; a parser alone would silently use the last one. Call it for
-/// each event of a parser, in order.
+/// Refuses a key that occurs twice in one object, of which a parser would silently use the last. Its
+/// functions must be called for each event of a parser, in order.
 class OneOfEachKey {
  public:
   void begin() { open_.emplace_back(); }
@@ -44,8 +44,8 @@ class OneOfEachKey {
   std::vector<std::set<std::string>> open_;
 };
 
-/// Throws std::runtime_error if a text is not JSON, too deep, or has a key twice in one object. The message
-/// quotes nothing of the text but that key.
+/// Parses a text. Throws std::runtime_error if it is not JSON, is nested too deep, or has a key twice in one
+/// object. The message quotes nothing of the text except that key.
 template <typename AnyJson = nlohmann::json>
 AnyJson parse_json(std::string_view text) {
   need_shallow_json(text);
@@ -65,21 +65,21 @@ AnyJson parse_json(std::string_view text) {
 
 nlohmann::json read_json(const std::filesystem::path& path);
 
-/// JSON as text. Bytes that are not valid UTF-8, as in file names, become U+FFFD. An indent of -1 writes one
-/// line.
+/// JSON as text. Bytes that are not valid UTF-8, for example in file names, become U+FFFD. An indent of -1
+/// writes a single line.
 template <typename AnyJson>
 std::string json_text(const AnyJson& json, int indent = -1) {
   return json.dump(indent, ' ', false, AnyJson::error_handler_t::replace);
 }
 
-/// Writes to a temporary file and renames it into place.
+/// Writes a JSON file: first to a temporary file, which then replaces `path`.
 void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
 
-/// Throws for an unknown key, with the nearest known one.
+/// Throws if the object has a key that is not in `known`; the message suggests the nearest known one.
 void check_keys(const nlohmann::json& object, const std::string& where,
                 const std::vector<std::string>& known);
 
-/// The value of a required key; throws if it is absent.
+/// The value of a required key. Throws if the key is missing.
 const nlohmann::json& need(const nlohmann::json& object, const std::string& key, const std::string& where);
 
 double number_of(const nlohmann::json& value, const std::string& where);      ///< finite

@@ -14,7 +14,7 @@ char lower(char letter) {
 }
 
 std::size_t edits(std::string_view a, std::string_view b) {
-  // Three rows of the table of distances between beginnings of a and b.
+  // Three rows of the table of distances between the beginnings of a and b.
   std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) above[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -37,8 +37,7 @@ bool is_near(std::size_t edits, std::string_view a, std::string_view b) {
   return 2 * edits <= std::max(a.size(), b.size());
 }
 
-/// Whether counting the edits may yield a suggestion: at least as many are needed as one word is longer than
-/// the other.
+/// Whether a suggestion is possible at all: the edits are at least the difference of the lengths.
 bool may_be_near(std::string_view a, std::string_view b) {
   const std::size_t shorter = std::min(a.size(), b.size()), longer = std::max(a.size(), b.size());
   return longer <= longest_suggested && is_near(longer - shorter, a, b);
@@ -69,7 +68,7 @@ std::optional<std::string> nearest_name(std::string_view name, std::span<const s
 }
 
 std::string suggestion(std::string_view name, std::span<const std::string> known) {
-  if (known.empty()) return ": none is known here";
+  if (known.empty()) return ": there are none to choose from";
   std::string text;
   if (const auto nearest = nearest_name(name, known)) text = ", did you mean '" + *nearest + "'?";
   text += text.empty() ? ": known are " : " Known are ";

@@ -48,7 +48,7 @@ glm::dvec3 mark_mm(const Mark& mark, const Objects& objects) {
 
 const brep::Solid& SettleBench::object(const std::string& name) const {
   const std::optional<brep::Solid>& mesh = objects.at(name).mesh.whole;
-  if (!mesh) throw std::runtime_error("'" + name + "' has no mesh to fit to");
+  if (!mesh) throw std::runtime_error("'" + name + "' has no mesh, which this step needs: see its findings");
   return *mesh;
 }
 

@@ -20,7 +20,7 @@ void collect_marks(const std::vector<Field>& fields, void* owner, std::vector<Ma
   }
 }
 
-/// Names without duplicates, in order of first occurrence.
+/// Names without repetitions, in the order of first occurrence.
 class Names {
  public:
   void add(const std::string& name) {
@@ -33,7 +33,7 @@ class Names {
   std::set<std::string> known_;
 };
 
-/// Collects the names in fields of one type.
+/// Collects the names in all fields of one type.
 template <typename Name>
 void collect(const std::vector<Field>& fields, void* owner, Names& names) {
   for (const Field& field : fields) {

@@ -14,72 +14,72 @@
 #include "planner/operation/table/object.h"
 #include "planner/operation/table/scope.h"
 
-// The table of operations. An operation is a typed value; its entry states the meaning of the value's fields
-// and the work of each kernel. Plan steps, verbs, help and the schema derive from the entry. The header is
-// long because it contains both the entry and Describe, which builds it.
+// The table of operations. An operation is a typed value; its entry describes the value's fields and the work
+// of each kernel. Plan steps, verbs, help and the schema derive from the entry. The header is long, because
+// it contains both the entry and Describe, which builds the entry.
 namespace octotomy::planner {
 
-/// The result of a step: an object or a scan that later steps use, numbers, a file in the result's folder, or
+/// The result of a step: an object or a scan for later steps, numbers, a file in the result's folder, or
 /// names and directions, which are bound in the document's scope when the step is checked.
 enum class Makes { Object, Scan, Measurement, File, Names };
 
-/// An entry of the table. Its functions take the operation's value behind a pointer; Describe binds them.
+/// An entry of the table. Its functions take a pointer to the operation's value; Describe binds them to typed
+/// functions.
 struct Operation {
-  std::string name;     ///< a step's `do`, and the verb
+  std::string name;     ///< the value of `do` in a step, and the name of the verb
   std::string says;     ///< one plain sentence
   std::string example;  ///< a step as JSON
   Makes makes = Makes::Object;
   std::vector<Field> fields;
   std::type_index type = typeid(void);
 
-  /// A value with all defaults.
+  /// Makes a value with all defaults.
   std::function<std::shared_ptr<void>()> fresh;
-  /// Checks conditions that involve several fields. Throws if one is not met.
+  /// Checks conditions that involve several fields. Throws if a condition is not met.
   std::function<void(const void* value, const FieldLocation& place)> check;
-  /// The operation in words, to show to users: "skull & cut".
+  /// The object's definition in words for users, such as "skull & cut".
   std::function<std::string(const void* value, const Objects& objects)> definition;
-  /// Adds computed results to the value, such as a plane of best fit. The other functions get the completed
+  /// Adds computed results to the value, such as a plane of best fit. The later functions get the completed
   /// value. Empty if there is nothing to compute.
   std::function<std::shared_ptr<void>(const void* value, const SettleBench& bench)> settle;
-  /// Makes a scan from another one.
+  /// Makes a scan from another scan.
   std::function<MadeScan(const void* value, const ScanBench& bench)> scan;
-  /// The voxel kernel's answer. Empty if it has none; then the mesh kernel's answer is voxelised.
+  /// Computes the voxel kernel's answer. If empty, the mesh kernel's answer is voxelised.
   std::function<void(const void* value, const VoxelBench& bench, VoxelSide& made)> voxel;
-  /// The mesh kernel's answer. Empty if it has none.
+  /// Computes the mesh kernel's answer. Empty if the mesh kernel has none.
   std::function<void(const void* value, const MeshBench& bench, MeshSide& made)> mesh;
   /// Sets the terms of the certificate's bound, and the samples that show the surface.
   std::function<void(const void* value, const BoundBench& bench, Object& made)> bound;
-  /// The numbers of a measurement, each with its half-width.
+  /// Computes the numbers of a measurement, each with its half-width.
   std::function<nlohmann::ordered_json(const void* value, const AnswerBench& bench)> measure;
-  /// Writes a file, or reports why there is nothing to write.
+  /// Writes a file, or reports why it cannot be written.
   std::function<void(const void* value, const AnswerBench& bench, Exported& made)> write;
-  /// The part of writing a file that needs no certificate. Stores its results in the bench's `kept`, where
-  /// `write` reads them. Runs in parallel with later steps. Empty if there is no such part.
+  /// Does the part of the work for a file that needs no certificate, in parallel with later steps. Stores its
+  /// results in the bench's `kept`, from which `write` reads them. Empty if there is no such part.
   std::function<void(const void* value, const AnswerBench& bench)> prepare_file;
-  /// The objects that the operation uses in addition to those that its fields name.
+  /// The objects that the operation uses besides those that its fields name.
   std::function<std::vector<std::string>(const void* value)> uses;
-  /// Examples of the operation as a verb on files; empty: it is not a verb. For an operation that makes a
-  /// scan, the form of prepare's step: "gaussian=SIGMA (mm)".
+  /// Examples of the operation as a verb on files; empty if it is not a verb. For an operation that makes a
+  /// scan, the form of a step of `prepare`: "gaussian=SIGMA (mm)".
   std::string verb_example;
-  /// Runs the verb if its answer is not the object that both kernels make. The value's objects are paths of
-  /// files.
+  /// Runs the verb if its answer is not an object of both kernels. In the value, objects are paths of files.
   std::function<FileAnswer(const void* value, const FileBench& bench)> on_files;
-  /// The same value changed so that the parts that contain these points, LPS, are also kept. Null if the
-  /// operation does not choose parts in both kernels.
+  /// The value, changed so that parts that contain these points, LPS, are also kept. Null if the operation
+  /// does not select parts in both kernels.
   std::function<std::shared_ptr<void>(const void* value, const std::vector<glm::dvec3>& also_mm)> with_parts;
-  /// Fields that only the verb has.
+  /// The fields that only the verb has.
   std::vector<Field> verb_fields;
-  /// The verb has the options for reading scans.
+  /// Whether the verb has the options for reading scans.
   bool reads_scans = false;
-  /// The object only helps to make others, such as a mask, and has no certificate.
+  /// Whether the object only helps to make other objects, like a mask, and has no certificate.
   bool is_tool = false;
-  /// The object is that of the field `object` under a motion (Object::moved).
+  /// Whether the object is that of the field `object` after a motion (Object::moved).
   bool is_motion = false;
-  /// The answer depends on the head's orientation, by views or by words such as "forward".
+  /// Whether the answer depends on the head's orientation, through views or words such as "forward".
   bool is_of_head = false;
 };
 
-/// Builds an entry from functions of the operation's own type.
+/// Builds an entry from functions that take the operation's own type.
 template <typename Value>
 class Describe {
  public:
@@ -106,7 +106,8 @@ class Describe {
   Describe&& verb_takes(Field field) && {
     return entry_.verb_fields.push_back(std::move(field)), std::move(*this);
   }
-  /// The fields of a part of the value, which stand among the value's own. Precondition: none has read_if().
+  /// Adds fields of a member of the value to the value's own fields. Precondition: none of them has
+  /// read_if().
   template <typename Part>
   Describe&& verb_takes(Part Value::*part, std::vector<Field> fields) && {
     for (Field& field : fields) {
@@ -126,7 +127,8 @@ class Describe {
   using Voxels = void (*)(const Value&, const VoxelBench&, VoxelSide&);
   using Triangles = void (*)(const Value&, const MeshBench&, MeshSide&);
   using Bound = void (*)(const Value&, const BoundBench&, Object&);
-  /// Binds the functions of an operation that makes an object; null for a kernel that has no answer.
+  /// Binds the functions of an operation that makes an object. A function is null if its kernel has no
+  /// answer.
   Describe&& object(Definition definition, Voxels voxels, Triangles triangles, Bound bound) && {
     bind(entry_.definition, definition);
     if (voxels != nullptr) bind(entry_.voxel, voxels);
@@ -173,7 +175,7 @@ class Describe {
   Operation entry_;
 };
 
-/// An operation with its value.
+/// An operation of the table with its value.
 class Action {
  public:
   explicit Action(const Operation& operation) : operation_(&operation), value_(operation.fresh()) {}
@@ -181,12 +183,12 @@ class Action {
   const Operation& operation() const { return *operation_; }
   const void* value() const { return value_.get(); }
   void* value() { return value_.get(); }
-  /// Null if the operation is another one.
+  /// The value; null if its type is another one.
   template <typename Value>
   const Value* get_if() const {
     return operation_->type == typeid(Value) ? static_cast<const Value*>(value_.get()) : nullptr;
   }
-  /// Throws std::invalid_argument if the operation is another one.
+  /// The value. Throws std::invalid_argument if its type is another one.
   template <typename Value>
   const Value& get() const {
     if (const Value* value = get_if<Value>()) return *value;
@@ -200,15 +202,15 @@ class Action {
 
 /// All operations, by name.
 const std::vector<Operation>& operations();
-/// Null if there is none.
+/// The operation with this name; null if there is none.
 const Operation* find_operation(const std::string& name);
-/// The objects that an action uses, each once, in the order of its fields.
+/// The objects that an action uses, without repetitions, in the order of its fields.
 std::vector<std::string> objects_used(const Action& action);
-/// The file that an action writes, as written in its field; empty if it writes none.
+/// The file that an action writes, as its field states it; empty if it writes none.
 std::filesystem::path path_written(const Action& action);
-/// The marks of an action's fields, in their order.
+/// The marks in an action's fields, in their order.
 std::vector<Mark> marks_used(const Action& action);
-/// The scans that an action uses.
+/// The names of the scans that an action uses.
 std::vector<std::string> scans_used(const Action& action);
 
 }  // namespace octotomy::planner

@@ -34,10 +34,11 @@ voxel::Universe universe_about(const voxel::Lattice& scan, std::optional<double>
                        static_cast<std::uint64_t>(std::min(most, voxels.x * voxels.y * voxels.z)),
                        sizeof(std::int16_t), "in the scan's box they");
   }
-  // A universe around an odd number of samples is shifted by half a voxel, and resampling would blur samples
-  // unnecessarily. Moves a voxel's centre to the first sample if the box then still contains the scan.
+  // Around an odd number of samples, a universe is shifted by half a voxel, so that resampling would blur
+  // samples without need. The universe is moved so that a voxel's centre lies on the first sample, if it then
+  // still contains the scan.
   glm::dvec3 first = universe.lattice().voxel(scan.lps_mm(glm::dvec3(0.0)));
-  // The offset that aligns the border of the first cell with a voxel's border.
+  // The offset at which the border of the first cell coincides with a border of voxels.
   if (by_cells) first += 0.5 - 0.5 * spacing_mm / edge_mm;
   const double spare_voxels = 0.5 * universe.side();
   for (int axis = 0; axis < 3; ++axis) {

@@ -12,23 +12,23 @@
 
 #include "planner/operation/table/json.h"
 
-// Results as values and as JSON. A record is a struct with a function members_of() beside it that lists its
-// members in the order of the JSON's keys. print_record() and read_record() derive from that list.
+// Results as values and as JSON. A record is a struct with a function members_of(), which lists its members
+// in the order of the JSON's keys. print_record() and read_record() use this list.
 namespace octotomy::planner {
 
-/// A member of a record and its key.
+/// A member of a record, with its key in JSON.
 template <typename Owner, typename Value>
 struct Member {
   const char* key;
   Value Owner::*value;
-  bool is_left_out;  ///< where it is empty, the JSON has no such key; otherwise null
+  bool is_left_out;  ///< if the value is empty, the key is left out; otherwise it is null
 };
 
 template <typename Owner, typename Value>
 constexpr Member<Owner, Value> member(const char* key, Value Owner::*value) {
   return {key, value, false};
 }
-/// An optional value, a list or a text whose key is left out where it is empty.
+/// A member whose key is left out if its optional value, list or text is empty.
 template <typename Owner, typename Value>
 constexpr Member<Owner, Value> member_if_any(const char* key, Value Owner::*value) {
   return {key, value, true};
@@ -44,7 +44,7 @@ Json print_record(const Type& record);
 template <Record Type>
 void read_record(const Json& json, Type& record);
 
-/// JSON has no infinity and no NaN; these become null.
+/// Infinity and NaN become null, because JSON has neither.
 inline Json print_value(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
@@ -109,7 +109,7 @@ void read_value(const Json& json, std::optional<Type>& value) {
   if (!json.is_null()) read_value(json, value.emplace());
 }
 
-/// Whether the value is present: neither an empty optional nor an empty list or text.
+/// Whether a value is present, that is not an empty optional, list or text.
 template <typename Type>
 bool has_any(const Type& value) {
   if constexpr (requires { value.has_value(); })
@@ -120,7 +120,7 @@ bool has_any(const Type& value) {
     return true;
 }
 
-/// The record as JSON, keys in the order of its members.
+/// The record as JSON, with keys in the order of its members.
 template <Record Type>
 Json print_record(const Type& record) {
   Json json = Json::object();
@@ -132,8 +132,8 @@ Json print_record(const Type& record) {
   return json;
 }
 
-/// Reads what print_record() prints, from this or another version of the program: a member whose key is
-/// missing, or whose value has another type, is left unchanged.
+/// Reads a record that print_record() of this or another version of the program printed. A member stays
+/// unchanged if its key is missing or its value has another type.
 template <Record Type>
 void read_record(const Json& json, Type& record) {
   if (!json.is_object()) return;

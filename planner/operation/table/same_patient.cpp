@@ -22,8 +22,8 @@ bool states_nothing(const voxel::Identity& identity) {
          identity.frame_uids.empty();
 }
 
-/// A line if `laid` refers only to images of other series than the scan's; none if one of the two states no
-/// series.
+/// A WARN if `laid` refers only to images of other series than that of the scan; empty if either of them
+/// states no series.
 std::vector<std::string> other_series(const IdentityOf& scan, const IdentityOf& laid) {
   const std::string& own = scan.identity.series_uid;
   const std::vector<std::string>& referred = laid.identity.referred_series_uids;
@@ -31,8 +31,8 @@ std::vector<std::string> other_series(const IdentityOf& scan, const IdentityOf& 
     return {};
   return {"WARN: series: " + laid.name + " refers to images of the series " + joined(referred, " and ") +
           ", and " + scan.name + " is of the series " + own +
-          ": they fit only if the patient lay in the same position in both; choose the series on which it "
-          "was drawn, or compare the contours with the images"};
+          ": they fit only if the patient lay in the same position in both; choose the series on which the "
+          "contours were drawn, or compare the contours with the images"};
 }
 
 }  // namespace
@@ -70,7 +70,7 @@ std::vector<std::string> need_same_patient(const IdentityOf& scan, const Identit
   const voxel::Finding finding = identity_finding(scan, laid);
   if (finding.verdict == voxel::Verdict::Fail && !is_allowed)
     throw std::runtime_error(finding.detail + "; if that is intended, " + option +
-                             " continues and reports it as a FAIL");
+                             " continues with a finding that begins with FAIL");
   std::vector<std::string> lines;
   if (finding.verdict == voxel::Verdict::Fail) lines.push_back("FAIL: identity: " + finding.detail);
   if (finding.verdict == voxel::Verdict::Warn) lines.push_back("identity: " + finding.detail);

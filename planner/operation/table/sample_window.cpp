@@ -25,7 +25,7 @@ std::vector<std::string> tissue_names() {
 
 SampleWindow parse_sample_window(const std::string& text) {
   if (const std::optional<voxel::Tissue> tissue = voxel::tissue(text)) {
-    // Below any sample: the lower bound of a window without one.
+    // Below any sample: the lower bound of a window that states none.
     constexpr double lowest = std::numeric_limits<std::int16_t>::min();
     return {tissue->low.value_or(lowest), tissue->high, text};
   }
@@ -36,7 +36,7 @@ SampleWindow parse_sample_window(const std::string& text) {
     throw std::runtime_error("'" + text + "' is no window: give LOW:HIGH or LOW:, for example 300:3000, " +
                              "or a tissue" + suggestion(text, tissue_names()));
   if (high_value && *high_value < *low_value)
-    throw std::runtime_error("'" + text + "' ends before it begins: swap LOW and HIGH");
+    throw std::runtime_error("'" + text + "' ends before it begins: exchange LOW and HIGH");
   return {*low_value, high_value};
 }
 
@@ -52,8 +52,8 @@ voxel::Window window_on(const voxel::GreyOctree& grey, const SampleWindow& windo
 void need_hounsfield(const SampleWindow& window, const voxel::Scene& scene) {
   if (window.tissue.empty() || scene.meaning == voxel::Meaning::Hounsfield) return;
   throw std::runtime_error(scene.source + ": '" + window.tissue +
-                           "' is a window of Hounsfield units, which its samples are not: give LOW:HIGH, or "
-                           "let octotomy segment --otsu suggest bounds");
+                           "' is a window in Hounsfield units, but the samples are in another unit: write "
+                           "LOW:HIGH; octotomy segment --otsu suggests bounds");
 }
 
 }  // namespace octotomy::planner

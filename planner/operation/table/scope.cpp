@@ -31,11 +31,11 @@ void FieldLocation::refuse(const std::string& what) const {
 void Scope::bind(const std::string& where, const std::string& id, const Operation& operation) {
   const FieldLocation place{where};
   if (!is_identifier(id))
-    place.refuse("id '" + id + "' is not a name: use letters, digits and underscores, a letter first");
+    place.refuse("id '" + id + "' is not a name: use letters, digits and underscores, with a letter first");
   if (operation.makes == Makes::Scan && contains(scans_, id))
-    place.refuse("id '" + id + "' is taken by a scan of the plan: choose another");
+    place.refuse("id '" + id + "' is the name of a scan of the plan: choose another name");
   if (!operations_.emplace(id, &operation).second)
-    place.refuse("id '" + id + "' is taken by an earlier step: choose another");
+    place.refuse("id '" + id + "' is taken by an earlier step: choose another name");
   if (operation.makes == Makes::Object) objects_.push_back(id);
   if (operation.makes == Makes::Scan) scans_.push_back(id);
 }
@@ -60,7 +60,7 @@ void Scope::bind_landmark(const std::string& where, const NamedPoint& landmark) 
   if (landmark.name.empty() || landmark.name.find('@') != std::string::npos)
     place.refuse("the landmark '" + landmark.name + "' needs a name without '@'");
   if (!landmark_of_.emplace(landmark.name, landmarks_.size()).second)
-    place.refuse("the landmark '" + landmark.name + "' is named twice: rename or delete one");
+    place.refuse("the landmark '" + landmark.name + "' is named twice: rename or delete one of them");
   landmarks_.push_back(landmark);
 }
 
@@ -82,7 +82,7 @@ void Scope::hold_head(const std::string& where, const glm::dmat3& lps_from_head)
 
 void Scope::take_path(const std::string& where, const std::string& path) {
   if (!paths_.insert(path).second)
-    FieldLocation{where}.refuse("'" + path + "' is written by an earlier step: choose another");
+    FieldLocation{where}.refuse("'" + path + "' is written by an earlier step: choose another path");
 }
 
 }  // namespace octotomy::planner

@@ -11,7 +11,7 @@ namespace {
 
 std::mutex mutex;
 
-/// All running stopwatches of the process, newest last.
+/// All running stopwatches of the process; the newest is the last.
 std::vector<const Stopwatch*>& running() {
   static std::vector<const Stopwatch*> watches;
   return watches;

@@ -8,17 +8,17 @@
 
 namespace octotomy::planner {
 
-/// Wall-clock milliseconds by stage ("read", "octree", "isosurface", ...). Stages may overlap: certificates
-/// are computed while further objects are made.
+/// Wall-clock times in milliseconds by stage ("read", "octree", "isosurface", ...). Stages may overlap,
+/// because certificates are computed while further objects are made.
 using Timings = std::map<std::string, double>;
 
-/// A stage that is still running.
+/// A stage that is running.
 struct RunningStage {
   std::string name;
   std::chrono::steady_clock::time_point start;
 };
 
-/// Adds the time between its construction and destruction to a stage.
+/// Measures a stage: adds the time between its construction and destruction to the timings.
 class Stopwatch {
  public:
   Stopwatch(Timings& timings, std::string stage);
@@ -34,7 +34,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_;
 };
 
-/// The current stage of this process: the running one that was started last. None between stages.
+/// The stage of this process that was started last and is still running; none between stages.
 std::optional<RunningStage> newest_stage();
 
 }  // namespace octotomy::planner

@@ -161,7 +161,7 @@ TEST_F(Caveats, AnObjectThatTheScansBorderCutsOffSaysSo) {
   for (const char* id : {"ball", "bone", "grown"}) {
     const Object& object = evaluation.object(id);
     ASSERT_TRUE(object.border_finding) << id;
-    EXPECT_NE(object.border_finding->find("the scan's border cuts the object off in an area of 1"),
+    EXPECT_NE(object.border_finding->find("the scan's border cuts off the object over an area of 1"),
               std::string::npos)
         << *object.border_finding;
     EXPECT_EQ(object.findings.back(), *object.border_finding) << id;

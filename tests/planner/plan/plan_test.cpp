@@ -158,10 +158,12 @@ TEST(Plan, AMeasureStepAsksForOneThing) {
   expect_says(refused({{"object", "rest"}, {"to", "rest"}}), {"step 'asked', to", "the object itself"});
   expect_says(refused({{"object", "rest"}, {"to", "advance"}}), {"to", "did you mean 'advanced'?"});
   expect_says(refused({{"to", "rest"}}), {"'object' is missing"});
-  expect_says(refused({{"object", "rest"}, {"points_mm", {{0, 0, 0}, {1, 0, 0}}}}), {"stands alone"});
+  expect_says(refused({{"object", "rest"}, {"points_mm", {{0, 0, 0}, {1, 0, 0}}}}),
+              {"excludes other measures"});
   expect_says(refused({{"points_mm", {{0, 0, 0}}}}), {"two points", "three for the angle"});
   expect_says(refused({{"points_mm", {{0, 0, 0}, {1, 0}}}}), {"points_mm[1]", "three numbers"});
-  expect_says(refused({{"points_mm", {{0, 0, 0}, {0, 0, 0}, {1, 0, 0}}}}), {"two legs"});
+  expect_says(refused({{"points_mm", {{0, 0, 0}, {0, 0, 0}, {1, 0, 0}}}}),
+              {"a leg of the angle has no length"});
 }
 
 TEST(Plan, IdsAreUniqueIdentifiers) {

@@ -54,7 +54,8 @@ TEST_F(BadSurfaces, AreOutlinedAsTheyAreAndTheirOutlinesTiled) {
   const std::string cup = off("cup.off", welded(together(open, box({30, 0, 0}, {40, 10, 10}))));
   const SortedJson half = json_of("outline " + cup + " --at 3,6 -o " + at("cup.json"));
   EXPECT_EQ(half["contours"], 2) << "of the closed cube";
-  EXPECT_NE(half["findings"].dump().find("2 contours that end at its border are left out"), std::string::npos)
+  EXPECT_NE(half["findings"].dump().find("2 contours that end at its border were left out"),
+            std::string::npos)
       << half["findings"];
 }
 

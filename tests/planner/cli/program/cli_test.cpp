@@ -426,19 +426,19 @@ TEST_F(CommandLine, OctreesOfAScanTellTheirLevelsAndEvaluate) {
   expect_refused(run("eval 'ball |'" + lets), "character");
   // What changes nothing is refused: a motion and a file that are not named, and options without an object.
   expect_refused(run("eval 'move(grey, there) | ball'" + lets + back),
-                 "--motion: the expression does not name 'back'");
-  expect_refused(run("eval 'move(grey, there)'" + lets), "--let ball: the expression does not name it");
+                 "--motion: the expression does not use 'back'");
+  expect_refused(run("eval 'move(grey, there)'" + lets), "--let ball: the expression does not use this name");
   const std::string alone = " --let ball=" + at("ball.octree") + " -o " + at("x.octree");
-  expect_refused(run("eval ball --grey" + alone), "--grey: no operand has samples");
+  expect_refused(run("eval ball --grey" + alone), "--grey does not apply, because no operand has samples");
   expect_refused(run("eval ball --digitise half" + alone), "--motion");
   expect_refused(run("eval ball --interpolate nearest" + alone), "--motion");
   expect_refused(run("eval 'move(ball, m)' --motion m=1,0,0 --interpolate nearest" + alone),
-                 "--interpolate: no operand has samples");
+                 "--interpolate does not apply, because no operand has samples");
   expect_refused(run("contours " + at("ball.nrrd") + " --window 0: --code-spacing 2 -o " + at("x.json")),
                  "--codes");
   expect_refused(run("segment " + at("ball.nrrd") + " --window 0: --identity remove -o " + at("x.octree")),
                  ".dcm");
-  expect_refused(run("measure " + at("ball.octree") + " --voxel 2"), "keeps its own voxels");
+  expect_refused(run("measure " + at("ball.octree") + " --voxel 2"), "already has voxels");
   expect_refused(run("eval grey --let grey=" + at("grey.octree") + " -o " + at("x.octree")),
                  "--window grey=");
   expect_refused(run("octree " + at("ball.nrrd") + " -o " + at("x.octree")), "--window LOW:HIGH");

@@ -56,7 +56,8 @@ TEST_F(MeshVerbs, AnOctreeBecomesAMeshByEverySurfaceAndComesBackFromItsCuberille
 
 TEST_F(MeshVerbs, AnOffsetByNothingIsRefusedBeforeTheMeshIsRead) {
   write("no.stl", "broken");
-  expect_refused(run("offset " + at("no.stl") + " --by 0 -o " + at("o.stl")), "0 moves nothing: say how far");
+  expect_refused(run("offset " + at("no.stl") + " --by 0 -o " + at("o.stl")),
+                 "0 moves nothing: state a distance");
 }
 
 TEST_F(MeshVerbs, AShadowGoesAlongTheTypedDirectionToTheObjectsFarEnd) {
@@ -109,7 +110,7 @@ TEST_F(MeshVerbs, ContoursInAnotherUnitAreRefusedAtOnce) {
                                       << R"(, {"position_mm": 100000, )" << square << "]}";
   const CommandAnswer far = run("mesh " + at("far.json") + " -o " + at("far.off"));
   expect_refused(far, "far.json: the joined slices span 100000 mm");
-  EXPECT_NE(far.errors.find("state positions in mm"), std::string::npos) << far.errors;
+  EXPECT_NE(far.errors.find("check that positions are in mm"), std::string::npos) << far.errors;
 }
 
 TEST_F(MeshVerbs, AMeshIsAskedForSectionsWaysAnglesWallsAndCurvature) {
@@ -405,7 +406,7 @@ TEST_F(MeshVerbs, AMeshThatWasMovedIsRegisteredAndComparedBackToNothing) {
   const CommandAnswer open = run("compare " + at("open.off") + " " + at("open.off") + " --json");
   ASSERT_EQ(open.status, 0) << open.errors;
   EXPECT_TRUE(SortedJson::parse(open.out).at("dice").is_null());
-  expect_refused(run("register " + at("here.json") + " " + at("ball.stl")), "two of a kind");
+  expect_refused(run("register " + at("here.json") + " " + at("ball.stl")), "two files of the same kind");
 }
 
 std::string cube_off(int low, int high) {
@@ -457,7 +458,7 @@ TEST_F(MeshVerbs, ShellsThatOverlapAreToldWhereTheirVolumeCountsTwice) {
   };
   const brep::Triangles one = box({0, 0, 0}, {8, 8, 8});
   for (const brep::Triangles& other : {box({6, 6, 6}, {14, 14, 14}), one})
-    EXPECT_NE(findings(together(one, other)).find("measured is the union of its closed shells"),
+    EXPECT_NE(findings(together(one, other)).find("the union of its closed shells was measured"),
               std::string::npos);
   for (const brep::Triangles& sound : {one, together(one, box({9, 0, 0}, {17, 8, 8}))})
     EXPECT_EQ(findings(sound).find("WARN"), std::string::npos);

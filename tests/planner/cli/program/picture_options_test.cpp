@@ -20,7 +20,7 @@ TEST_F(PictureOptions, OfDrawAreRefusedInOneLineEach) {
   const std::string draw = "draw -o " + at("d.png") + " ";
   expect_refused(run(draw), "nothing to draw");
   expect_refused(run(draw + ball("stl") + "--axial 3"), "--scan");
-  expect_refused(run(draw + "--scan" + ball("nrrd")), "give their positions");
+  expect_refused(run(draw + "--scan" + ball("nrrd")), "state their positions");
   expect_refused(run(draw + "--scan" + ball("nrrd") + "--axial 900"), "900");
   expect_refused(run(draw + "--scan" + ball("nrrd") + "--axial 0 --level 3,0"), "above zero");
   expect_refused(run(draw + "--scan" + ball("nrrd") + "--axial 0 --within" + ball("nrrd")), "octree");
@@ -59,7 +59,7 @@ TEST_F(PictureOptions, OfTwoScansAreRefusedInOneLineEach) {
   expect_refused(run(two + "--finest 9"), "8");
   expect_refused(run(two + "--least-overlap 0"), "0.05");
   expect_refused(run(two + "-o " + at("moved.stl")), ".nrrd");
-  expect_refused(run(two + "--watch " + at("")), "name a new folder");
+  expect_refused(run(two + "--watch " + at("")), "choose the name of a new folder");
   expect_refused(run("register" + ball("nrrd") + ball("stl")), "two scans");
   expect_refused(run("register" + ball("stl") + ball("stl") + "--by correlation"), "two scans");
   expect_refused(run("register" + ball("stl") + ball("stl") + "--finest 4"), "two scans");

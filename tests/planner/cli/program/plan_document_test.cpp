@@ -178,13 +178,15 @@ TEST_F(PlanDocument, PreviewDrawsOneStepAndTellsAMaskThatCutsNothing) {
   const auto drawn = run("preview my.plan.json cup -o cup.png --view left --size 64 --json");
   EXPECT_EQ(drawn.status, 0) << drawn.errors;
   EXPECT_EQ(tests::bytes_of(folder_ / "cup.png").substr(1, 3), "PNG");
-  EXPECT_NE(drawn.errors.find("the mask 'cut' holds nothing of 'ball'"), std::string::npos) << drawn.errors;
+  EXPECT_NE(drawn.errors.find("the mask 'cut' contains nothing of 'ball'"), std::string::npos)
+      << drawn.errors;
   // Like every verb that draws numbers from a scan, its answer contains the scan's audit.
   EXPECT_TRUE(tests::SortedJson::parse(drawn.out)["scans"][0].contains("audit")) << drawn.out;
   const auto ran = run("run my.plan.json -o out --no-certificates");
   EXPECT_EQ(ran.status, 0);
-  EXPECT_NE(ran.errors.find("no voxel is in 'ball & cut'"), std::string::npos) << ran.errors;
-  EXPECT_NE(ran.errors.find("cap: the mask 'cut' holds nothing of 'ball'"), std::string::npos) << ran.errors;
+  EXPECT_NE(ran.errors.find("no voxel lies in 'ball & cut'"), std::string::npos) << ran.errors;
+  EXPECT_NE(ran.errors.find("cap: the mask 'cut' contains nothing of 'ball'"), std::string::npos)
+      << ran.errors;
   expect_refused(run("preview my.plan.json cup -o cup.jpg"), ".png");
 }
 

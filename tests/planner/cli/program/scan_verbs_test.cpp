@@ -162,7 +162,7 @@ TEST_F(ScanVerbs, VoxelsThatPassOverAThinObjectSayHowMuchTheyMiss) {
   EXPECT_EQ(found["volume_half_width_mm3"].get<double>(),
             std::abs(found["volume_isosurface_mm3"].get<double>() - found["volume_mm3"].get<double>()));
   EXPECT_EQ(found["volume_half_width_terms"].back()["name"], "isosurface");
-  EXPECT_NE(run("measure " + at("thin.nrrd") + " --window 0:").out.find("take smaller ones"),
+  EXPECT_NE(run("measure " + at("thin.nrrd") + " --window 0:").out.find("choose smaller voxels"),
             std::string::npos);
   // Samples that voxels meet well have one finding: the sum of the samples sees more than a threshold.
   const SortedJson ball = json("measure " + at("ball.nrrd") + " --window 0:");

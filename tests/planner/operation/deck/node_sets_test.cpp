@@ -45,13 +45,13 @@ TEST_F(NodeSets, OfPlanesBallsPointsLandmarksAndMeshesHoldTheirNodesAlone) {
 }
 
 TEST_F(NodeSets, WhatNamesNoPlaceOrNoMotionIsRefusedByName) {
-  expect_refused(tet("--nodes LOW=0,0,5.5,0,0"), "is no point");
+  expect_refused(tet("--nodes LOW=0,0,5.5,0,0"), "is none of these: a point");
   expect_refused(tet("--nodes HIGH=0,0,40,0,0,1"), "HIGH would be empty");
   expect_refused(tet("--nodes A=5,5,0 --nodes A=5,5,20"), "comes twice");
-  expect_refused(tet("--nodes Pin=5,5,0 --nodes PIN=5,5,20"), "one name for solvers");
+  expect_refused(tet("--nodes Pin=5,5,0 --nodes PIN=5,5,20"), "the same name for solvers");
   for (const std::string own : {"SURFACE", "surface", "SOLID", "Nsolid"})
     expect_refused(tet("--nodes " + own + "=5,5,0"), "a set that every deck has");
-  expect_refused(tet("--nodes 9A=5,5,0"), "--nodes: '9A' is no name");
+  expect_refused(tet("--nodes 9A=5,5,0"), "--nodes: '9A' is not a name");
   expect_refused(tet("--nodes A=5,5,0 --fix B"), "none of the sets");
   expect_refused(tet("--nodes A=5,5,0 --move A=0,0,1"), "no nodes are fixed");
   expect_refused(tet("--nodes A=5,5,0 --nodes B=5,5,20 --fix B --move A=1"), "is not a motion");

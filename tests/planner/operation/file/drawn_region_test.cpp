@@ -138,7 +138,7 @@ TEST_F(DrawnRegionFile, ClosedCurvesOfSlicerAreProjected) {
   const auto said = [&](const std::string& text) {
     return refusal([&] { read_drawn_region("left:" + write("bad.mrk.json", text)); });
   };
-  EXPECT_NE(said(curve("IJK", lps)).find("markups[1]: the coordinate system 'IJK' is neither LPS"),
+  EXPECT_NE(said(curve("IJK", lps)).find("markups[1]: the coordinate system 'IJK' is unknown"),
             std::string::npos);
   EXPECT_NE(said(curve("LPS", point("1,2,3"))).find("markups[1]: has 1 points"), std::string::npos);
   EXPECT_NE(said(curve("LPS", point("1,2"))).find("controlPoints[0].position: must be a point"),
@@ -153,13 +153,14 @@ TEST_F(DrawnRegionFile, ClosedCurvesOfSlicerAreProjected) {
 
 TEST_F(DrawnRegionFile, RefusalsSayWhatAndWhere) {
   const auto pixels = [&](const std::string& text) { return refusal([&] { region_of_pixels(text); }); };
-  EXPECT_NE(pixels(picture().string() + ":0,0 20,0 90,10").find("'90,10' is no pixel of"), std::string::npos);
+  EXPECT_NE(pixels(picture().string() + ":0,0 20,0 90,10").find("'90,10' lies outside of"),
+            std::string::npos);
   EXPECT_NE(pixels(picture().string() + ":0,0 20,0 x").find("'x' is no pixel X,Y"), std::string::npos);
   EXPECT_NE(pixels(picture().string() + ":0,0 20,0").find("--region-pixels: "), std::string::npos);
   EXPECT_NE(pixels("none.png:0,0 1,0 1,1").find("no such file"), std::string::npos);
-  EXPECT_NE(pixels("0,0 1,0 1,1").find("give PICTURE.png"), std::string::npos);
+  EXPECT_NE(pixels("0,0 1,0 1,1").find("write PICTURE.png"), std::string::npos);
   const auto file = [&](const std::string& text) { return refusal([&] { read_drawn_region(text); }); };
-  EXPECT_NE(file("cut.json").find("give VIEW:FILE"), std::string::npos);
+  EXPECT_NE(file("cut.json").find("write VIEW:FILE"), std::string::npos);
   EXPECT_NE(file("front:cut.svgz").find("save it as plain .svg"), std::string::npos);
   EXPECT_NE(file("cut.svgz").find("save it as plain .svg"), std::string::npos);
   EXPECT_NE(file("front:cut.json").find("no view 'front'"), std::string::npos);
@@ -169,7 +170,7 @@ TEST_F(DrawnRegionFile, RefusalsSayWhatAndWhere) {
       file(write("a.svg", R"(<svg><image href="x.png" width="1" height="1"/>)" + rectangle)).find("x.png"),
       std::string::npos);
   EXPECT_NE(file(write("a.svg", R"(<svg><image href="x.jpg" width="1" height="1"/>)" + rectangle))
-                .find("is no .png"),
+                .find("is not a .png"),
             std::string::npos);
 }
 

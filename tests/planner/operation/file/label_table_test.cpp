@@ -65,7 +65,7 @@ TEST(LabelTable, ASpoiledTableIsRefusedByItsLine) {
             std::string::npos);
   EXPECT_NE(refusal("b.csv", "5,liver\n5,spleen\n").find("b.csv:2: label 5 has two names"),
             std::string::npos);
-  EXPECT_NE(refusal("c.csv", "colour,organ\nred,liver\n").find("must name a column"), std::string::npos);
+  EXPECT_NE(refusal("c.csv", "colour,organ\nred,liver\n").find("must be a heading"), std::string::npos);
   std::string all;
   for (int label = 1; label < 32767; ++label)
     all += std::to_string(label) + ",part" + std::to_string(label) + "\n";
@@ -90,13 +90,13 @@ TEST(LabelTable, RowsThatNameNoLabelArePassedOverByTheirLine) {
   const Names expected{{2, "left kidney"}, {5, "liver"}};
   for (const auto& [name, text, told] :
        {std::tuple<const char*, std::string, const char*>{
-            "a.csv", "label,name\n-1,unknown\n5,liver\n2,left kidney\n", "a.csv:2: the row is passed over"},
+            "a.csv", "label,name\n-1,unknown\n5,liver\n2,left kidney\n", "a.csv:2: the row is left out"},
         {"b.csv", "5,liver\n2,left kidney\n40000000,spleen\n", "b.csv:3"},
         {"c.tsv", "index\tname\n5\tliver\n\tspleen\n2\tleft kidney\n",
-         "c.tsv:3: the row is passed over, as it has no label"},
+         "c.tsv:3: the row is left out, because it has no label"},
         {"d.tsv", "index\tname\n5\tliver\n7\t\n2\tleft kidney\n", "label 7 has no name"},
         {"e.txt", "Label Name R G B A\n5 liver 9 9 9 255\n2 left kidney 0 9 0 255\n",
-         "e.txt:1: the row is passed over, as it is a heading"},
+         "e.txt:1: the row is left out, because it is a heading"},
         {"f.ctbl", "-1 unknown 0 0 0 0\n5 liver 9 9 9 255\n2 left_kidney 0 9 0 255\n", "f.ctbl:1"}}) {
     const LabelTable table = read_label_table(put(folder, name, text));
     EXPECT_EQ(table.names, expected) << name;
@@ -116,14 +116,14 @@ TEST(LabelTable, RowsOfJsonThatNoLabelMapCanHaveArePassedOverToo) {
       const auto& [name, text, told] :
       {std::tuple<const char*, const char*, const char*>{"a.json",
                                                          R"({"liver": 5, "ignore": -1, "left kidney": 2})",
-                                                         "a.json: ignore: the row is passed over"},
+                                                         "a.json: ignore: the row is left out"},
        {"b.json", R"({"5": "liver", "-1": "unknown", "2": "left kidney"})", "b.json: -1: the row"},
        {"c.json",
         R"([{"label": -1, "name": "x"}, {"label": 5, "name": "liver"}, {"label": 2, "name": "left kidney"}])",
-        "c.json[0]: the row is passed over, as no label map can have the label -1"},
+        "c.json[0]: the row is left out, because labels cannot have the number -1"},
        {"d.json",
         R"([{"id": 5, "label": "liver"}, {"id": null, "label": "x"}, {"id": 2, "label": "left kidney"}])",
-        "d.json[1]: the row is passed over, as it has no label"}}) {
+        "d.json[1]: the row is left out, because it has no label"}}) {
     const LabelTable table = read_label_table(put(folder, name, text));
     EXPECT_EQ(table.names, expected) << name;
     ASSERT_EQ(table.passed_over.size(), 1u) << name;
@@ -163,9 +163,8 @@ TEST(LabelTable, OfBidsTheIndexIsTheLabelAndOtherNumbersAreReported) {
       read_label_table(put(folder, "a_dseg.tsv", "label\tname\tindex\n11\tliver\t1\n12\tspleen\t2\n"));
   EXPECT_EQ(bids.names, (Names{{1, "liver"}, {2, "spleen"}}));
   ASSERT_EQ(bids.passed_over.size(), 1u);
-  EXPECT_NE(
-      bids.passed_over[0].find("WARN: the labels are taken from the column 'index'; the column 'label'"),
-      std::string::npos)
+  EXPECT_NE(bids.passed_over[0].find("WARN: the labels are read from the column 'index'; the column 'label'"),
+            std::string::npos)
       << bids.passed_over[0];
   // A program's own table has its row numbers in "index".
   const LabelTable rows =
@@ -201,7 +200,7 @@ TEST(LabelTable, OtherEncodingsAreReadAndSaid) {
                                                 "cker\"\n"));
   EXPECT_EQ(latin.names, (Names{{5, "Gelenkh\u00f6cker"}}));
   ASSERT_EQ(latin.passed_over.size(), 1u);
-  EXPECT_NE(latin.passed_over[0].find("Latin-1, by assumption"), std::string::npos);
+  EXPECT_NE(latin.passed_over[0].find("Latin-1, which is assumed"), std::string::npos);
   const LabelTable plain = read_label_table(put(folder, "c.csv",
                                                 "\xef\xbb\xbf"
                                                 "5,Gelenkh\u00f6cker\n"));
@@ -260,7 +259,7 @@ TEST(LabelTable, ATableThatContradictsTheUsedOneIsReportedAndOneThatAgreesIsNot)
     const LabelTable table = label_table_of(map, {1, 2});
     EXPECT_EQ(table.names, (Names{{1, "Fat"}, {2, "Bone"}}));
     ASSERT_EQ(table.passed_over.size(), 1U) << other;
-    EXPECT_NE(table.passed_over[0].find("a.csv: not used, because it contradicts"), std::string::npos)
+    EXPECT_NE(table.passed_over[0].find("a.csv: is not used, because it contradicts"), std::string::npos)
         << table.passed_over[0];
   }
   const auto slicer =
@@ -277,7 +276,7 @@ TEST(LabelTable, NumbersOfAnAcquisitionOrLabelsThatDoNotOccurNameNothing) {
   const LabelTable sidecar = label_table_of(map, {1, 2, 3});
   EXPECT_TRUE(sidecar.names.empty());
   ASSERT_EQ(sidecar.passed_over.size(), 1U);
-  EXPECT_NE(sidecar.passed_over[0].find("is a number of an acquisition"), std::string::npos)
+  EXPECT_NE(sidecar.passed_over[0].find("is a quantity of a scan's acquisition"), std::string::npos)
       << sidecar.passed_over[0];
   put(folder, "a.json", R"({"left": 2, "right": 1})");
   EXPECT_EQ(label_table_of(map, {1, 2, 3}).names, (Names{{1, "right"}, {2, "left"}}));

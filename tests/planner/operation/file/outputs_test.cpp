@@ -110,7 +110,7 @@ TEST_F(VerbOutputs, APieceDoesNotReplaceTheSurfaceThatItIsOf) {
     brep::write_mesh(
         together(brep::shapes::sphere({0, 0, 0}, 10.0, 2), brep::shapes::box({30, 30, 30}, {34, 34, 34})),
         folder_ / name);
-    expect_untouched(std::string("separate ") + name + " -o p.stl", "which is read");
+    expect_untouched(std::string("separate ") + name + " -o p.stl", "which this run reads");
   }
   EXPECT_EQ(run("separate p-1.stl --piece 1 -o p-1.stl").status, 0) << "a name that was typed";
 }
@@ -124,7 +124,7 @@ TEST_F(VerbOutputs, OneFileForTwoOutputsIsRefused) {
     expect_untouched(follow + "-o x.json --codes " + second, "is the same file as");
   expect_untouched(follow + "-o new.json --codes new.json", "is the same file as");
   expect_untouched(follow + "-o new.json --codes open.json", "is the same file as");
-  expect_untouched("contours x.json -o new.json --codes x.json", "which is read");
+  expect_untouched("contours x.json -o new.json --codes x.json", "which this run reads");
   ASSERT_EQ(run("contours x.json -o x.json").status, 0) << "one output may replace what it is made of";
   ASSERT_EQ(run(follow + "-o x.json --codes y.json").status, 0);
   EXPECT_NE(bytes("x.json"), bytes("y.json"));

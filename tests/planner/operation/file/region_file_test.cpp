@@ -62,7 +62,7 @@ TEST(RegionFile, AContourWithFewerPointsThanItStatesIsTold) {
   std::ofstream(folder / "rs.dcm", std::ios::binary) << bytes;
   const DrawnSlices drawn = read_slices(folder / "rs.dcm", SlicesOptions{"Bone"});
   ASSERT_EQ(drawn.findings.size(), 1U);
-  EXPECT_HOLDS(drawn.findings[0], "1 contour holds another number of points");
+  EXPECT_HOLDS(drawn.findings[0], "1 contour holds a number of points other than");
   EXPECT_HOLDS(drawn.findings[0], "first 4 for 9");
 }
 
@@ -78,7 +78,7 @@ TEST(RegionFile, ContoursThatLeaveOutSlicesOfTheScanAreTold) {
   scan.lps_from_voxel[2] = {0, 0, 2, 0};
   const auto found = slices_without_contours(mask, scan, "set");
   ASSERT_TRUE(found);
-  EXPECT_HOLDS(*found, "set: 1 gap between neighbouring contours, the widest of 8.00 mm");
+  EXPECT_HOLDS(*found, "set: 1 gap where slices of the scan have no contour, the widest 8.00 mm");
   // Planes between that hold nothing state that the structure ends.
   mask.slices = {square(0.0), {2.0, {}}, {6.0, {}}, square(8.0)};
   EXPECT_FALSE(slices_without_contours(mask, scan, "set"));
@@ -162,7 +162,7 @@ TEST(RegionFile, OfTwoStructuresOfOneNameTheNumberSaysWhich) {
   for (const double z : {0.0, 2.0}) small.push_back(rectangle({-1, -1}, {1, 1}, z));
   const auto path = set_file(
       folder, {{4, "A", square_block()}, {7, "A", small}, {9, "B", square_block()}, {2, "9", small}});
-  EXPECT_HOLDS(slices_refusal(path, "A"), "2 structures 'A', of the ROI numbers 4 and 7");
+  EXPECT_HOLDS(slices_refusal(path, "A"), "2 structures 'A' with the ROI numbers 4 and 7");
   EXPECT_HOLDS(slices_refusal(path, ""), "'A' (4), 'A' (7), 'B', '9'");
   EXPECT_EQ(read_slices(path, "7").slices.size(), 4U);
   EXPECT_EQ(read_slices(path, "4").slices.size(), 7U);
@@ -292,7 +292,7 @@ TEST(RegionFile, PointsALittleOffTheirPlaneAreTakenInItAndTold) {
   EXPECT_HOLDS(drawn.findings[0], "off their contour's plane");
   EXPECT_TRUE(read_slices(path, SlicesOptions{"B"}).findings.empty()) << "of another structure";
   for (auto& contour : contours) contour[1].z += 0.3;
-  EXPECT_HOLDS(slices_refusal(set_file(folder, {{1, "A", contours}}), "A"), "not parallel");
+  EXPECT_HOLDS(slices_refusal(set_file(folder, {{1, "A", contours}}), "A"), "not in parallel planes");
 }
 
 TEST(RegionFile, AContourOfTwoPointsIsLeftOutAndTold) {
@@ -302,7 +302,7 @@ TEST(RegionFile, AContourOfTwoPointsIsLeftOutAndTold) {
   const DrawnSlices drawn = read_slices(set_file(folder, {{1, "A", contours}}), SlicesOptions{"A"});
   EXPECT_EQ(contour_counts(drawn.mask), (std::vector<std::size_t>{1, 1, 1, 1, 1}));
   ASSERT_EQ(drawn.findings.size(), 1U);
-  EXPECT_HOLDS(drawn.findings[0], "1 contours of fewer than three points");
+  EXPECT_HOLDS(drawn.findings[0], "1 contours with fewer than three points");
 }
 
 #undef EXPECT_HOLDS

@@ -73,7 +73,7 @@ TEST_F(CommandLine, ContoursMoveOutThinAndLeaveSmallOnesOut) {
   EXPECT_NEAR(sum_of(thinned, "area_mm2"), area, 0.02 * area);
   EXPECT_EQ(asked("--least-area 150")["contours"], 20) << "four of the smallest go";
   EXPECT_NEAR(sum_of(asked("--harmonics 4"), "area_mm2"), area, 0.01 * area);
-  expect_refused(run("contours " + at("c.json") + " --by -20 -o " + at("e.json")), "no contour is left");
+  expect_refused(run("contours " + at("c.json") + " --by -20 -o " + at("e.json")), "no contour remains");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "e.json"));
 }
 

@@ -87,10 +87,10 @@ TEST_F(SlicerMarkupFile, UnitsScalePlacesAndBoundsAndNoDirection) {
 
 TEST_F(SlicerMarkupFile, RefusalsSayWhatAndWhere) {
   const std::string points = R"("controlPoints": [])";
-  EXPECT_NE(refusal(lps + points).find("markups[0]: states neither 'center'"), std::string::npos)
+  EXPECT_NE(refusal(lps + points).find("markups[0]: has neither 'center'"), std::string::npos)
       << refusal(lps + points);
   EXPECT_NE(refusal(lps + R"("center": [0, 0, 0], "orientation": [2, 0, 0, 0, 2, 0, 0, 0, 2], )" + points)
-                .find("orientation: are no three perpendicular unit vectors"),
+                .find("orientation: must be three perpendicular unit vectors"),
             std::string::npos);
   EXPECT_NE(refusal(lps + R"("center": [0, 0, 0], "orientation": [-1, 0, 0, 0, 1, 0, 0, 0, 1], )" + points)
                 .find("right-handed"),

@@ -121,7 +121,7 @@ TEST_F(SvgOutlinesFile, WhatAStyleHidesOrMovesIsLeftOutToldOrRefused) {
   const SvgOutlines found = read(R"(<rect visibility="hidden" width="5" height="5"/>
       <g style="visibility:hidden"><rect width="5" height="5"/></g><rect class="st0" width="7" height="7"/>)");
   ASSERT_EQ(found.polygons_mm.size(), 1u);
-  EXPECT_NE(testing::PrintToString(found.findings).find("style sheet is not read"), std::string::npos);
+  EXPECT_NE(testing::PrintToString(found.findings).find("style sheet is not applied"), std::string::npos);
   EXPECT_THROW(read(R"svg(<rect style="transform:translate(5px,-3px)" width="5" height="5"/>)svg"),
                std::runtime_error);
 }
@@ -191,7 +191,7 @@ TEST_F(SvgOutlinesFile, APixelIsThatOfTheProgramAndAFinding) {
         {"", R"(inkscape:version="1.2" )" + pixels, 96, "as Inkscape has it"}}) {
     const auto [side_mm, finding] = read_by(before, root);
     EXPECT_NEAR(side_mm, 20.0 * 25.4 / per_inch, 1e-9) << root;
-    EXPECT_NE(finding.find("in pixels, which are no length"), std::string::npos) << finding;
+    EXPECT_NE(finding.find("in pixels, whose length is assumed"), std::string::npos) << finding;
     EXPECT_NE(finding.find("1/" + std::to_string(per_inch) + " inch"), std::string::npos) << finding;
     EXPECT_NE(finding.find(program), std::string::npos) << finding;
   }
@@ -254,10 +254,10 @@ TEST_F(SvgOutlinesFile, RefusalsSayLineAndPlace) {
   EXPECT_NE(refusal("<rect transform=\"turn(3)\"/>").find("'turn' with 1 numbers"), std::string::npos);
   EXPECT_NE(refusal("<use/>").find("unlink clones"), std::string::npos);
   const std::string shape = "<rect width=\"5\" height=\"5\"/>";
-  EXPECT_NE(refusal("<switch>" + shape + shape + "</switch>").find("keep the one that is meant"),
-            std::string::npos);
+  EXPECT_NE(refusal("<switch>" + shape + shape + "</switch>").find("delete all but one"), std::string::npos);
   EXPECT_EQ(refusal("<switch><foreignObject/><g>" + shape + shape + "</g></switch>"), "");
-  EXPECT_NE(refusal("<g>").find("</svg> does not match the element that is open there"), std::string::npos);
+  EXPECT_NE(refusal("<g>").find("</svg> closes another element than the one that is open there"),
+            std::string::npos);
   EXPECT_NE(refusal("<rect width=5/>").find("is not NAME=\"VALUE\""), std::string::npos);
   EXPECT_NE(refusal("<!-- ").find("is not closed by -->"), std::string::npos);
   EXPECT_NE(refusal("").find("has no outline"), std::string::npos);

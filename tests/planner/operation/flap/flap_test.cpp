@@ -141,8 +141,9 @@ TEST(FlapSteps, RefusalsPointAtThePlace) {
   EXPECT_NE(refusal(R"("do": "flap", "segments": [], "contacts": [], )" + same).find("segments"),
             std::string::npos);
   const std::string two = R"("do": "flap", "segments": ["p", "q"], "contacts": ["p"], )";
-  EXPECT_NE(refusal(two + same).find("must name 3 objects, one for each osteotomy; leave out the last"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal(two + same).find("must name 3 objects, one for each osteotomy; if the new bone has a free end"),
+      std::string::npos);
 }
 
 /// The uncut fibula at the place of segment 1, the cuts of both segments on it, a screw in the middle of each,
@@ -242,12 +243,12 @@ TEST(FlapSteps, GuidesAndScrewsThatCannotBeAreRefusedInASentence) {
   expect_refused(screw(R"("flap": "cuts_1", "share": -0.5)") + guide(R"("screws": ["s"])"),
                  "beside segment 1");
   expect_refused(screw(R"("flap": "gone", "share": -0.5)") + guide(R"("screws": ["s"])"), "has no 'stumps'");
-  expect_refused(screw(R"("flap": "jaw")") + guide(R"("screws": ["s"])"), "is no space of a flap's");
+  expect_refused(screw(R"("flap": "jaw")") + guide(R"("screws": ["s"])"), "is not the space of a flap's");
   expect_refused(
       screw(R"("at": [0, 0, 0], "direction": [0, 0, 1], "share": 0.2)") + guide(R"("screws": ["s"])"),
       "applies only to 'flap'");
   expect_refused(R"({"id": "m", "do": "flap_move", "object": "screw_1", "segment": "gone"})",
-                 "is no space on the uncut donor bone");
+                 "is not a segment's space on the uncut donor bone");
 }
 
 }  // namespace

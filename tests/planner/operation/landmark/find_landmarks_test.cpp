@@ -20,8 +20,9 @@ TEST(FindLandmarks, OfNothingAndOfWhatIsNoSkullTellsWhyAndThePlanGoesOn) {
     EXPECT_TRUE(one.at("landmarks").empty());
     ASSERT_EQ(one.at("findings").size(), 1u);
   }
-  EXPECT_EQ(measured[0].at("findings")[0], "'none' is empty: it has no landmarks");
-  EXPECT_NE(measured[1].at("findings")[0].get<std::string>().find("is it a skull"), std::string::npos);
+  EXPECT_EQ(measured[0].at("findings")[0], "'none' is empty, so it has no landmarks");
+  EXPECT_NE(measured[1].at("findings")[0].get<std::string>().find("check that the object is a skull"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -102,7 +102,7 @@ TEST_F(CompareLabels, LabelsArePairedByNameAndNumbersThatContradictNamesAreRepor
   write("a.csv", "3,Mandible\n9,Tooth\n");
   const SortedJson by_number = compared("a.nrrd", "b.nrrd");
   EXPECT_EQ(by_number["labels"].size(), 3u);
-  EXPECT_NE(by_number["findings"].dump().find("paired by number, as only"), std::string::npos);
+  EXPECT_NE(by_number["findings"].dump().find("paired by number, because only"), std::string::npos);
   write("b.csv", "7,Mandible\n9,Skull\n");
   const SortedJson json = compared("a.nrrd", "b.nrrd");
   ASSERT_EQ(json["labels"].size(), 3u);
@@ -139,8 +139,8 @@ TEST_F(CompareLabels, ANameOfTwoLabelsPairsNothing) {
 TEST_F(CompareLabels, AScanASurfaceOrAnEmptyMapIsRefused) {
   put("a.nrrd", 5, 3);
   put("none.nrrd", 5, 0);
-  expect_refused(run("compare " + at("a.nrrd") + " " + at("ball.nrrd")), "is no label map");
-  expect_refused(run("compare " + at("a.nrrd") + " " + at("none.nrrd")), "there are no labels");
+  expect_refused(run("compare " + at("a.nrrd") + " " + at("ball.nrrd")), "is not a label map");
+  expect_refused(run("compare " + at("a.nrrd") + " " + at("none.nrrd")), "contains no labels");
   write("s.stl", "solid\nendsolid\n");
   expect_refused(run("compare " + at("a.nrrd") + " " + at("s.stl")), "octotomy surfaces");
   expect_refused(run("compare " + at("a.nrrd") + " " + at("a.nrrd") + " -o " + at("x.ply")), "--out");

@@ -36,7 +36,7 @@ TEST(AdvanceStep, RefusalsPointAtThePlace) {
   };
   EXPECT_NE(refusal(R"("against": "lower", "towards": "up")").find("step 'a', against: is the object itself"),
             std::string::npos);
-  EXPECT_NE(refusal(R"("against": "upper")").find("takes either 'towards'"), std::string::npos);
+  EXPECT_NE(refusal(R"("against": "upper")").find("needs either 'towards'"), std::string::npos);
   EXPECT_NE(refusal(R"("against": "upper", "towards": "upp")").find("up"), std::string::npos);
   EXPECT_NE(refusal(R"("against": "upper", "direction": [0, 0, 0])").find("has no length"),
             std::string::npos);

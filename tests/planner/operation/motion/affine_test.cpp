@@ -178,7 +178,7 @@ TEST(Affine, RigidOnlyConsumersRefuseInOneSentence) {
             std::string::npos);
   EXPECT_NE(ball_refusal(folder, R"({"id": "m", "do": "move", "object": "ball",
       "matrix": [[2, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]})")
-                .find("'affine' scales and shears"),
+                .find("use 'affine'"),
             std::string::npos);
   const Plan plan = ball_plan(folder, egg);
   const Evaluation evaluation = evaluate(plan);
@@ -188,7 +188,7 @@ TEST(Affine, RigidOnlyConsumersRefuseInOneSentence) {
       {"id": "other", "do": "screw", "object": "upper", "at": [8, -18, 8], "direction": [0, 1, 0]},
       {"id": "thick", "do": "affine", "object": "other", "scale": [2, 2, 1], "about_mm": [0, 0, 20]},
       {"id": "plate", "do": "plate", "object": "upper", "side": "anterior", "screws": ["screw", "thick"]})"));
-  EXPECT_NE(text.find("'thick' is scaled or sheared, and a screw keeps its shape"), std::string::npos)
+  EXPECT_NE(text.find("'thick' is scaled or sheared, but a screw must keep its shape"), std::string::npos)
       << text;
 }
 
@@ -204,9 +204,9 @@ TEST(Affine, WrongInputIsRefusedInOneLineEach) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {R"("about_mm": [0, 0, 0])", "changes nothing"},
       {R"("scale": [1, 1, 2])", "'about_mm' is missing"},
-      {R"("scale": [1, 1, 1])" + about, "rigid motion, which scales and shears nothing"},
+      {R"("scale": [1, 1, 1])" + about, "rigid motion, which neither scales nor shears"},
       {R"("scale": [1, 0, 1])" + about, "become flat"},
-      {R"("scale": [1, -1, 1])" + about, "mirrors: mirror the object by 'mirror'"},
+      {R"("scale": [1, -1, 1])" + about, "mirrors the object: use 'mirror'"},
       {R"("scale": [1, 1, 1e300])" + about, "0.01 to 100 are allowed"},
       {R"("scale": [1, 1, "x"])" + about, "scale"},
       {R"("shear": {"by": 0.3, "along": [1, 0, 0], "normal": [1, 0, 1]})" + about, "at right angles"},
@@ -234,7 +234,7 @@ TEST(Affine, ATransformFileThatScalesIsRead) {
       evaluate(ball_plan(folder, R"({"id": "egg", "do": "affine", "object": "ball", "file": "wide.tfm"})"));
   expect_certified(evaluation.object("egg"), 1.25 * ball_mm3(ball_radius_mm), 0.005);
   EXPECT_NE(ball_refusal(folder, R"({"id": "m", "do": "transform", "object": "ball", "file": "wide.tfm"})")
-                .find("take 'affine'"),
+                .find("use 'affine'"),
             std::string::npos);
 }
 

@@ -103,14 +103,14 @@ TEST_F(MoveStep, RefusalsPointAtThePlace) {
   says(R"(, "by": {"forward_mm": 1}, "along": ["front", "rear", [0, 0, 0]])", "on one line");
   says(R"(, "translate_mm": [1, 0, 0], "along": ["front", "rear", "left"])", "add 'by'");
   says(R"(, "with": "ball")", "with: 'ball' was made by 'window'");
-  says(R"(, "with": "ball", "translate_mm": [1, 0, 0])", "exclude all others");
+  says(R"(, "with": "ball", "translate_mm": [1, 0, 0])", "states its motion twice: keep only");
   says(R"(, "rotate": {"degrees": 3})", "rotate: 'axis' is missing");
   says(R"(, "rotate": {"degrees": 3, "axis": [1, 0, 0]}, "turn": {"about_mm": "rear"})", "twice");
   says(R"(, "points": [{"at": "front", "up_mm": 1}, {"at": "front", "up_mm": 1}])",
        "points: 'front' and 'front'");
   says(R"(, "points": [{"at": "front", "up_mm": 1, "to": "rear"}])", "points[0]: ");
-  says(R"(, "matrix": [[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]])", "matrix: is no rigid motion");
-  says(R"(, "matrix": [[-1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]])", "matrix: is no rigid motion");
+  says(R"(, "matrix": [[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]])", "matrix: is not a rigid motion");
+  says(R"(, "matrix": [[-1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]])", "matrix: is not a rigid motion");
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ TEST(OccludeStep, TellsWhatItCannotSeatAndRefusesPlacesOffTheObject) {
       refusal(R"("against": "upper", "places": [[60, 0, 0]])").find("no surface within 3 mm of place 1"),
       std::string::npos);
   EXPECT_NE(
-      refusal(R"("against": "upper", "places": [[0, 0, -5]], "towards": "down")").find("meets nothing of"),
+      refusal(R"("against": "upper", "places": [[0, 0, -5]], "towards": "down")").find("does not reach"),
       std::string::npos);
   EXPECT_NE(refusal(R"("against": "lower", "places": [[0, 0, -5]])").find("is the object itself"),
             std::string::npos);
@@ -67,7 +67,7 @@ TEST(OccludeStep, TellsWhatItCannotSeatAndRefusesPlacesOffTheObject) {
   const std::vector<std::string>& findings = evaluation.object("met").findings;
   EXPECT_TRUE(std::any_of(
       findings.begin(), findings.end(),
-      [](const std::string& finding) { return finding.find("beside the places") != std::string::npos; }))
+      [](const std::string& finding) { return finding.find("away from the places") != std::string::npos; }))
       << testing::PrintToString(findings) << evaluation.object("met").moved->details;
 }
 

@@ -185,7 +185,7 @@ TEST(RegisterStep, AnObjectFollowsItsScanOntoAnother) {
     evaluate(plan_with(same));
     ADD_FAILURE() << "one scan was laid on itself";
   } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("come from one scan"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("come from the same scan"), std::string::npos) << error.what();
   }
   const auto refusal = [&](const std::string& rest) {
     return ball_refusal(folder,

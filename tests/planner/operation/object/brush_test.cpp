@@ -54,7 +54,7 @@ TEST(BrushStep, WhatIsPaintedIsStatedAsNotMeasured) {
       folder, brush("painted", R"("points_mm": [[0, -20, 0]], "radius_mm": 6)", R"(, "mode": "paint")")));
   const Object& painted = evaluation.object("painted");
   ASSERT_EQ(painted.findings.size(), 1u);
-  EXPECT_NE(painted.findings.front().find("drawn by hand and not measured by a scan"), std::string::npos)
+  EXPECT_NE(painted.findings.front().find("drawn by hand; no scan measured them"), std::string::npos)
       << painted.findings.front();
   EXPECT_NE(painted.voxel.lineage.find("no scan measured the painted material"), std::string::npos);
   EXPECT_NE(painted.mesh.lineage.find("no scan measured the painted material"), std::string::npos);

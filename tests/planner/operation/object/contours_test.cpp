@@ -134,9 +134,9 @@ TEST(ContoursStep, WindowsAndPixelsThatCannotBeAreRefusedInALine) {
         << testing::PrintToString(files.at(0).findings);
   };
   unwritten(R"("slice_windows": ["400=0:"])", "there is no slice at 400 mm");
-  unwritten(R"("slice_windows": ["0.5=0:", "0.6=9:"])", "two windows of its own");
+  unwritten(R"("slice_windows": ["0.5=0:", "0.6=9:"])", "two separate windows");
   unwritten(R"("around_mm": [[28, 0, 0]], "window": "0:")", "its sample is -1000");
-  unwritten(R"("around_mm": [[280, 0, 0]], "window": "0:")", "lies outside the scan");
+  unwritten(R"("around_mm": [[280, 0, 0]], "window": "0:")", "lies outside of the scan");
 }
 
 TEST(ContoursStep, SeedsThatCannotBeAreRefused) {

@@ -79,7 +79,7 @@ TEST(MaskStep, AnOffsetOfContoursIsAppliedAndSaid) {
   const auto still = made(""), offset = made("0\\0\\6");
   EXPECT_NEAR(offset.first - still.first, 6.0, 1e-6);
   EXPECT_EQ(still.second.find("ContourOffsetVector"), std::string::npos) << still.second;
-  EXPECT_NE(offset.second.find("3 contours are moved by ContourOffsetVector, as the file states, by up to "
+  EXPECT_NE(offset.second.find("3 contours are moved by the file's ContourOffsetVector, by up to "
                                "(0, 0, 6) mm"),
             std::string::npos)
       << offset.second;
@@ -161,7 +161,7 @@ TEST(MaskStep, AStructureThatIsNotThereIsRefusedWithTheOnesThatAre) {
       {{1,
         "A",
         {rectangle({0, 0}, {9, 9}, 0), rectangle({0, 0}, {9, 9}, 2), {{0, 0, 4}, {3, 0, 5}, {3, 3, 6}}}}});
-  EXPECT_NE(refusal("A").find("not parallel"), std::string::npos) << refusal("A");
+  EXPECT_NE(refusal("A").find("not in parallel planes"), std::string::npos) << refusal("A");
   std::ofstream(folder / "rs.dcm", std::ios::binary)
       << structure_set({{1, "A", {rectangle({0, 0}, {9, 9}, 0)}}});
   EXPECT_NE(refusal("A").find("ContourSlabThickness"), std::string::npos) << refusal("A");
@@ -174,7 +174,8 @@ TEST(MaskStep, AStructureOfOnePlaneIsAsThickAsItStates) {
   const Evaluation evaluation =
       evaluate(ball_plan(folder, R"({"id": "a", "do": "mask", "slices": "rs.dcm", "structure": "A"})"));
   EXPECT_NEAR(evaluation.object("a").voxel.measures.volume_mm3, 4.0 * 144.0, 60.0);
-  EXPECT_NE(told(evaluation.object("a").findings).find("as thick as it states, 4 mm"), std::string::npos);
+  EXPECT_NE(told(evaluation.object("a").findings).find("has the thickness that the file states, 4 mm"),
+            std::string::npos);
 }
 
 TEST(MaskStep, AStructureOnTiltedPlanesKeepsItsPlace) {

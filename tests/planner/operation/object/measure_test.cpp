@@ -134,7 +134,7 @@ TEST_F(MeasureStep, AWindowWhoseSamplesAllVoxelsPassOverIsToldFromOneWithoutSamp
     evaluate(plan_of_thin_scan(folder_, false));
     FAIL() << "has voxels";
   } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("take smaller ones"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("choose smaller voxels"), std::string::npos) << error.what();
   }
 }
 

@@ -57,7 +57,7 @@ TEST(OutlineStep, PlanesThatCannotBeAreRefusedInALine) {
     EXPECT_EQ(said.find('\n'), std::string::npos) << said;
   };
   expect(R"("view": "sideways")", "sideways");
-  expect(R"("from_mm": 5, "to_mm": 5)", "swap them");
+  expect(R"("from_mm": 5, "to_mm": 5)", "exchange the two");
   expect(R"("at_mm": [1], "from_mm": 5)", "leave 'from_mm'");
   expect(R"("at_mm": [1], "every_mm": 3)", "leave 'at_mm' out");
   expect(R"("every_mm": 0)", "every_mm");

@@ -93,7 +93,7 @@ TEST(PartsStep, OfPartsNearlyAsLargeAsEachOtherBothKernelsKeepTheSameAndTheChoic
     }
     ++doubts;
     EXPECT_EQ(one.certificate->verdict, voxel::Verdict::Warn);
-    EXPECT_NE(one.caveats[0].reason.find("sizes of parts are nearly equal"), std::string::npos);
+    EXPECT_NE(one.caveats[0].reason.find("parts have nearly equal sizes"), std::string::npos);
     EXPECT_NE(one.caveats[0].reason.find("at_mm"), std::string::npos);
   }
   EXPECT_GT(doubts, 0);

@@ -174,9 +174,9 @@ TEST(ScanOf, CountsSamplesOfObjectsThatComeFromNoScan) {
       objects.at("thick").voxel.octree.voxel_count() - objects.at("ball").voxel.octree.voxel_count();
   EXPECT_EQ(details["filled_samples"], beside);
   EXPECT_GT(beside, 1000u);
-  EXPECT_TRUE(warns(
-      evaluation,
-      std::to_string(beside) + " samples lie in objects without samples ('thick') and have the value 77"));
+  EXPECT_TRUE(warns(evaluation,
+                    std::to_string(beside) +
+                        " samples lie in objects that come from no scan ('thick') and have the value 77"));
 }
 
 TEST(ScanOf, WarnsThatAnExpressionHoldsNothing) {

@@ -171,7 +171,7 @@ TEST(TileStep, WhatCannotBeTiledIsRefusedInALine) {
 TEST(TileStep, ContoursWithoutAVoxelAreRefused) {
   const ScratchFolder folder;
   EXPECT_NE(made_refusal(folder, tile(slice(300.0, circle(5.0)) + ", " + slice(304.0, circle(5.0))))
-                .find("hold no voxel's centre"),
+                .find("enclose no voxel's centre"),
             std::string::npos);
 }
 

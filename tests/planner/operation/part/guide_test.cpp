@@ -240,13 +240,13 @@ TEST(GuideStep, RefusesWhatMakesNoGuideInASentenceThatSaysWhy) {
       "direction": [0, 1, 0]}, )";
   expect_says(refusal(sawn + in_slot + guide_step(at_front + R"(, "cuts": ["sawn"], "screws": ["near"])")),
               "the sleeve of 'near' runs through the slot of 'sawn'");
-  expect_says(refusal(guide_step(at_front + R"(, "screws": ["ball"])")), "'ball' is no screw");
+  expect_says(refusal(guide_step(at_front + R"(, "screws": ["ball"])")), "'ball' is not a screw");
   const std::string caps = R"({"id": "middle", "do": "mask", "regions": [{"view": "anterior",
       "polygons_mm": [[[-30, -2], [30, -2], [30, 2], [-30, 2]]]}]},
       {"id": "two", "do": "combine", "expression": "ball - middle"}, )";
   expect_says(refusal(caps + R"({"id": "jig", "do": "guide", "object": "two", "side": "anterior",
                                  "points": [[0, -19, 6], [0, -19, -6]]})"),
-              "points 1 and 2 lie on two bones");
+              "points 1 and 2 lie on two separate pieces");
   expect_says(refusal(caps + R"({"id": "jig", "do": "guide", "object": "two", "side": "anterior", "region":
       {"view": "anterior", "polygons_mm": [[[-8, -8], [8, -8], [8, 8], [-8, 8]]]}})"),
               "the region lies on two bones");

@@ -153,16 +153,16 @@ TEST(PlateStep, RefusesWhatMakesNoPlateInASentenceThatSaysWhy) {
   expect_refused(plate_step(R"("points": [[3, -30, 0], [0, -20, 0]])"), "10.1 mm off the surface of 'ball'");
   expect_refused(plate_step(R"("points": [[0, 20, 0], [0, -20, 0]])"), "lie behind each other");
   expect_refused(plate_step(R"("points": [[0, 18.33, 8], [0, -20, 0]])"),
-                 "behind other bone, seen along the direction in which the plate is put on");
+                 "behind other bone along the direction in which the plate is put on");
   expect_refused(plate_step(across + R"(, "direction": [1, 0, 0])"),
                  "nobody on that side can put the plate on");
-  expect_refused(plate_step(across + R"(, "screws": ["ball"])"), "'ball' is no screw");
+  expect_refused(plate_step(across + R"(, "screws": ["ball"])"), "'ball' is not a screw");
   const auto screw = [](const std::string& name, const std::string& at, const std::string& direction) {
     return R"({"id": ")" + name + R"(", "do": "screw", "object": "ball", "at": )" + at +
            R"(, "direction": )" + direction + "}, ";
   };
   expect_refused(screw("s", "[0, -18.33, 8]", "[0, 1, 0]") + plate_step(across + R"(, "screws": ["s"])"),
-                 "the hole of 's' leaves no plate at its side");
+                 "the hole of 's' leaves no plate beside it");
   expect_refused(screw("s", "[0, -19.8, 2]", "[0, 1, 0]") + plate_step(across + R"(, "screws": ["s"])"),
                  "the hole of 's' leaves 0.4");
   expect_refused(screw("s", "[0, -20, 0]", "[0.9, 0.4, 0]") + plate_step(across + R"(, "screws": ["s"])"),
@@ -173,7 +173,7 @@ TEST(PlateStep, RefusesWhatMakesNoPlateInASentenceThatSaysWhy) {
   expect_refused(two_pieces("[0, -6, 0]", plate_step(R"("points": [[0, -24.33, 8], [0, -18.33, -8]],
                      "screws": ["up"])",
                                                      "planned")),
-                 "name the object that a move step made of the screw");
+                 "name the object of the step that moved the screw");
 }
 
 }  // namespace

@@ -120,7 +120,7 @@ TEST(SplintStep, RefusesWhatMakesNoSplintInASentenceThatSaysWhy) {
   expect_refused_with(splint_refusal(folder, R"("arch": [[-30, 2, 30], [0, -40, 30], [30, 2, 30]])"),
                       "mm off 'upper'");
   expect_refused_with(splint_refusal(folder, arch_within + R"(, "upper_direction": [1, 0, 0])"),
-                      "along the teeth's sides nothing can be put on");
+                      "so it runs along the teeth's sides");
   expect_refused_with(splint_refusal(folder, arch_within + R"(, "upper_direction": [0, 0, -1])"),
                       "180 degrees off the arch's normal");
 }

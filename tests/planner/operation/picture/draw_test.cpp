@@ -65,13 +65,13 @@ TEST(DrawStep, WhatCannotBeDrawnOrChangesNothingIsRefused) {
   };
   const std::vector<std::pair<std::string, std::string>> refused{
       {R"("view": "front")", "nothing to draw"},
-      {R"("scan": "ct")", "give their positions"},
+      {R"("scan": "ct")", "state their positions"},
       {R"("objects": ["ball"], "axial": [3])", "add 'scan'"},
       {R"("objects": ["ball"], "window": "0:")", "add 'scan'"},
       {R"("objects": ["ball"], "within": "ball")", "add 'scan'"},
       {R"("objects": ["ball"], "level": [3, 4])", "add 'scan'"},
       {R"("objects": ["ball"], "apart_mm": 3)", "sections of surfaces"},
-      {R"("contours": ["ball"], "shading": "flat")", "surfaces: add one"},
+      {R"("contours": ["ball"], "shading": "flat")", "surfaces: add a surface"},
       {R"("contours": ["ball"], "light": [1, 1, 1])", "shaded"},
       {R"("objects": ["ball"], "light": [0, 0, 0])", "no direction"},
       {R"("objects": ["ball"], "ambient": 2)", "from 0 to 1"},

@@ -157,7 +157,7 @@ TEST(RenderStep, EachChoiceThatCannotBeReadOrChangesNothingIsRefusedInOneLine) {
            {R"("lights": ["1,1"])", "RIGHT,UP,FRONT"},
            {R"("lights": ["0,0,0"])", "direction"},
            {R"("lights": ["0,0,1,2"])", "strength"},
-           {R"("lights": ["0,0,1,0.5"], "diffuse": 0.5)", "strength of its own"},
+           {R"("lights": ["0,0,1,0.5"], "diffuse": 0.5)", "every light states its strength"},
            {R"("ambient": 2)", "ambient"},
            {R"("diffuse": -1)", "diffuse"},
            {R"("specular": 0, "specular_exponent": 9)", "mirrored"},

@@ -65,7 +65,7 @@ TEST(SliceStep, WhatCannotBeDrawnIsRefused) {
     return ball_refusal(folder, R"({"id": "s", "do": "slice", "scan": "ct")" + rest + "}");
   };
   EXPECT_NE(refusal(R"(, "path": "a.stl")").find(".png"), std::string::npos);
-  EXPECT_NE(refusal(R"(, "path": "a.png", "window": "bone", "level": [1, 2])").find("leave one out"),
+  EXPECT_NE(refusal(R"(, "path": "a.png", "window": "bone", "level": [1, 2])").find("leave out one of them"),
             std::string::npos);
   EXPECT_NE(refusal(R"(, "path": "a.png", "level": [1, 0])").find("above zero"), std::string::npos);
 }

@@ -14,7 +14,8 @@ TEST(Csv, AByte0IsRefusedWithItsRowWhereverItStands) {
       parse_csv("label,name\n" + row + "\n");
       ADD_FAILURE() << "was read";
     } catch (const voxel::Error& error) {
-      EXPECT_EQ(std::string(error.what()), "row 2: a byte 0: it is no text, or not UTF-8");
+      EXPECT_EQ(std::string(error.what()),
+                "row 2: a byte 0, so it is no text or not UTF-8: save it as UTF-8");
     }
   }
 }

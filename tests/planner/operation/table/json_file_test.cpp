@@ -52,7 +52,7 @@ TYPED_TEST(JsonText, CountsNoBracketsInTextsAndNoneThatAreClosed) {
 TYPED_TEST(JsonText, HasAKeyOnceInAnObject) {
   EXPECT_EQ(refusal<TypeParam>(R"({"a": {"b": 1}, "c": [{"b": 2}, {"b": 3, "a": 4}]})"), "taken");
   for (const char* doubled : {R"({"b": 1, "a": 2, "b": 3})", R"([{"a": {"b": 1, "b": 1}}])"})
-    EXPECT_EQ(refusal<TypeParam>(doubled), "the key 'b' occurs twice in one object: keep one");
+    EXPECT_EQ(refusal<TypeParam>(doubled), "the key 'b' occurs twice in one object: delete one of them");
 }
 
 TYPED_TEST(JsonText, IsNotQuotedWhereItIsNone) {

@@ -48,7 +48,7 @@ TEST(NearestName, SuggestsAndListsWhatThereIs) {
   EXPECT_EQ(suggestion("objekt", known),
             ", did you mean 'object'? Known are translate_mm, rotate, object, window, do");
   EXPECT_EQ(suggestion("zebra", known), ": known are translate_mm, rotate, object, window, do");
-  EXPECT_EQ(suggestion("zebra", {}), ": none is known here");
+  EXPECT_EQ(suggestion("zebra", {}), ": there are none to choose from");
 }
 
 }  // namespace

@@ -402,7 +402,7 @@ class RoundTrip(unittest.TestCase):
         for name in ("maxilla", "wedge"):
             self.assertEqual(made[name]["mesh"], first[name]["mesh"], name)
         self.assertIn("LPS", json.dumps(made["advanced"]["findings"]))
-        self.assertIn("the motion is the inverse", json.dumps(made["advanced"]["findings"]))
+        self.assertIn("the motion is its inverse", json.dumps(made["advanced"]["findings"]))
 
     def moved(self, name, text):
         (self.folder / name).write_text(text)
@@ -432,12 +432,12 @@ class RoundTrip(unittest.TestCase):
         head = "#Insight Transform File V1.0\n"
         affine = head + "Transform: AffineTransform_double_3_3\nParameters: "
         for name, text, words in [
-                ("no.tfm", "1 0 0 0\n", "begins with '#Insight Transform File'"),
+                ("no.tfm", "1 0 0 0\n", "begin with '#Insight Transform File'"),
                 ("empty.tfm", head, "holds no transform"),
-                ("grid.tfm", head + "Transform: BSplineTransform_double_3_3\nParameters: 1\n", "is not read"),
-                ("flat.tfm", head + "Transform: AffineTransform_double_2_2\n", "no transform of points in space"),
+                ("grid.tfm", head + "Transform: BSplineTransform_double_3_3\nParameters: 1\n", "cannot be read"),
+                ("flat.tfm", head + "Transform: AffineTransform_double_2_2\n", "not a transform of three-dimensional"),
                 ("few.tfm", affine + "1 0 0\n", "has 3 parameters: it takes 12"),
-                ("nan.tfm", affine + "nan 0 0\n", "no finite number"),
+                ("nan.tfm", affine + "nan 0 0\n", "not a finite number"),
                 ("scaled.tfm", affine + "2 0 0 0 2 0 0 0 2 0 0 0\nFixedParameters: 0 0 0\n", "scales, shears"),
                 ("thin.tfm", affine + "1 0 0 0 1 0 0 0 0 0 0 0\nFixedParameters: 0 0 0\n", "no inverse"),
                 ("two.tfm", head + 2 * "Transform: IdentityTransform_double_3_3\n", "states their order")]:
@@ -452,7 +452,7 @@ class RoundTrip(unittest.TestCase):
                 ({"type": "ROI"}, "has no markup of type Plane"),
                 ({"baseToNode": [0] * 16}, "perpendicular"),
                 ({"baseToNode": [1, 2]}, "must be a list of 16 numbers"),
-                ({"coordinateSystem": "IJK"}, "neither LPS"),
+                ({"coordinateSystem": "IJK"}, "is unknown: convert the points to LPS"),
                 ({"baseToNode": np.eye(4).ravel().tolist()}, "no bounds")]:
             (self.folder / "plane.mrk.json").write_text(json.dumps({"markups": [dict(plane, **change)]}))
             lines = self.refusal([{"id": "skull", "do": "window", "scan": "ct", "low": 300},
