@@ -71,7 +71,7 @@ class LeastBiTree {
     return static_cast<std::size_t>(corner.x) +
            edge * (static_cast<std::size_t>(corner.y) + edge * static_cast<std::size_t>(corner.z));
   }
-  /// Boxes of 2^k voxels along an axis are numbered after all larger ones.
+  /// Along an axis, boxes of 2^k voxels are numbered after all boxes with more voxels.
   std::size_t number(const HalvedBox& box) const {
     std::size_t number = 0;
     for (int axis = 2; axis >= 0; --axis) {
@@ -120,8 +120,8 @@ class LeastBiTree {
 
   int depth_, side_;
   std::vector<std::uint32_t> sums_;
-  std::vector<std::uint32_t> least_;  ///< number of nodes of each box's least tree; 0: not searched yet
-  std::vector<std::uint8_t> axes_;    ///< the axis along which each box is halved
+  std::vector<std::uint32_t> least_;  ///< number of nodes of each box's smallest tree; 0: not computed yet
+  std::vector<std::uint8_t> axes_;    ///< the axis along which each box's smallest tree halves it
 };
 
 class BiTreeReader {

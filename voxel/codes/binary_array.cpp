@@ -38,7 +38,7 @@ BinaryArray binary_array(const Octree& octree) {
     const auto side = static_cast<std::size_t>(slice.side);
     for (int y = 0; y < slice.side; ++y) {
       const std::size_t first = side * (static_cast<std::size_t>(y) + side * static_cast<std::size_t>(z));
-      // Two rows of four voxels share a byte; longer rows begin at a byte.
+      // With four voxels a row, two rows share a byte. Longer rows begin at the start of a byte.
       for (std::size_t x = 0; x < side; x += 8)
         array.bytes[(first + x) / 8] |=
             static_cast<std::uint8_t>((slice.row(y)[x / 64] >> (x % 64)) << (first % 8));
