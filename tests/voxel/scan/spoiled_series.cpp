@@ -707,7 +707,7 @@ std::vector<SpoiledKind> of_replacements() {
        {"a03"},
        text(0x00280301, "CS", "YES", 3, 3)},
       {"an_animal", "image_kind", warn, "QUADRUPED", names("a", 0, 11), text(0x00102210, "CS", "QUADRUPED")},
-      {"name_in_an_unknown_set", "image_kind", warn, "does not fit the patient's name", names("a", 0, 11),
+      {"name_in_an_unknown_set", "image_kind", warn, "cannot represent the patient's name", names("a", 0, 11),
        both(text(0x00080005, "CS", "FOO_BAR 1"), text(0x00100010, "PN",
                                                       "Sch\xe4"
                                                       "del^J"))},
@@ -840,7 +840,7 @@ std::vector<SpoiledKind> of_statements() {
       {"intercept_that_is_no_number",
        "unusable_images",
        fail,
-       "RescaleIntercept '-1024;0' cannot be read",
+       "RescaleIntercept '-1024;0' is not a number",
        {"a03"},
        text(0x00281052, "DS", "-1024;0", 3, 3)},
       {"aspect_against_the_spacing", "pixel_aspect", warn, "0.5 times as high", names("a", 0, 11),
