@@ -14,7 +14,7 @@ class BoundaryDistance {
 
   /// Distance in millimetres from a point in LPS to the nearest face; infinity if the octree is empty. The
   /// search stops at the first face nearer than `enough_mm` and returns its distance. Cost: up to 27 look-ups
-  /// within a voxel of the boundary; further away, a walk from the root.
+  /// for points within a voxel of the boundary; for others, a walk from the root.
   double operator()(const glm::dvec3& p_mm, double enough_mm = 0.0) const;
 
  private:
