@@ -34,7 +34,7 @@ struct Search {
   bool is_over() const { return nearest_mm2 < enough_mm2; }
   bool wants(bool is_inside) const { return is_inside == wants_inside; }
 
-  /// Searches the voxels that touch the point's voxel. Returns whether no voxel further away can be nearer.
+  /// Searches the voxels that touch the point's voxel. Returns whether no other voxel can be nearer.
   bool look_around(const Octree& octree, const glm::ivec3& centre) {
     const glm::dvec3 to_low_mm = spacing_mm * (p - glm::dvec3(centre) + 0.5),
                      to_high_mm = spacing_mm - to_low_mm;
