@@ -28,8 +28,8 @@ bool is_letter_or_digit(char c) {
 }
 
 struct NumberInName {
-  char sign = '\0';             ///< as written: '-', '+' or none
-  bool is_behind_word = false;  ///< the sign follows a letter
+  char sign = '\0';             ///< the sign as written: '-', '+' or '\0' for none
+  bool is_behind_word = false;  ///< whether the sign follows a letter
   std::string whole, fraction;  ///< digits; those of the integer part without leading zeros
   bool is_negative = false, is_decimal = true;
 };
@@ -85,11 +85,13 @@ CutName cut(const std::string& name) {
   return made;
 }
 
-/// Properties that names with equal text have at one of their numbers.
+/// Properties of the numbers at one position, over all names with equal text.
 struct NumberProperties {
   bool has_minus = false, has_other = false, is_behind_word = false;
-  std::size_t least_digits = 0, most_digits = 0;  ///< counts of digits after a dot, if there is one
-  bool ends_with_zero = false;                    ///< several digits after a dot end with 0
+  std::size_t least_digits = 0, most_digits = 0;  ///< least and largest number of digits after a dot, among
+                                                  ///< numbers with a dot
+  bool ends_with_zero = false;                    ///< whether a number has several digits after a dot and
+                                                  ///< ends with 0
 
   void add(const NumberInName& number) {
     (number.sign == '-' ? has_minus : has_other) = true;
@@ -253,7 +255,8 @@ std::string stacks_named(const std::vector<fs::path>& files) {
 }
 
 std::string numbered_alike(const SliceNames& names) {
-  std::map<std::string, std::set<double>> numbers_of;  // by the text before the last number
+  std::map<std::string, std::set<double>> numbers_of;  // the names' numbers, by the text before the last
+                                                       // number
   for (std::size_t i = 0; i < names.files.size(); ++i) {
     const std::string stem = names.files[i].stem().string();
     const std::size_t last = stem.find_last_of("0123456789");
