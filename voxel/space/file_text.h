@@ -35,7 +35,7 @@ inline std::ifstream opened(const std::filesystem::path& path) {
   return in;
 }
 
-/// All bytes of a file; none if it cannot be read. Throws as opened().
+/// All bytes of a file; none if it cannot be read. Throws as opened() does.
 inline std::string file_bytes(const std::filesystem::path& path) {
   std::ifstream in = opened(path);
   return {std::istreambuf_iterator<char>(in), {}};

@@ -12,9 +12,9 @@
 
 namespace octotomy::voxel {
 
-/// An allocator for arrays of many megabytes. Elements constructed without a value stay uninitialised, so
+/// An allocator for arrays of many megabytes. Elements constructed without a value remain uninitialised, so
 /// that the threads that fill an array are the first to touch it. Requests huge pages: a page fault per 4 KiB
-/// takes longer than filling the page, and in scattered reads the address translation of small pages takes
+/// takes longer than filling the page, and for scattered reads the address translation of small pages takes
 /// longer than the read.
 template <typename Value>
 struct LargeAllocator {
@@ -32,7 +32,7 @@ struct LargeAllocator {
     const std::size_t whole = (bytes + page - 1) / page * page;
     void* const memory = ::operator new(whole, std::align_val_t(page));
 #if defined(__linux__)
-    // Advice only: a system that ignores it maps small pages.
+    // This is only advice; a system that ignores it maps small pages.
     static_cast<void>(::madvise(memory, whole, MADV_HUGEPAGE));
 #endif
     return static_cast<Value*>(memory);

@@ -29,7 +29,7 @@ void set_data_limit(std::uint64_t bytes) noexcept {
   setrlimit(RLIMIT_DATA, &limit);
 }
 
-/// Resident bytes that no file backs; 0 if /proc is missing.
+/// The resident bytes of this process that no file backs; 0 if /proc is missing.
 std::uint64_t held_bytes() noexcept {
   const int file = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
   if (file < 0) return 0;
@@ -56,7 +56,7 @@ std::string gigabytes(std::uint64_t bytes) {
 
 void limit_memory(std::uint64_t bytes) {
   limit_bytes = bytes;
-  // Room for threads' stacks and for memory that is reserved and never touched.
+  // Additional address space for threads' stacks and for memory that is reserved but never touched.
   const std::uint64_t slack = (std::uint64_t{256} << 20) + bytes / 4;
   set_data_limit(bytes < no_limit - slack ? bytes + slack : no_limit);
 }

@@ -7,8 +7,9 @@
 
 namespace octotomy::voxel {
 
-/// Throws Error (Input) if `path` exists and is not a regular file: reading a pipe or a device may block or
-/// never end. Accepts a missing file, because its reader reports the lack together with the file's purpose.
+/// Throws Error (Input) if `path` exists and is not a regular file, because reading a pipe or a device may
+/// block or never end. Accepts a missing file; its reader reports that it is missing, and what the file is
+/// needed for.
 inline void need_regular_file(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);

@@ -42,7 +42,7 @@ constexpr std::size_t largest_raw = std::size_t{1} << 20;
 constexpr std::size_t largest_ratio = std::size_t{1} << 15;
 constexpr std::size_t bricks_per_section = 64;
 constexpr std::size_t samples_per_brick = 4096;
-/// Higher levels gain 5 % in size and take twice the time.
+/// Higher levels make files 5 % smaller and take twice the time.
 constexpr int compression_level = 3;
 
 enum class Kind : std::uint32_t { Binary = 1, Grey = 2, Partial = 3 };
@@ -63,7 +63,7 @@ std::uint32_t checksum(std::span<const std::uint8_t> bytes, std::uint32_t before
   return static_cast<std::uint32_t>(crc32_z(before, bytes.data(), bytes.size()));
 }
 
-// Checksum of section `number`, whose header and stored bytes begin at `section`.
+// The checksum of section `number`, whose header and stored bytes begin at `section`.
 std::uint32_t section_checksum(std::uint32_t number, const std::uint8_t* section, std::size_t stored) {
   std::array<std::uint8_t, 4> number_bytes;
   put(number, number_bytes.data());
@@ -104,7 +104,7 @@ Bytes universe_bytes(const Universe& universe, std::int16_t background) {
   return raw;
 }
 
-// Index of the sample that predicts sample i of a leaf. Precondition: i > 0.
+// The index of the sample by which sample i of a leaf is predicted. Precondition: i > 0.
 constexpr std::size_t predictor(std::size_t i) {
   return (i & 3) != 0 ? i - 1 : (i & 12) != 0 ? i - 4 : i - 16;
 }
@@ -136,7 +136,7 @@ Bytes brick_bytes(const GreyOctree& grey, std::span<const glm::ivec3> blocks) {
   return raw;
 }
 
-// The inverse of brick_bytes() for brick `number` of a section.
+// Decodes brick `number` of a section: the inverse of brick_bytes().
 void read_brick(const Bytes& raw, std::size_t number, std::int16_t background, GreyBrick& brick) {
   const std::uint8_t* low = raw.data() + number * samples_per_brick;
   const std::uint8_t* high = low + raw.size() / 2;
@@ -150,7 +150,7 @@ void read_brick(const Bytes& raw, std::size_t number, std::int16_t background, G
   }
 }
 
-// Calls `visit` for every block of the grid of a universe, x fastest.
+// Calls `visit` for every block of 16 x 16 x 16 voxels in a universe, x fastest.
 template <typename Visit>
 void for_each_block(const Universe& universe, const Visit& visit) {
   const int side = (universe.side() + 15) / 16;
@@ -325,7 +325,7 @@ class Reader {
       if (!damage[number].empty()) refuse_damaged(named(number) + ", " + damage[number]);
   }
 
-  // Checks and decompresses a section. If the section is damaged, returns the reason.
+  // Checks and decompresses a section. Returns the reason if the section is damaged.
   std::optional<std::string> unpack(std::uint32_t number, Section& section) const {
     const std::uint8_t* start = bytes_.data() + section.start;
     if (get<std::uint32_t>(start + 4) != section_checksum(number, start, section.stored.size()))
@@ -336,7 +336,7 @@ class Reader {
     const std::size_t size =
         ZSTD_decompress(section.raw.data(), section.raw.size(), section.stored.data(), section.stored.size());
     if (ZSTD_isError(size) != 0) return std::string("does not decompress: ") + ZSTD_getErrorName(size);
-    if (size != section.raw_size) return "is shorter than it says";
+    if (size != section.raw_size) return "is shorter than it states";
     return std::nullopt;
   }
 
