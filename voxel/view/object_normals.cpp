@@ -15,13 +15,14 @@ glm::ivec3 unit(int axis, int sign) {
   return step;
 }
 
-/// The surface beyond a side of the face: 1 if it rises, 0 if it continues, -1 if it falls.
+/// How the surface continues beyond a side of the face: 1 if it rises, 0 if it is level, -1 if it falls.
 int turn(const Octree& octree, const glm::ivec3& voxel, const glm::ivec3& outward, const glm::ivec3& side) {
   if (octree.contains(voxel + side + outward)) return 1;
   return octree.contains(voxel + side) ? 0 : -1;
 }
 
-/// The voxel of the object that a ray meets at a depth, and the axis of the face it enters through.
+/// The voxel of the object that a ray meets at a depth, and the axis of the face through which the ray
+/// enters.
 struct Face {
   glm::ivec3 voxel{0};
   int axis = 0;

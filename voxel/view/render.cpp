@@ -61,7 +61,7 @@ void check(const std::vector<DrawnObject>& objects, const RenderOptions& options
     throw InvalidInput("the picture's centre is not finite");
 }
 
-/// Blends a translucent object over the pixels at which it is nearer than the opaque surface.
+/// Blends a translucent object over the pixels at which this object is nearer than the opaque surface.
 void lay_over(const Translucent& layer, const DepthImage& opaque, std::vector<std::uint8_t>& rgb) {
   for (std::size_t i = 0; i < layer.image.pixels.size(); ++i) {
     const Seen& seen = layer.image.pixels[i];
@@ -160,7 +160,7 @@ Picture blank_picture(const std::vector<DrawnObject>& objects, const RenderOptio
 ImagePlane plane_of(const std::vector<DrawnObject>& objects, const Picture& picture) {
   ImagePlane plane = image_plane(objects.front().octree.universe(), picture.view, picture.size_px,
                                  {picture.centre_mm, picture.pixel_mm * picture.size_px.x});
-  plane.pixel_mm = picture.pixel_mm;  // exactly as in the picture
+  plane.pixel_mm = picture.pixel_mm;  // depth and object exactly as in the picture
   plane.eye = picture.eye;
   return plane;
 }
