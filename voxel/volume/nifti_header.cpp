@@ -40,7 +40,7 @@ Number swapped(Number value) {
   return value;
 }
 
-/// The fields that this reader uses, of either version.
+/// The header fields that this reader uses, for both versions of the format.
 struct Fields {
   int version = 1;
   bool is_swapped = false;
@@ -89,8 +89,8 @@ Fields fields_of(const char* bytes, bool is_swapped) {
   return fields;
 }
 
-/// Bound on the shift of a lattice's corner by single precision: eight roundings, of the steps, the origin
-/// and the operations between quaternion and matrix.
+/// An upper bound of the shift of a lattice's corner by single precision. It covers eight roundings: of the
+/// steps, the origin and the operations between quaternion and matrix.
 double single_precision(const glm::dmat4& file_from_voxel, const glm::ivec3& dims) {
   double extent = glm::length(glm::dvec3(file_from_voxel[3]));
   for (int axis = 0; axis < 3; ++axis) extent += dims[axis] * glm::length(glm::dvec3(file_from_voxel[axis]));
@@ -107,7 +107,7 @@ double worst_shift(const glm::dmat4& a, const glm::dmat4& b, const glm::ivec3& d
   return worst;
 }
 
-/// The coordinates that a form's code denotes.
+/// The name of the coordinates that a form's code denotes.
 std::string name_of_code(int code) {
   switch (code) {
     case NIFTI_XFORM_SCANNER_ANAT:
@@ -159,7 +159,8 @@ class NiftiReader {
 
  private:
   static constexpr int most_code = NIFTI_XFORM_TEMPLATE_OTHER;
-  static constexpr std::size_t most_read = 4096;  ///< the header and this program's own extension after it
+  static constexpr std::size_t most_read = 4096;  ///< size of the header and this program's own extension
+                                                  ///< behind it
 
   void read_fields() {
     bytes_.resize(most_read);
@@ -208,7 +209,7 @@ class NiftiReader {
     });
   }
 
-  /// The spacing along three axes. For a single slice the header may omit the third.
+  /// The spacing along three axes. For a single slice the header may omit that of the third axis.
   glm::dvec3 spacing(std::size_t axes) {
     glm::dvec3 spacing(fields_.pixdim[1], fields_.pixdim[2], fields_.pixdim[3]);
     const bool has_third = axes >= 3 || std::abs(spacing.z) > 0.0;
@@ -357,8 +358,9 @@ class NiftiReader {
     third_is_missing_ = false;
     const glm::dmat4& s = fields_.sform;
     const glm::ivec3& dims = header_.geometry.dims;
-    // The quaternion's first number is the root of 1 minus the sum of the others' squares. The rounding of
-    // the squares adds up to `slack`, so near half a turn the root is uncertain by up to the root of `slack`.
+    // The quaternion's first number is the square root of 1 minus the sum of the other numbers' squares. The
+    // rounding of the squares adds up to `slack`, so near half a turn the root is uncertain by up to the root
+    // of `slack`.
     constexpr double slack = 4.0 * static_cast<double>(std::numeric_limits<float>::epsilon());
     const double real = std::sqrt(std::max(0.0, 1.0 - glm::dot(fields_.quaternion, fields_.quaternion)));
     const double turn = 2.0 * slack / std::max(real, std::sqrt(slack));
@@ -378,7 +380,8 @@ class NiftiReader {
                                    shift * header_.geometry.mm_per_unit.x)});
   }
 
-  /// Uses the double-precision geometry in this program's own files if the header still agrees with it.
+  /// Uses the double-precision geometry that this program stores in its own files, if the header still agrees
+  /// with it.
   void take_exact_geometry() {
     const std::optional<glm::dmat4> lps = own_geometry();
     if (!lps) return;
@@ -398,9 +401,11 @@ class NiftiReader {
            "ones in double precision"});
   }
 
-  /// The geometry in this program's own extension, which is the first one; none if it is absent or damaged.
+  /// The geometry in this program's own extension, which is the first extension; none if it is absent or
+  /// damaged.
   std::optional<glm::dmat4> own_geometry() const {
-    const std::size_t at = header_bytes_ + 4;  // after the flags that state whether there are extensions
+    const std::size_t at = header_bytes_ + 4;  // extensions begin after the flags that state whether there
+                                               // are any
     if (bytes_.size() < at + 8 || bytes_[header_bytes_] == 0) return std::nullopt;
     const auto length = static_cast<std::size_t>(std::max(8, whole_at(at)));
     if (length > bytes_.size() - at || whole_at(at + 4) != nifti_text_extension) return std::nullopt;
