@@ -27,7 +27,7 @@ struct DockingContact {
 struct DockingContactsOptions {
   double within_mm = 0.4;  ///< the largest gap that counts as contact; above 0
   /// A contact's normal is that of a plane fitted to the contacts on the same smooth face within this
-  /// distance; at least two voxels are used.
+  /// distance, or within two voxel edges if these are longer.
   double smooth_mm = 2.0;
   Progress progress = {};
 };

@@ -30,7 +30,7 @@ constexpr double dense_hu = 300.0;
 
 /// Class of a sample.
 enum class Belongs : std::uint8_t {
-  Air,       ///< air, or material that is neither the patient's nor a support's
+  Air,       ///< samples below the threshold that belong neither to the patient nor to a support
   Patient,   ///< the patient, cavities and blurred edge included
   Support,   ///< boards, couches, foam and holders behind the patient's coronal middle
   Doubtful,  ///< solid parts of the patient or of a support: in front of the coronal middle, or inseparable

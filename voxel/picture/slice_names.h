@@ -17,8 +17,8 @@ namespace octotomy::voxel {
 ///   comes after 1.9.
 struct SliceNames {
   std::vector<std::filesystem::path> files;   ///< in the order of their numbers
-  std::vector<std::optional<double>> number;  ///< for each file the last number in its name; none if it has
-                                              ///< no number of at most nine digits
+  std::vector<std::optional<double>> number;  ///< for each file the last number in its name; none if the name
+                                              ///< has no number, or one of more than nine digits
   std::vector<std::string> doubts;            ///< for each ambiguity in the names, the assumption made
 };
 /// Orders files by name. Names with equal numbers are ordered by their letters. Cost: n log n.

@@ -57,7 +57,7 @@ void take_size(StatedPicture& stated, std::size_t axis, std::optional<double> nu
   if (!number) return;
   const std::optional<LengthUnit> length = length_unit(unit);
   if (!length)
-    stated.not_sizes = "its unit '" + unit + "' is no length that is known";
+    stated.not_sizes = "its unit '" + unit + "' is not a known unit of length";
   else if (!(*number > 0.0) || !std::isfinite(*number))
     stated.not_sizes = print("it states a size of %g %s", *number, unit.c_str());
   else

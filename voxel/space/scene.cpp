@@ -44,8 +44,8 @@ std::string unit(const Scene& scene) {
 std::optional<SliceRange> slices_inside(const Lattice& lattice, const Hole& hole) {
   const glm::dvec3 step_mm(lattice.lps_from_voxel[2]);
   const double along_mm = glm::dot(step_mm, hole.normal);
-  // The least cosine of the angle between normals, 0.8 degrees. If the slices of a lattice are tilted against
-  // the slab by more than this, none of them lies inside the slab.
+  // The limit is the cosine of 0.8 degrees. If the slices of a lattice are tilted against the slab by more
+  // than this angle, none of them lies wholly inside the slab.
   if (!(std::abs(along_mm) > 0.9999 * glm::length(step_mm))) return std::nullopt;
   const double start_mm = glm::dot(glm::dvec3(lattice.lps_from_voxel[3]), hole.normal);
   // A slice within a hundredth of a step from an image counts as this image, which was measured.

@@ -94,9 +94,9 @@ class GreyOctree {
   /// A copy that also stores the scan from which the octree was built, for on_scan_lattice().
   GreyOctree with_scan(std::shared_ptr<const Scene> scene) const;
   /// The samples of the scan on the scan's own lattice. Samples of a window under a motion are read from
-  /// these, because a second interpolation of interpolated voxels would lose thin walls. Returns a copy of
-  /// this octree if the lattices coincide, no scan is stored or the scan is larger than a universe. The first
-  /// call builds the result; later ones return the same. Any number of threads may call it.
+  /// these, because a second interpolation of interpolated voxels would lose thin walls. Returns this octree
+  /// itself if the lattices coincide, no scan is stored or the scan is larger than a universe. The first call
+  /// builds the result; later ones return the same. Any number of threads may call it.
   const GreyOctree& on_scan_lattice() const;
 
  private:

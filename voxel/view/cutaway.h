@@ -11,8 +11,8 @@
 
 namespace octotomy::voxel {
 
-/// A part that is left out of a picture to show the inside of objects: all points in a half-space, or all in
-/// a box.
+/// A part that is left out of a picture to show the inside of objects: all points outside a half-space, or
+/// all points in a box.
 using Cutaway = std::variant<HalfSpace, Box>;
 
 /// The part of a line of sight that a cut removes: its first and last depth, which may be infinite, and the

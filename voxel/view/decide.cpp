@@ -57,7 +57,7 @@ class DecidedRays {
  private:
   struct Ray {
     glm::dvec3 start{0.0};
-    glm::dvec3 per_mm{0.0};        ///< length of the ray's step per millimetre of depth, in voxels
+    glm::dvec3 per_mm{0.0};        ///< the ray's step per millimetre of depth, in voxels
     double mm_per_depth_mm = 1.0;  ///< length of the ray in mm per millimetre of depth; above 1 with an eye
                                    ///< at a finite distance
     std::vector<TakenSpan> taken;
