@@ -173,7 +173,7 @@ class Search {
     for (const ScanFitStep& step : found.trail) options_.watch(step);
   }
 
-  /// The best starts, refined at the coarsest resolution, the best first.
+  /// The best starts after refinement at the coarsest resolution, in descending order of likeness.
   std::vector<Found> from_all_starts(ScanFit& fit) {
     const ScanPair pair(moving_, fixed_, coarsest_mm, coarse_points, options_.by);
     for (const CoarseScan* scan : {&pair.moving(), &pair.fixed()})

@@ -43,13 +43,14 @@ struct ScanFit {
   double likeness = 0.0;              ///< at the finest resolution
   double overlap = 0.0;               ///< share of the smaller scan that the other covers, 0..1
   std::size_t starts = 0;             ///< number of motions from which the search began
-  std::size_t refined = 0;            ///< number of best starts that were followed further
+  std::size_t refined = 0;            ///< number of best starts that were refined at finer resolutions
   std::size_t agreeing = 0;           ///< number of refined starts that ended at the answer
   std::optional<double> rival;        ///< likeness of the best motion other than the answer, at the
                                       ///< resolution `rival_mm`; none if there is no other
   double likeness_there = 0.0;        ///< likeness of the answer at the resolution `rival_mm`
   double rival_mm = 8.0;
-  double least_drop = 0.0;  ///< smallest loss of likeness by a motion of `probe_mm` at the scans' edge
+  double least_drop = 0.0;  ///< smallest loss of likeness by a further motion that shifts the scans' edge by
+                            ///< `probe_mm`
   double probe_mm = 4.0;
   std::size_t motions = 0;  ///< number of motions whose likeness was computed
   Verdict verdict = Verdict::Pass;

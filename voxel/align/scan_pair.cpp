@@ -10,8 +10,8 @@
 namespace octotomy::voxel {
 namespace {
 
-/// Bins of the joint histogram per scan: enough for bone, soft tissue, fat and air, and few enough that
-/// thousands of points fill them.
+/// Number of bins of the joint histogram for each scan: enough for bone, soft tissue, fat and air, and few
+/// enough that thousands of points fill them.
 constexpr int bins = 40;
 /// Number of partial sums. They are added in a fixed order, so that the result does not depend on the number
 /// of threads.
@@ -210,7 +210,7 @@ Likeness ScanPair::likeness(const glm::dmat4& moving_from_fixed) const {
         s.ab += a * b;
         continue;
       }
-      // A point is shared between the two nearest bins, so that the likeness is continuous.
+      // A point is counted partly in each of the two nearest bins, so that the likeness is continuous.
       const float place = (value - moving_.low) * per_value;
       const int bin = std::min(bins - 2, static_cast<int>(place));
       const double beyond = place - static_cast<float>(bin);

@@ -70,7 +70,7 @@ ColourPixels png_pixels(std::string_view png) {
       if (length != 13) refuse_png("its header is damaged");
       const std::uint32_t width = big_endian(bytes), height = big_endian(bytes.substr(4));
       if (width < 1 || height < 1 || width > most_side_px || height > most_side_px)
-        refuse_png("its sides are not from 1 to " + std::to_string(most_side_px) + " pixels");
+        refuse_png("its width or height is not from 1 to " + std::to_string(most_side_px) + " pixels");
       if (bytes[8] != 8 || (bytes[9] != 0 && bytes[9] != 2 && bytes[9] != 4 && bytes[9] != 6) ||
           bytes[12] != 0)
         refuse_png("its pixels are not grey or RGB with 8 bits a channel, or it is interlaced");

@@ -15,7 +15,7 @@ enum class IdentityChoice {
   Keep,    ///< patient and study of the source
   Remove,  ///< patient and study of the source, de-identified by the Basic Application Level Confidentiality
            ///< Profile of PS3.15
-  New      ///< a patient without a name, in a study of its own
+  New      ///< a patient without a name, and a new study
 };
 /// keep, remove, new.
 std::optional<IdentityChoice> identity_choice(std::string_view word);

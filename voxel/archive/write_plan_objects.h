@@ -13,7 +13,7 @@ namespace octotomy::voxel {
 
 /// A picture of a plan, without any name in its pixels.
 struct PlanPicture {
-  std::string label;  ///< describes the view, at most 64 characters
+  std::string label;  ///< description of the view, at most 64 characters
   ColourPixels pixels;
 };
 

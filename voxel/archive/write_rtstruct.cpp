@@ -43,11 +43,11 @@ DicomAttributes implicit() {
 struct ContourPlane {
   double z_voxel = 0.0;
   int z = 0;
-  double slab_mm = 0.0;  ///< thickness that the contours represent
+  double slab_mm = 0.0;  ///< thickness of the slab that the contours represent
   std::vector<DicomSource::Image> images = {};
 };
 
-/// The distance between neighbouring planes of voxels, measured across them.
+/// The distance in mm between neighbouring planes of voxels, perpendicular to the planes.
 double plane_distance_mm(const Universe& universe) {
   const glm::dmat3 axes(universe.lps_from_voxel);
   return std::abs(glm::dot(axes[2], glm::normalize(glm::cross(axes[0], axes[1]))));

@@ -43,7 +43,8 @@ class LeastBiTree {
         for (int x = 0; x < side_; ++x)
           sums_[entry({x + 1, y + 1, z + 1})] = (slice.row(y)[x / 64] >> (x % 64)) & 1;
     });
-    // Sums all voxels up to each corner, one axis after the other.
+    // For each corner the number of object voxels below it along all axes, summed along one axis after the
+    // other.
     for (int axis = 0; axis < 3; ++axis)
       for (int z = 1; z <= side_; ++z)
         for (int y = 1; y <= side_; ++y)

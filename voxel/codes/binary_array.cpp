@@ -18,7 +18,7 @@ void check_room(int depth, int max_depth) {
   if (depth > max_depth)
     throw TooLarge("a binary array of depth " + std::to_string(depth) + " has 8^" + std::to_string(depth) +
                    " voxels: at most depth " + std::to_string(max_depth) +
-                   " is supported, use treecode instead");
+                   " is supported; use a treecode instead");
 }
 
 std::size_t byte_count(int depth) {

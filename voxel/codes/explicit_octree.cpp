@@ -25,7 +25,7 @@ void check_room(int depth) {
   if (depth > ExplicitOctree::max_depth)
     throw TooLarge("an explicit octree of depth " + std::to_string(depth) + " takes 8^" +
                    std::to_string(depth) + " entries: at most depth " +
-                   std::to_string(ExplicitOctree::max_depth) + " is supported, use treecode instead");
+                   std::to_string(ExplicitOctree::max_depth) + " is supported; use a treecode instead");
 }
 
 void fill(const LogicalNode& node, int level, std::size_t entry, std::vector<std::string>& levels) {

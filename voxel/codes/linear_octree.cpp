@@ -19,7 +19,7 @@ void append(const LogicalNode& node, const OctalCode& code, std::vector<OctalCod
   for (int k = 0; k < 8; ++k) append(node.child(k), code.child(k), full);
 }
 
-// Walks the codes and the nodes in preorder side by side.
+// Returns the statuses of nodes in preorder. The next code of the list is compared with each node.
 class LinearSource {
  public:
   explicit LinearSource(const LinearOctree& linear) : codes_(linear.full) { path_.push_back(OctalCode()); }

@@ -135,7 +135,7 @@ class MaskedReader {
   int digit() {
     const std::size_t at = hex_digits.find(cursor_.peek());
     if (cursor_.at_end() || at == std::string_view::npos)
-      cursor_.refuse_unexpected("a digit of its faces, 0 to f");
+      cursor_.refuse_unexpected("a hexadecimal digit of its covered faces, 0 to f");
     cursor_.advance();
     return static_cast<int>(at);
   }

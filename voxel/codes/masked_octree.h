@@ -55,7 +55,7 @@ FaceSet view_code(int octant);
 /// else E. Example: `E F F E E F`.
 std::string face_text(FaceSet faces);
 
-/// The costs of drawing back to front (4.4.3.1).
+/// The costs of drawing back to front (thesis 4.4.3.1).
 struct MaskedDrawing {
   std::vector<LevelCount> visits;  ///< number of visited nodes on levels 1..n, by status
   std::uint64_t drawn_faces = 0;   ///< of Full nodes

@@ -16,7 +16,7 @@ namespace octotomy::voxel {
 struct Projection {
   int side = 0;
   /// Column (i, j) is entry i + side j; i and j count along the two other axes of the universe in their
-  /// order. -1: an empty column.
+  /// order. The entry of an empty column is -1.
   std::vector<std::int32_t> before;
   std::uint64_t visited = 0;  ///< number of elements of the code that were read: faces, voxels, runs or
                               ///< segments
@@ -25,7 +25,7 @@ struct Projection {
 };
 
 // Each code is drawn by the algorithm that the thesis describes for it. The observer stands beyond the
-// universe in the direction `from`. All return the same columns.
+// universe in the direction `from`. All functions return the same columns.
 
 /// Face lists (4.4.1.2.2): draws only the list of faces towards the observer, into a depth buffer.
 Projection projection(const CuberilleFaces& faces, Direction from);

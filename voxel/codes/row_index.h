@@ -28,8 +28,8 @@ namespace octotomy::voxel {
   refuse_slice(code, slice, ", row " + std::to_string(row) + why);
 }
 
-/// Throws std::invalid_argument if the number of slices or rows is not the universe's, or if all rows of a
-/// slice are empty. `check_row(row, z, y)` checks the rows themselves.
+/// Throws std::invalid_argument if the number of slices, or of a slice's rows, is not the universe's side, or
+/// if all rows of a slice are empty. `check_row(row, z, y)` checks the rows themselves.
 template <typename Index, typename CheckRow>
 void check_slices(const char* code, const Index& index, const CheckRow& check_row) {
   check_depth(index.universe.depth);

@@ -13,7 +13,7 @@ namespace octotomy::voxel {
 /// samples.
 class SliceStack {
  public:
-  /// Throws std::invalid_argument if the scene has other samples than int16, or no slice.
+  /// Throws std::invalid_argument if the scene's samples are not int16, or it has no slice.
   explicit SliceStack(std::shared_ptr<const Scene> scene);
 
   const Scene& scene() const { return *scene_; }

@@ -102,8 +102,9 @@ void DicomFile::require(std::size_t length, DicomTag tag) const {
   if (length <= left()) return;
   if (length <= file_bytes_ - at_) throw NeedsMore{};
   if (!is_readable_syntax(transfer_syntax_))
-    throw Error(ErrorCode::Input, "is in the transfer syntax " + transfer_syntax_ +
-                                      ", which is not known here: convert it, for example by gdcmconv --raw");
+    throw Error(ErrorCode::Input,
+                "is in the transfer syntax " + transfer_syntax_ +
+                    ", which octotomy cannot read: convert it, for example by gdcmconv --raw");
   std::array<char, 112> text{};
   std::snprintf(text.data(), text.size(),
                 "cut short or damaged: attribute (%04x,%04x) claims %zu bytes, %zu are left", tag >> 16,

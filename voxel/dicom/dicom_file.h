@@ -16,7 +16,7 @@ using DicomTag = std::uint32_t;
 /// Specific Character Set (0008,0005): the character set of a file's texts.
 constexpr DicomTag character_set_tag = 0x00080005;
 
-/// A range of bytes in a file.
+/// A range of `length` bytes in a file, from offset `at` on.
 struct DicomExtent {
   std::size_t at = 0;
   std::size_t length = 0;

@@ -58,7 +58,7 @@ std::optional<NoSlice> not_reconstructed(const DicomFile& file, std::size_t fram
     if (kind == projection)
       return NoSlice{
           "a nuclear medicine image of the kind " + kind +
-              ", whose frames are projections instead of slices: export the reconstruction (RECON TOMO)",
+              ", whose frames are projections and not slices: export the reconstruction (RECON TOMO)",
           NoSlice::Kind::Unusable};
   if (numbers_of_frames(file, slice_vector_tag, frames)) return std::nullopt;
   return NoSlice{

@@ -17,8 +17,8 @@ bool is_nuclear(const std::string& class_uid);
 /// The reason why the frames of a nuclear medicine image are not reconstructed slices; none if they are.
 std::optional<NoSlice> not_reconstructed(const DicomFile& file, std::size_t frames);
 
-/// For each frame of a nuclear medicine image, the item of its detector, which holds its position; empty if
-/// there is none.
+/// For each frame of a nuclear medicine image, the item of its detector, which contains the frame's position;
+/// empty if there is no such item.
 std::vector<DicomFile> detectors_of_frames(const DicomFile& file, std::size_t frames);
 
 /// Stores time slots, energy windows and similar numbers of a nuclear medicine image's frames as traits of

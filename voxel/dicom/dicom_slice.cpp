@@ -186,7 +186,7 @@ std::optional<NoSlice> take_geometry(const Attributes& attributes, std::size_t f
     }
   if (spacing && spacing->size() != 2)
     return NoSlice{"an image whose PixelSpacing has " + std::to_string(spacing->size()) +
-                       " values: it needs two, the distance of rows and that of columns",
+                       " values instead of two, the distances between rows and between columns",
                    unusable};
   if (!spacing)
     return NoSlice{"an image without PixelSpacing: add it, or read the pixels by --raw with --spacing",
@@ -513,7 +513,7 @@ std::variant<std::vector<DicomSlice>, NoSlice> read_dicom_slices(const std::file
     bytes = beginning_of(path, most_attributes);
   } catch (const Error& error) {
     std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) return NoSlice{"a link to no file"};
+    if (!std::filesystem::exists(path, ignored)) return NoSlice{"a broken link"};
     return NoSlice{error.what(), NoSlice::Kind::Damaged};
   }
   if (!DicomFile::begins(bytes)) return NoSlice{"not DICOM"};

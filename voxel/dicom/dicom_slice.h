@@ -51,7 +51,7 @@ struct ModalityLut {
 /// A Real World Value Mapping (DICOM PS3.3, C.7.6.16.2.11), which exists in addition to the rescale.
 struct RealWorldMapping {
   std::optional<double> slope, intercept;  ///< none if the mapping is a table
-  std::optional<double> first, last;       ///< stored values for which the mapping is stated
+  std::optional<double> first, last;       ///< least and largest stored value to which the mapping applies
   std::string unit;                        ///< as coded, in UCUM: "[hnsf'U]"
 };
 
@@ -82,7 +82,7 @@ struct DicomSlice {
   int instance_number = 0;
   glm::ivec2 size_px{0};              ///< columns, rows
   glm::dvec2 spacing_mm{0.0};         ///< between columns, between rows
-  glm::dvec3 along_row{1, 0, 0};      ///< from column to column, as in the file
+  glm::dvec3 along_row{1, 0, 0};      ///< direction from column to column, as in the file
   glm::dvec3 along_column{0, 1, 0};   ///< from row to row
   glm::dvec3 first_mm{0.0};           ///< centre of the first pixel, LPS
   std::string assumed_spacing;        ///< the attribute used instead of PixelSpacing, to show to users
@@ -103,10 +103,10 @@ struct DicomSlice {
   std::string doubts;                  ///< statements in the header that cast doubt on the image as a
                                        ///< measurement, to show to users
   std::string assumed_modality;        ///< the modality in the header if the image's class contradicts it
-  std::string assumed_place;           ///< how a frame without a position of its own was placed, to show to
-                                       ///< users
-  std::string excess_pixels;           ///< pixel data beyond the images that the header counts, to show to
-                                       ///< users
+  std::string assumed_place;           ///< how the position of a frame was computed if the frame states none,
+                                       ///< to show to users
+  std::string excess_pixels;           ///< description of pixel data beyond the images that the header
+                                       ///< states, to show to users
   std::optional<double> aspect_ratio;  ///< PixelAspectRatio: height divided by width
   std::optional<int> stated_images;    ///< ImagesInAcquisition, or NumberOfSlices
   Concatenation concatenation;
@@ -117,7 +117,7 @@ struct DicomSlice {
   DicomTraitValues traits;
 };
 
-/// A file without a slice, and the reason.
+/// A file without a slice, and the reason why it has none.
 struct NoSlice {
   /// Stray: the file contains no image, so no part of a scan is lost. Unusable: an image that cannot be part
   /// of a volume. Damaged: an image whose file is truncated or corrupt.

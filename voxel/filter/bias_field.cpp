@@ -41,18 +41,19 @@ constexpr int order = 3;  // of the spline
 }
 
 void check_options(const Scene& scene, const BiasFieldOptions& options) {
-  check_values(scene, "a label map has no field to correct");
+  check_values(scene, "a label map has no magnetic field to correct: choose an MR scan");
   if (scene.meaning == Meaning::Hounsfield)
     refuse("a CT in Hounsfield units has no magnetic field to correct: choose an MR scan");
   if (options.threshold && (!(*options.threshold >= 0.0) || !std::isfinite(*options.threshold)))
     refuse("the threshold must be at least 0, because the field multiplies samples, not " +
            std::to_string(*options.threshold));
   if (!(options.knots_mm > 0.0) || !std::isfinite(options.knots_mm))
-    refuse("the distance of knots must be above 0 mm, not " + std::to_string(options.knots_mm));
+    refuse("the distance between knots must be above 0 mm, not " + std::to_string(options.knots_mm));
   if (options.levels < 1 || options.levels > 6)
-    refuse("a field is fitted in 1 to 6 levels, not " + std::to_string(options.levels));
+    refuse("the number of levels of the fit must be from 1 to 6, not " + std::to_string(options.levels));
   if (options.iterations < 1 || options.iterations > 1000)
-    refuse("a level takes 1 to 1000 iterations, not " + std::to_string(options.iterations));
+    refuse("the number of iterations in a level must be from 1 to 1000, not " +
+           std::to_string(options.iterations));
   if (!(options.noise > 0.0) || !std::isfinite(options.noise))
     refuse("the noise of the filter must be above 0, not " + std::to_string(options.noise));
 }

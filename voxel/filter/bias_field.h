@@ -19,7 +19,7 @@ struct BiasFieldOptions {
   Progress progress{};
 };
 
-/// A scan without the slow change of brightness that an inhomogeneous magnetic field causes.
+/// A scan from which the gradual change of brightness caused by an inhomogeneous magnetic field was removed.
 struct BiasCorrection {
   Scene scene;                               ///< in float: each sample divided by the field at its place
   double threshold = 0.0;                    ///< the threshold used

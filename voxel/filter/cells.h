@@ -13,7 +13,7 @@ namespace octotomy::voxel {
 using Cells = std::vector<std::uint8_t>;
 
 struct CellGrid {
-  glm::ivec3 factor{1}, dims{0};  ///< samples along a cell's edges, cells along the axes
+  glm::ivec3 factor{1}, dims{0};  ///< number of samples along a cell's edges, and of cells along the axes
   glm::dvec3 mm{1.0};             ///< edges of a cell
 
   /// Chooses cells whose edges are as near to `cell_mm` as whole samples allow. The last cell of an axis may

@@ -23,7 +23,7 @@ struct Components {
 /// area.
 Components components(const Octree& octree, Neighbours neighbours = Neighbours::Faces);
 
-/// The number of connected components, without building them.
+/// The number of connected components. Does not build their octrees.
 std::size_t component_count(const Octree& octree, Neighbours neighbours = Neighbours::Faces);
 
 /// The union of the components that contain a seed. Seeds outside the object are ignored.

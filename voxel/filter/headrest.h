@@ -23,7 +23,7 @@ struct HeadrestRemoval {
   GreyOctree removed;
   Octree solid;              ///< the removed voxels with samples of at least the threshold
   std::uint64_t parts = 0;   ///< number of parts of `solid`, joined by faces
-  std::uint64_t voxels = 0;  ///< all removed voxels, rim and foam included
+  std::uint64_t voxels = 0;  ///< number of all removed voxels, rim and foam included
   double solid_mm3 = 0.0;
   double foam_mm3 = 0.0;     ///< removed volume with samples below the threshold: foam, cloth, blurred edges
   double bone_mm3 = 0.0;     ///< removed volume with samples of at least dense_hu: metal, carbon, dense

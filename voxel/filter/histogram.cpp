@@ -75,7 +75,7 @@ Histogram histogram(const Scene& scene, int bins) {
   if (!(shown.low < shown.high)) shown = range(scene);
   if (!(shown.low < shown.high))
     throw Error(ErrorCode::Geometry,
-                "all samples of this scan are " + rounded(shown.low) + ": choose another scan");
+                "all samples of this scan have the value " + rounded(shown.low) + ": choose another scan");
   Histogram result{shown.low, shown.high, std::vector<std::uint64_t>(static_cast<std::size_t>(bins), 0)};
   const double scale = (bins - 1) / (shown.high - shown.low);
   std::visit(

@@ -5,7 +5,7 @@
 
 #include "voxel/space/scene.h"
 
-// Filtering of scans that have padding.
+// Applies filters to scans that have padding.
 namespace octotomy::voxel {
 
 /// Applies a filter that keeps the lattice to a scene with padding. `filter` receives a copy without padding:

@@ -24,8 +24,9 @@ void check_radius(double radius_mm) {
     throw InvalidInput("a radius must be at least 0 mm and finite, not " + std::to_string(radius_mm));
 }
 
-// The limit on squared distances. It includes voxels on the ball's surface although their squares may be
-// rounded up by two units in the last place of a float.
+// The largest squared distance within the ball, in mm^2. It is raised so that it includes voxels on the
+// ball's surface although their squared distances may be rounded up by two units in the last place of a
+// float.
 double limit_mm2(double radius_mm) {
   assert(radius_mm >= 0.0);
   return radius_mm * radius_mm * (1.0 + 4.0 * static_cast<double>(std::numeric_limits<float>::epsilon()));

@@ -35,7 +35,8 @@ constexpr double close_mm = 4.0;           ///< gaps in the skin up to twice thi
 constexpr double foam_limit = -200.0;      ///< HU; a threshold of at least this value lies above soft tissue
 constexpr double least_core_share = 0.3;   ///< least share of the largest part that the core contains; with
                                            ///< less, the object is thin throughout
-constexpr double most_front_share = 0.25;  ///< a thick part with a larger share in front is no support
+constexpr double most_front_share = 0.25;  ///< a thick part with a larger share in front of the middle is no
+                                           ///< support
 constexpr double thick_mm = 4.0;           ///< a part is thick if it contains a ball of this radius
 constexpr double least_bone_share = 0.01;  ///< least share of bone in a limb's samples; in an arm it is about
                                            ///< a tenth
@@ -118,7 +119,7 @@ class Parter {
     return best;
   }
 
-  /// Depth of a solid cell below the surface in millimetres.
+  /// The depth of a solid cell below the surface, in millimetres.
   double depth_mm(std::size_t i) const {
     double depth = std::sqrt(static_cast<double>(depth2_[i]));
     for (const int axis : {axes_.side, axes_.back}) {

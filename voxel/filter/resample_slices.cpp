@@ -40,7 +40,8 @@ double sinc(double x) {
 
 Weights weights_of(double place, SliceKernel kernel) {
   const double cell = std::floor(place);
-  // Every kernel is 1 at 0 and 0 at other integers: copy the sampled slice.
+  // At an integer position the result is a copy of the sampled slice, because every kernel is 1 at 0 and 0 at
+  // other integers.
   if (place == cell) return {static_cast<int>(cell), 1, {1.0}};
   Weights result;
   if (kernel != SliceKernel::Lanczos) {

@@ -87,7 +87,8 @@ class FirstDepths {
   glm::dvec3 of_voxel(const glm::dvec3& p_voxel) const { return frame_.of(lattice_.lps_mm(p_voxel)); }
   double far_end_mm() const { return far_end_mm_; }
 
-  /// Lowers the depths of the columns through a triangle, edges included, so that neighbours leave no gap.
+  /// Lowers the depths of the columns that pass through a triangle. The triangle's edges are included, so
+  /// that neighbouring triangles leave no gap.
   void add(const std::array<glm::dvec3, 3>& corners_voxel) {
     std::array<glm::dvec3, 3> p;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -257,8 +258,8 @@ class ShadowShares {
           points_[number++] = steps_ * ((glm::dvec3(x, y, z) + 0.5) / double{points_an_edge} - 0.5);
   }
 
-  /// The number of a voxel's points in the shadow minus the number outside it, if the same for all voxels of
-  /// a block; 0 if the difference may vary within the block.
+  /// The number of a voxel's points in the shadow minus the number outside it, if it is the same for all
+  /// voxels of a block; 0 if the difference may vary within the block.
   std::int16_t of_block(const glm::ivec3& first, int side) const {
     const glm::dvec3 middle = origin_ + steps_ * (glm::dvec3(first) + 0.5 * (side - 1));
     const glm::dvec3 reach = 0.5 * side * (glm::abs(steps_[0]) + glm::abs(steps_[1]) + glm::abs(steps_[2]));

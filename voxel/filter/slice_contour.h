@@ -13,7 +13,8 @@
 namespace octotomy::voxel {
 
 /// A closed line in a slice, in voxel indices x, y; the closing edge is implied. With x to the right and y
-/// upwards the object is on its left: outer boundaries have a positive area, holes a negative one.
+/// upwards, the object is on the line's left. Outer boundaries therefore have a positive area, holes a
+/// negative one.
 using SliceContour = std::vector<glm::dvec2>;
 
 /// The boundaries of the samples of slice `k` that are at least the threshold. A contour has one point,
@@ -36,8 +37,8 @@ struct ContourOptions {
   Progress progress{};
 };
 /// The contours of every slice as regions that can be edited (thesis 6.2.1.3). Throws std::invalid_argument
-/// if the slices lean by more than a tenth of a degree from a plane across one of the patient's axes, and as
-/// slice_contours(); Error (Geometry) if there is no contour; Stopped.
+/// if the slices lean by more than a tenth of a degree from a plane across one of the patient's axes; also
+/// throws as slice_contours() does; Error (Geometry) if there is no contour; Stopped.
 SliceMask contour_regions(const Scene& scene, const ContourOptions& options);
 
 /// The name of the view that contour_regions() draws in: "inferior", "anterior" or "right".

@@ -12,7 +12,7 @@ namespace octotomy::voxel {
 
 /// Replaces each sample by the median of the samples at most `radius` samples away along each axis. Removes
 /// specks and keeps edges, but rounds corners. Throws std::invalid_argument if a radius is negative or above
-/// 16. Memory: the result. Cost: the samples times the neighbourhood.
+/// 16. Memory: the result. Cost: the number of samples times that of the neighbourhood's samples.
 Scene median(const Scene& scene, const glm::ivec3& radius, const Progress& progress = {});
 
 /// Convolution with a Gaussian of standard deviation `sigma_mm`; spacings may differ between axes. The

@@ -6,7 +6,7 @@
 namespace octotomy::voxel {
 
 /// Distances from points to the boundary of an octree's voxels, including the faces of cavities. Voxels
-/// beyond the universe count as outside. Holds a copy of the octree; any number of threads may call it.
+/// beyond the universe count as outside. Stores a copy of the octree. Any number of threads may call it.
 class BoundaryDistance {
  public:
   /// Throws std::invalid_argument if the universe's axes are not perpendicular.

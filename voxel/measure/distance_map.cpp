@@ -80,7 +80,8 @@ glm::dvec3 orthogonal_spacing_mm(const Universe& universe) {
     // voxel.
     if (std::abs(glm::dot(edges[axis], edges[next])) > 0x1p-20 * spacing_mm[axis] * spacing_mm[next])
       throw InvalidInput(
-          "distances need a universe whose axes are at right angles: resample the sheared scan first");
+          "distances can be computed only in a universe with axes at right angles: resample the sheared scan "
+          "first");
   }
   return spacing_mm;
 }

@@ -21,7 +21,7 @@ struct VoxelRange {
 /// The smallest range that contains every voxel of the octree; empty for an empty octree.
 VoxelRange range_of(const Octree& octree);
 
-/// The range enlarged by `voxels` on every side; it may leave the universe.
+/// The range enlarged by `voxels` on every side; it may extend beyond the universe.
 VoxelRange grown(const VoxelRange& range, int voxels);
 
 /// For each voxel of a range, x fastest, the squared distance in mm^2 from its centre to the nearest centre

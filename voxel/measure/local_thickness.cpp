@@ -154,7 +154,7 @@ class Pyramid {
   std::vector<Level> levels_;
 };
 
-/// A ball about a place of the pyramid.
+/// A ball whose centre is a place of the pyramid.
 struct LatticeBall {
   double radius_mm = 0.0;
   bool is_of_wall = false;
@@ -353,7 +353,7 @@ void summarise(std::vector<double> values, double longest_edge_mm, VoxelThicknes
 }
 
 void check(const LocalThicknessOptions& options) {
-  if (options.samples < 64) throw InvalidInput("local thickness: needs at least 64 samples");
+  if (options.samples < 64) throw InvalidInput("local thickness: the number of samples must be at least 64");
   if (!(options.wall_angle_deg >= 91.0 && options.wall_angle_deg <= 179.0))
     throw InvalidInput("local thickness: a wall's angle must be from 91 to 179 degrees");
 }
@@ -363,7 +363,7 @@ Pyramid pyramid_of(const Octree& octree) {
   const VoxelRange range = grown(range_of(octree), 1);
   constexpr std::size_t most_fine = std::size_t{1} << 26, most = std::size_t{1} << 28;
   if (count_of(range.dims()) > most)
-    throw TooLarge("local thickness: the object's extent has more than 2^28 voxels: take larger voxels");
+    throw TooLarge("local thickness: the object's extent has more than 2^28 voxels: choose larger voxels");
   return Pyramid(octree, range, count_of(2 * range.dims()) <= most_fine ? 2 : 1);
 }
 

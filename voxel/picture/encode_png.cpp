@@ -83,7 +83,7 @@ std::vector<Byte> deflated(std::vector<Byte>& bytes) {
     --window_bits;
   z_stream stream{};
   const auto need = [](bool done) {
-    if (!done) throw Error(ErrorCode::Resource, "a picture cannot be deflated: zlib refused");
+    if (!done) throw Error(ErrorCode::Resource, "a picture cannot be compressed: zlib reports an error");
   };
   need(deflateInit2(&stream, deflate_level, Z_DEFLATED, window_bits, 8, Z_FILTERED) == Z_OK);
   const std::unique_ptr<z_stream, decltype(&deflateEnd)> end(&stream, deflateEnd);

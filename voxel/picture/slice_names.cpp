@@ -21,7 +21,7 @@ bool is_digit_at(const std::string& text, std::size_t at) {
   return at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) != 0;
 }
 
-/// Counts every byte beyond ASCII as a letter.
+/// Whether a byte is a letter. Every byte beyond ASCII counts as one.
 bool is_letter_or_digit(char c) {
   const auto byte = static_cast<unsigned char>(c);
   return std::isalnum(byte) != 0 || byte >= 0x80;
@@ -71,7 +71,7 @@ CutName cut(const std::string& name) {
     if (!is_chained && at < name.size() && name[at] == '.' && is_digit_at(name, at + 1)) {
       const std::size_t dot = at++;
       number.fraction = digits();
-      // 1.2.840 is read as three numbers.
+      // Two dots, as in 1.2.840, separate numbers: this text is read as three numbers.
       if (at < name.size() && name[at] == '.' && is_digit_at(name, at + 1)) {
         number.fraction.clear();
         at = dot;

@@ -125,8 +125,8 @@ AirLevel air_level_of_ct(const Scene& scene) {
   return {Meaning::Raw,
           {"air_level", Verdict::Fail,
            "air is not near -1000, so values " + span(scene) +
-               " are not Hounsfield: windows in HU do not apply; if air is near 0 the rescale intercept "
-               "(about -1024) is missing"}};
+               " are not Hounsfield units: windows in HU do not apply; if air is near 0, the rescale "
+               "intercept (about -1024) is missing"}};
 }
 
 AirLevel air_level_of_unnamed(const Scene& scene) {
@@ -167,7 +167,7 @@ std::optional<Finding> lost_sign_finding(const Scene& scene, bool is_ct) {
       print("%zu samples from %.9g to %.9g lie far above all others (up to %.9g). As 16-bit numbers with a "
             "sign "
             "they would be %.9g to %.9g, which is air or padding. If so, every window without an upper bound "
-            "takes them for bone: correct the type in the header to 16 bits with a sign",
+            "contains them like bone: correct the type in the header to 16 bits with a sign",
             count, low, high, static_cast<double>(others), low - 65536.0, high - 65536.0)};
 }
 

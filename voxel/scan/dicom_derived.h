@@ -22,7 +22,7 @@ constexpr DicomTag identity_removed_tag = 0x00120062;
 void put_study(DicomAttributes& attributes, const DicomOptions& options, const DicomDigest& digest,
                bool in_utf8);
 
-/// Writes references to the images that an image or a frame was made from (PS3.3, C.7.6.1 and C.7.6.16.2.6).
+/// Writes references to the images from which an image or a frame was made (PS3.3, C.7.6.1 and C.7.6.16.2.6).
 void put_source_images(DicomAttributes& attributes, const std::vector<DicomSource::Image>& images);
 
 /// Writes references to the source's series and to those of its images that the written object refers to

@@ -277,8 +277,8 @@ class SeriesAssembler {
                                                                  : Verdict::Pass,
          std::to_string(all.size()) + " series: took " + std::to_string(taken.number) + " " +
              named(taken.members) + ", left " + others +
-             (is_scattered ? print("; %zu images of %zu other series lie at further places of the same "
-                                   "planes: --join reads them as one",
+             (is_scattered ? print("; %zu images of %zu other series lie at other positions of the same "
+                                   "stack: --join reads all as one series",
                                    scattered.images, scattered.series)
                            : std::string()) +
              (options_.series.empty() ? "; choose another by --series N" : ""));
@@ -420,7 +420,9 @@ class SeriesAssembler {
       find(dicom_traits[trait].check, Verdict::Fail,
            "one series holds " + std::string(dicom_traits[trait].effect) + ": kept " +
                slices(members.size()) + ", left out " + slices(left.size()) + ": " + listed(left) +
-               (is_joinable ? "; if an export gave the images of one scan several, --join keeps them" : ""),
+               (is_joinable ? "; if an export assigned several of them to the images of one scan, --join "
+                              "keeps all images"
+                            : ""),
            left);
     }
     return members;
@@ -443,7 +445,7 @@ class SeriesAssembler {
          left);
   }
 
-  /// Keeps the slices that the options name.
+  /// Keeps the slices that the options select.
   void keep_asked(DicomStack& stack) {
     if (options_.slices.empty()) return;
     const auto count = static_cast<int>(stack.slices.size());

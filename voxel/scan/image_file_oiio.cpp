@@ -47,7 +47,7 @@ namespace {
 using octotomy::voxel::StoredImage;
 
 /// Largest difference, of 255, between the channels of a grey picture coded as brightness and two colours:
-/// decoding rounds each channel separately.
+/// it arises because decoding rounds each channel separately.
 constexpr int lossy_shades_apart = 1;
 
 /// The original value of a stretched sample. Readers stretch samples in one of two ways: they multiply by the
@@ -156,7 +156,7 @@ void turn_upright(StoredImage& image) {
   image.height = static_cast<int>(rows);
 }
 
-/// Copies a page's statements about its pixels.
+/// Copies a page's statements about its pixels, such as orientation and resolution.
 void take_statements(const OIIO::ImageSpec& spec, std::string_view format, StoredImage& image) {
   image.pixels_per_unit = static_cast<double>(spec.get_float_attribute("XResolution", 0.0f));
   image.pixels_per_unit_across = static_cast<double>(spec.get_float_attribute("YResolution", 0.0f));

@@ -175,7 +175,7 @@ PictureHeader read_picture_header(std::string_view bytes, std::size_t most_bytes
   if (begins("P2") || begins("P3") || begins("P5") || begins("P6")) return {"pnm", read_pnm(bytes)};
   if (begins("P1") || begins("P4") || begins("PF") || begins("Pf")) return {"pnm"};
   throw InvalidInput(
-      "is not a picture in a known format: give PNG, TIFF, JPEG, WebP, BMP, PGM, EXR or JPEG 2000");
+      "is not a picture in a known format: use PNG, TIFF, JPEG, WebP, BMP, PGM, EXR or JPEG 2000");
 }
 
 std::string picture_header_bytes(const std::filesystem::path& path) {

@@ -41,8 +41,8 @@ class PictureStatements {
   /// page, unless it has its own description.
   void add(const StoredImage& image, bool is_first_of_file);
 
-  /// The spacing that ImageJ or OME states. Throws Error (Input) naming `path` and the missing statement.
-  /// Does not use the resolution of a page, because programs write 72 dpi into any picture.
+  /// The spacing that ImageJ or OME states. Throws Error (Input) with `path` and the missing statement. Does
+  /// not use the resolution of a page, because programs write 72 dpi into any picture.
   KnownSpacing spacing(const std::filesystem::path& path) const;
 
   /// Adds lines to the scene's audit. `is_stated` is whether the scene's spacing is that of spacing().

@@ -148,7 +148,7 @@ class SeriesReader {
       find("stored_bits", Verdict::Fail,
            std::to_string(count) + " pixels of " + slices(names.size()) +
                print(" have bits beyond the %u that BitsStored counts. They were cut off: if they belong to "
-                     "the values, those are wrong; correct BitsStored and HighBit: ",
+                     "the values, these values are wrong; correct BitsStored and HighBit: ",
                      stored) +
                listed(names),
            names);

@@ -162,7 +162,7 @@ class SegReader {
               std::to_string(rows_) + " pixels, more than its bytes can hold: it is damaged");
     const auto parts = file_.frame_fragments(count);
     if (!parts)
-      refused("whose compressed fragments belong to no certain frames: decompress it with another tool");
+      refused("whose compressed fragments cannot be assigned to frames: decompress it with another tool");
     for (std::size_t i = 0; i < count; ++i) {
       const auto bits = static_cast<unsigned>(bits_);
       CompressedFrame frame{
@@ -332,7 +332,7 @@ class SegReader {
     if (!fit_.is_exact())
       warn_spacing(
           print("planes lie up to %.3g mm off planes %.6g mm apart, most ", fit_.off_mm, fit_.step_mm) +
-          place_of(fit_.worst) + ": they are taken as even");
+          place_of(fit_.worst) + ": they are treated as evenly spaced");
     const double planes = std::round((frames_.back().height_mm - fit_.low_mm) / fit_.step_mm) + 1.0;
     if (planes > 4.0 * static_cast<double>(frames_.size()) + 64.0)
       refused("whose planes are scattered: " + print("%.0f for %zu frames", planes, frames_.size()));
@@ -407,7 +407,7 @@ class SegReader {
     if (most_fraction_ > 0 && kind != "OCCUPANCY")
       scene_.audit.push_back({"fractions", Verdict::Warn,
                               what + ": the file states " + (kind.empty() ? "no type of fraction" : kind) +
-                                  ", so they may be no shares of volume"});
+                                  ", so they may not be shares of volume"});
     else
       scene_.audit.push_back({"fractions", Verdict::Pass, what});
   }
@@ -447,7 +447,7 @@ class SegReader {
     if (!undescribed.empty())
       scene_.audit.push_back({"undescribed", Verdict::Warn,
                               "samples belong to segments that the file does not describe: " +
-                                  listed(undescribed) + ": they have a number and no name"});
+                                  listed(undescribed) + ": they have a number but no name"});
     if (rounded_down_ + rounded_up_ == 0) return;
     for (const auto& [segment, fraction] : largest_fractions_)
       if (fraction > 0 && fraction < least_)

@@ -94,7 +94,7 @@ Scene read_raw(const fs::path& path, const ReadOptions& options) {
     bytes *= static_cast<std::uint64_t>(layout.dims[axis]);
   }
   if (std::error_code ignored; !fs::is_regular_file(path, ignored))
-    refuse(path, "is no regular file; give a file of raw samples");
+    refuse(path, "is not a regular file; choose a file of raw samples");
   const std::uint64_t held = fs::file_size(path);
   if (held < layout.offset || held - layout.offset != bytes)
     refuse(path, "holds " + std::to_string(held) + " bytes, but the raw layout takes " +

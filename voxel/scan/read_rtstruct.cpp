@@ -128,7 +128,7 @@ StructureSet read_rtstruct(const fs::path& path) {
                                       [&](const Structure& each) { return each.number == number; });
       if (found == structures.end())
         refuse(path, "a structure set whose contours belong to region " + std::to_string(number) +
-                         ", which it does not name");
+                         ", which it does not define");
       add_contours(contours, *found);
     }
     return set;

@@ -33,9 +33,9 @@ void need_no_override(const fs::path& path, const ReadOptions& options) {
 /// Refuses options that choose a series, because a single file or a stack contains no series.
 void need_no_series(const fs::path& path, const ReadOptions& options) {
   if (!options.series.empty() || options.join || !options.slices.empty())
-    throw InvalidInput(
-        path.string() +
-        ": is no DICOM series: leave --series, --join and --slices out, or give the folder of the series");
+    throw InvalidInput(path.string() +
+                       ": is not a DICOM series: leave --series, --join and --slices out, or choose the "
+                       "folder of the series");
 }
 
 Scene read_volume_file(const fs::path& path, VolumeFormat format, const ReadOptions& options) {

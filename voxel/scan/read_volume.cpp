@@ -110,7 +110,7 @@ std::optional<Meaning> meaning_of(const std::string& word) {
 Finding undescribed(const std::vector<std::string>& values) {
   return {"undescribed", Verdict::Warn,
           "samples have values that no segment of the file has: " + listed(values) +
-              ": they have a number and no name"};
+              ": they have a number but no name"};
 }
 
 /// Merges the layers of a 3D Slicer segmentation to one label map. Where segments overlap, a further number
@@ -147,8 +147,7 @@ class LayerReader {
         [&](const auto& samples) {
           const double value = samples[index];
           if (value > most_number)
-            refuse(path_, print("has the label %.9g; the largest that is read is %d: give labels smaller "
-                                "numbers",
+            refuse(path_, print("has the label %.9g; the largest that can be read is %d: renumber the labels",
                                 value, most_number));
           return value >= 0.5 ? static_cast<int>(std::lround(value)) : 0;
         },

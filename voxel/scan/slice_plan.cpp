@@ -107,7 +107,7 @@ class Layer {
     if (!is_known) plan_.step_mm = 1.0;
     find("slice_spacing", Verdict::Warn,
          print("a single slice; its thickness of %g mm is %s", plan_.step_mm,
-               is_known ? "the header's" : "assumed, the header has none"));
+               is_known ? "the header's" : "assumed, because the header states none"));
   }
 
   double total_mm() const { return heights_mm_.back(); }
@@ -462,10 +462,9 @@ class Layer {
     if (is_noise)
       find("sideways", Verdict::Warn,
            slices(names.size()) +
-               print(
-                   " scatter up to %.3g mm (%.2g pixels) to the side, as noisy or rounded positions do: they "
-                   "are kept in line: ",
-                   most_mm, most_px) +
+               print(" scatter up to %.3g mm (%.2g pixels) to the side, as noisy or rounded positions do: "
+                     "these slices are put in line: ",
+                     most_mm, most_px) +
                listed(names),
            names);
     else if (!names.empty())

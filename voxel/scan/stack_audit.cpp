@@ -117,8 +117,8 @@ class StackAudit {
           same += (same.empty() ? "" : ", ") + std::string(kind.words) + " " + values.begin()->first;
         continue;
       }
-      // Axial scanners count one acquisition per rotation, and times increase, so nearly each slice has its
-      // own value.
+      // Axial scanners count one acquisition per rotation, and times increase from slice to slice, so nearly
+      // each slice has its own value.
       const bool counts_on = 4 * values.size() > stack_.slices.size() && values.size() > 2 &&
                              (kind.check == std::string("acquisition") || kind.check == std::string("phase"));
       if (counts_on) continue;
@@ -320,8 +320,9 @@ class StackAudit {
     }
     if (with == 0) return;
     if (first == nullptr)
-      return find("real_world_values", Verdict::Pass,
-                  "the Real World Value Mapping of " + slices(with) + " makes the values of the rescale");
+      return find(
+          "real_world_values", Verdict::Pass,
+          "the Real World Value Mapping of " + slices(with) + " produces the same values as the rescale");
     const RealWorldMapping& mapping = first->real_world.front();
     const double slope = first->slope.value_or(1.0), intercept = first->intercept.value_or(0.0);
     const std::string unit = unit_of(*first);
@@ -345,7 +346,7 @@ class StackAudit {
     }
     find("real_world_values", Verdict::Warn,
          "values are " + used + ". The Real World Value Mapping of " + slices(differing.size()) +
-             " is not applied. It would make " + other +
+             " is not applied. It would produce " + other +
              (mapping.slope && mapping.intercept ? ". If the mapping's values are wanted, write its slope "
                                                    "and intercept into RescaleSlope and "
                                                    "RescaleIntercept: "

@@ -108,7 +108,7 @@ std::size_t pixel_bytes(const Extent& extent, unsigned bits) {
   if (bytes > 0xfffffffe)
     throw Error(ErrorCode::Geometry,
                 "the segmentation's " + std::to_string(extent.planes.size()) +
-                    " frames take more than DICOM's 4 GB: use larger voxels or a part of the object");
+                    " frames take more than DICOM's 4 GB: choose larger voxels or a part of the object");
   return static_cast<std::size_t>(bytes);
 }
 

@@ -17,7 +17,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// A convex polyhedron about the origin.
+/// A convex polyhedron around the origin, the shape of the brush.
 struct Dab {
   std::vector<HalfSpace> faces;
   std::vector<std::array<std::size_t, 2>> edges;  ///< pairs of faces that share an edge

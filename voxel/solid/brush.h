@@ -13,7 +13,7 @@ namespace octotomy::voxel {
 /// with the ball's volume; for a slab, a regular prism. Between two points it is the convex hull of the
 /// polyhedra at both points.
 struct BrushStroke {
-  /// A disc of some thickness, as a prism of 16 sides that has the disc's volume.
+  /// A brush that is a thick disc, represented by a prism with 16 sides and the disc's volume.
   struct Slab {
     glm::dvec3 normal{0, 0, 1};  ///< unit, LPS
     glm::dvec3 across{1, 0, 0};  ///< unit vector at a right angle to `normal`, towards a corner of the prism

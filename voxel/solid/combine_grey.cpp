@@ -57,7 +57,7 @@ GreyOctree combine_grey(const Universe& universe, const Expression& expression, 
   const double step = windows.empty() ? 1.0 : windows.front().grey.step();
   for (const Window& window : windows)
     if (window.grey.step() != step)
-      throw InvalidInput("grey octrees whose samples count in steps of " + std::to_string(step) + " and " +
+      throw InvalidInput("grey octrees whose samples have steps of " + std::to_string(step) + " and " +
                          std::to_string(window.grey.step()) +
                          " cannot be combined: make both octrees of integer samples");
   const std::int16_t background = rounded(options.background / step);

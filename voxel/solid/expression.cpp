@@ -166,7 +166,8 @@ Expression::Term::~Term() {
   while (!open.empty()) {
     const std::shared_ptr<const Term> last = std::move(open.back());
     open.pop_back();
-    // Allowed because every term is created as a non-const Term, and this one has no other owner.
+    // Removing const is allowed, because every term is created as a non-const Term and this one has no other
+    // owner.
     auto& term = const_cast<Term&>(*last);
     take(term.left);
     take(term.right);
@@ -207,7 +208,7 @@ Expression moved(const Expression& a, const glm::dmat4& moved_from_still) {
 
 Expression reflected(const Expression& a, const glm::dmat4& mirrored_from_still) {
   if (!is_affine_isometry(mirrored_from_still) || glm::determinant(glm::dmat3(mirrored_from_still)) > 0.0)
-    throw InvalidInput("a reflection must keep lengths and exchange left and right");
+    throw InvalidInput("a reflection must preserve lengths and reverse orientation");
   return carried(a, mirrored_from_still);
 }
 

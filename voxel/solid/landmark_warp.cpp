@@ -48,7 +48,7 @@ class Shifts {
         for (std::size_t k = 0; k < j; ++k) rest -= root[i][k] * root[j][k];
         if (i == j && !(rest > 0.0))
           throw InvalidInput("landmark " + std::to_string(i + 1) +
-                             " coincides with another one: place it apart");
+                             " coincides with another one: move or remove it");
         root[i][j] = i == j ? std::sqrt(rest) : rest / root[j][j];
       }
     for (std::size_t i = 0; i < count; ++i) {

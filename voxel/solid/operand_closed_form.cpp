@@ -133,7 +133,7 @@ Polygon hull_of(Polygon cloud) {
   return hull;
 }
 
-// Limits of a solid along its frame's third axis.
+// The limits of a solid along the third axis of its frame.
 struct Range {
   double low_mm = -std::numeric_limits<double>::infinity();
   double high_mm = std::numeric_limits<double>::infinity();
@@ -415,7 +415,7 @@ Meets BoxOperand::meets(const Cube& cube) const {
   if (straight_) return Meets::exactly(true, true);
   const glm::dmat3 columns = local_.map * cube.half;
   const auto separates = [&](const glm::dvec3& way, double size) {
-    // The cross product of parallel edges is zero and gives no axis.
+    // The cross product of parallel edges is zero and defines no axis.
     if (glm::dot(way, way) <= square(vanishing * size)) return false;
     const double box = glm::dot(half_mm_, glm::abs(way));
     const double reach = std::abs(glm::dot(columns[0], way)) + std::abs(glm::dot(columns[1], way)) +

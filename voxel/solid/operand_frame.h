@@ -68,7 +68,7 @@ inline ImageBox image_of(const glm::dmat4& map, const Cube& cube) {
   return {p - half, p + half};
 }
 
-/// The voxel that contains a point.
+/// The voxel that contains a point in index space.
 inline glm::ivec3 nearest_voxel(const glm::dvec3& p_voxel) {
   return glm::ivec3(glm::floor(p_voxel + 0.5));
 }

@@ -41,8 +41,8 @@ void for_each_edge(const std::vector<std::vector<glm::dvec2>>& polygons_mm, cons
       visit(polygon[last], polygon[i]);
 }
 
-/// Whether a point is inside, by the even-odd rule over all polygons of a region and in every region of a
-/// mask.
+/// Whether a point is inside a region, by the even-odd rule over all its polygons, or inside a mask, which
+/// means inside every region of the mask.
 bool contains(const std::vector<std::vector<glm::dvec2>>& polygons_mm, const glm::dvec2& p_mm);
 bool contains(const Region& region, const glm::dvec2& p_mm);
 bool contains(const RegionMask& mask, const glm::dvec3& p_mm);

@@ -30,7 +30,7 @@ View view_along(const glm::dvec3& direction) {
 glm::dvec2 mitre(const glm::dvec2& before, const glm::dvec2& after, double half_kerf_mm) {
   const glm::dvec2 sum = before + after;
   const double square = glm::dot(sum, sum);
-  // A zero sum, up to the rounding of unit vectors, means that the pieces run in opposite directions.
+  // If the sum is zero except for rounding errors, the pieces run in opposite directions.
   if (!(square > 64.0 * std::numeric_limits<double>::epsilon()))
     throw InvalidInput("the saw's line turns back on itself: remove the point where it turns");
   return sum * (2.0 * half_kerf_mm / square);

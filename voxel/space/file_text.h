@@ -10,7 +10,7 @@
 
 #include "voxel/space/error.h"
 
-// Error messages, file access and text comparison for the readers and writers of files.
+// Error messages, file access and text functions for the readers and writers of files.
 namespace octotomy::voxel {
 
 /// Throws Error with the file and the reason.

@@ -84,7 +84,7 @@ void need_memory(const std::filesystem::path& path, std::uint64_t sample_count, 
   if (needed <= free) return;
   refuse(path,
          what + " take " + gigabytes(needed) + " of memory, " + gigabytes(free) +
-             " are free: crop it or take wider spacings or larger voxels, or raise --memory",
+             " are free: crop it, choose wider spacings or larger voxels, or raise --memory",
          ErrorCode::Resource);
 }
 

@@ -14,7 +14,7 @@ inline void need_regular_file(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-    refuse(path, std::filesystem::is_directory(status) ? "is a folder: give a file"
+    refuse(path, std::filesystem::is_directory(status) ? "is a folder: choose a file"
                                                        : "is a pipe or device: copy it into a file first");
 }
 

@@ -22,7 +22,7 @@ inline std::string way_out_of(int number) {
 [[noreturn]] inline void refuse_unwritten(const std::filesystem::path& path, int number) {
   throw Error(number == 0 ? ErrorCode::Resource : code_of_errno(number),
               path.string() + ": cannot be written" +
-                  (number == 0 ? "; is the disk full, or a limit on the size of files met (ulimit -f)?"
+                  (number == 0 ? "; the disk may be full, or a limit on the size of files reached (ulimit -f)"
                                : ": " + std::generic_category().message(number) + way_out_of(number)));
 }
 

@@ -148,7 +148,7 @@ GreyOctree grey_octree_of_bricks(const Universe& universe, std::int16_t backgrou
                                  const std::function<void(std::size_t number, GreyBrick& brick)>& fill,
                                  std::optional<Octree> scan, double step) {
   if (scan && !(scan->universe() == universe))
-    throw InvalidInput("the scan's voxels and the bricks lie in different universes");
+    throw InvalidInput("the scan's voxels and the bricks have different universes");
   auto storage = std::make_shared<GreyOctree::Storage>(universe, background, blocks.size());
   storage->step = step;
   GreyOctree::Level& bottom = storage->bottom();

@@ -273,7 +273,8 @@ class Reader {
     const std::size_t compared = std::min(bytes_.size(), magic.size());
     if (!std::equal(magic.begin(), magic.begin() + static_cast<std::ptrdiff_t>(compared), bytes_.begin()) ||
         bytes_.empty())
-      refuse("is no octree file: it does not begin with the letters OCTREE; make one with octotomy octree");
+      refuse(
+          "is not an octree file: it does not begin with the letters OCTREE; make one with octotomy octree");
     if (bytes_.size() < header_bytes)
       refuse_damaged("is cut short within its header, at byte " + std::to_string(bytes_.size()));
     if (get<std::uint32_t>(bytes_.data() + 28) != checksum(bytes_.first(28)))
@@ -290,7 +291,7 @@ class Reader {
     if (bytes_.size() < size)
       refuse_damaged("is cut short: it has " + std::to_string(bytes_.size()) + " of its " +
                      std::to_string(size) + " bytes");
-    if (bytes_.size() > size) refuse_damaged("goes on after its end, byte " + std::to_string(size));
+    if (bytes_.size() > size) refuse_damaged("continues after its end, byte " + std::to_string(size));
     section_count_ = get<std::uint32_t>(bytes_.data() + 24);
   }
 
@@ -340,7 +341,8 @@ class Reader {
     return std::nullopt;
   }
 
-  // The joined raw bytes of the next sections if they have the given name; empty otherwise.
+  // The joined raw bytes of the consecutive next sections with the given name; empty if the next section has
+  // another name.
   Bytes take(const std::string& name) {
     Bytes raw;
     for (; next_ < sections_.size() && sections_[next_].name == name; ++next_) {
@@ -399,7 +401,7 @@ class Reader {
       }
       PartialOctree partial{inside, octree_of_packed_treecode(universe, take_needed("TOUC")), {}};
       const Bytes fractions = take("FRAC");
-      if (fractions.size() % 2 != 0) refuse("section FRAC ends amid a fraction");
+      if (fractions.size() % 2 != 0) refuse("section FRAC ends within a fraction");
       for (std::size_t i = 0; i < fractions.size(); i += 2)
         partial.fractions.push_back(get<std::uint16_t>(fractions.data() + i));
       check(partial);
@@ -453,7 +455,7 @@ class Reader {
     const auto step = std::bit_cast<double>(get<std::uint64_t>(raw.data()));
     int exponent = 0;
     if (!(step > 0.0) || !std::isfinite(step) || std::frexp(step, &exponent) != 0.5)
-      refuse("section STEP: the step of its samples is no power of two");
+      refuse("section STEP: the step of its samples is not a power of two");
     return step;
   }
 

@@ -21,10 +21,10 @@
 //             one zstd frame of the raw ones
 //
 // A checksum is a CRC-32 (zlib's). A section's covers its number, a u32 counted from 0, and all of the
-// section except the checksum. So a burst of up to 32 flipped bits is always detected; other damage is missed
-// once in 2^32 cases, or once in 2^64 where zstd's own checksum of the raw bytes covers it too. A section's
-// raw bytes are at most 2^20. Longer data are cut into sections of the same name, all but the last of that
-// length. Sections follow in this order:
+// section except the checksum. A burst of up to 32 flipped bits is therefore always detected; other damage is
+// missed once in 2^32 cases, or once in 2^64 where zstd's own checksum of the raw bytes covers it too. A
+// section's raw bytes are at most 2^20. Longer data are cut into sections of the same name, all but the last
+// of that length. Sections follow in this order:
 //
 //   UNIV  u32 depth, i32 background (0 but for grey), 16 f64 of lps_from_voxel, column by column
 //   NAME  UTF-8, may be missing
@@ -68,7 +68,7 @@ std::vector<std::uint8_t> octree_file_bytes(const OctreeFile& file);
 /// tree of the universe.
 OctreeFile octree_file_of_bytes(std::span<const std::uint8_t> bytes, const std::string& source);
 
-/// Writes a file beside `path` and renames it into place. Throws Error, Input or Resource, with path and
+/// Writes a file beside `path` and renames it into place. Throws Error (Input or Resource) with path and
 /// reason.
 void write_octree(const OctreeFile& file, const std::filesystem::path& path);
 /// Throws Error with path and reason; also throws as octree_file_of_bytes() does.

@@ -137,7 +137,7 @@ class Decoder {
     Eight read;
     read.full = next();
     read.partial = next();
-    if ((read.full & read.partial) != 0) refuse("a child is Full and Partial at once");
+    if ((read.full & read.partial) != 0) refuse("a child is marked both Full and Partial");
     if (read.full == 0xff || (read.full | read.partial) == 0)
       refuse("a Partial node's eight children are all Full or all Empty");
     return read;

@@ -148,7 +148,7 @@ void check(const PartialOctree& partial) {
   if (partial.inside.universe() != partial.touching.universe())
     throw InvalidInput("a partial octree's inside and touching voxels have different universes");
   if (!is_subset(partial.inside.root(), partial.touching.root(), partial.inside.root_height()))
-    throw InvalidInput("a partial octree has a voxel inside that is not among those touching");
+    throw InvalidInput("a partial octree has an inside voxel that is not a touching voxel");
   const std::uint64_t boundary = partial.touching.voxel_count() - partial.inside.voxel_count();
   if (partial.fractions.size() != boundary)
     throw InvalidInput("a partial octree of " + std::to_string(boundary) + " boundary voxels has " +

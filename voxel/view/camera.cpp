@@ -11,8 +11,8 @@
 namespace octotomy::voxel {
 namespace {
 
-/// A direction counts as an axis if the error across the whole universe stays below this number of voxels: a
-/// quarter of the finest step of depth that 8-bit shading shows on a slope of one.
+/// A direction counts as parallel to an axis if the deviation across the whole universe is below this number
+/// of voxels: a quarter of the finest step of depth that 8-bit shading shows on a slope of one.
 constexpr double unnoticed_voxels = 1.0 / 64.0;
 
 /// The range of an object's voxels along each axis, low and high included; empty if low > high.

@@ -82,7 +82,7 @@ struct VoxelRays {
 };
 VoxelRays voxel_rays(const Universe& universe, const ImagePlane& plane);
 
-/// The universe's axes along a view's right, up and look, in this order.
+/// Which axes of the universe are parallel to a view's right, up and look, in this order.
 struct AxisView {
   std::array<int, 3> axis{0, 1, 2};
   std::array<bool, 3> reversed{false, false, false};  ///< whether the axis's index decreases along the

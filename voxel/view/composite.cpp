@@ -14,8 +14,9 @@
 #include "voxel/view/layer.h"
 #include "voxel/view/srgb.h"
 
-// 1 mark the leaves and blocks near visible samples; 2 march every ray: find the next marked leaf, take the
-// samples of its steps, light them, compose. The marks do not change the positions of the steps.
+// 1 mark the leaves and blocks near visible samples; 2 march every ray: find the next marked leaf, compute
+// the samples at the ray's steps in it, light and compose them. The marks do not change the positions of the
+// steps.
 
 namespace octotomy::voxel {
 namespace {

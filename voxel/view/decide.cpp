@@ -205,10 +205,10 @@ class DecidedRays {
 }  // namespace
 
 void check(const Decision& decision) {
-  if (decision.peeled < 0) throw InvalidInput("the number of peeled layers is negative");
+  if (decision.peeled < 0) throw InvalidInput("the number of peeled layers must be at least 0");
   if (decision.by == Criterion::Range) {
     if (std::isnan(decision.low) || std::isnan(decision.high) || !(decision.low <= decision.high))
-      throw InvalidInput("the range of samples that ends rays is empty");
+      throw InvalidInput("the range of samples that ends rays is empty: low must be at most high");
   } else if (!(std::isfinite(decision.steeper_per_mm) && decision.steeper_per_mm > 0.0)) {
     throw InvalidInput("the change of samples that ends rays must be positive and finite");
   }
@@ -217,7 +217,8 @@ void check(const Decision& decision) {
 Picture decide(const DrawnObject& object, const RenderOptions& options, const Decision& decision) {
   check(decision);
   if (!object.grey || object.moved_from_still)
-    throw std::invalid_argument("decision functions along rays need the samples of an object at rest");
+    throw std::invalid_argument(
+        "decision functions along rays need an object with samples that was not moved");
   Picture picture = blank_picture({object}, options);
   picture.algorithm = Algorithm::RayCast;
   picture.visits.reset();

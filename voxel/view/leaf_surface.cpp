@@ -104,7 +104,7 @@ struct Fours {
   using Long4 = std::uint64_t __attribute__((vector_size(4 * lanes)));
   alignas(64) std::uint32_t at[lanes];
   store(numbers, at);
-  // In this order both shuffles stay within halves of vectors.
+  // In this order both shuffles exchange only numbers within the same half of a vector.
   const auto low = reinterpret_cast<Int>(Long4{fours[at[0]], fours[at[1]], fours[at[4]], fours[at[5]]});
   const auto high = reinterpret_cast<Int>(Long4{fours[at[2]], fours[at[3]], fours[at[6]], fours[at[7]]});
   return {{__builtin_shufflevector(low, high, 0, 2, 8, 10, 4, 6, 12, 14)},
@@ -184,7 +184,7 @@ struct Fours {
   return mixed(corners, t);
 }
 
-/// Positions near the entries of the rays from number `from` on.
+/// The positions near the entries of a vector's rays, from ray number `from` on.
 [[gnu::always_inline]] inline Origins origins_of(const Way& way, const RayBatch& batch, int from,
                                                  const Double4 start[3][2]) {
   Origins origins;

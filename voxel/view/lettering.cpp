@@ -132,7 +132,7 @@ double units_of(char symbol) {
   return symbol <= '9' ? symbol - '0' : symbol - 'a' + 10;
 }
 
-/// The strokes of a glyph, in units from the left end of the baseline, y up.
+/// The strokes of a glyph, in units of the glyph's grid, counted from the left end of the baseline, y up.
 void add_strokes(const Glyph& glyph, std::vector<Polyline>& strokes) {
   const std::string_view text = glyph.strokes;
   Polyline stroke;

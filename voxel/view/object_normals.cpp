@@ -39,7 +39,7 @@ Face face_at(const Octree& octree, const glm::dvec3& p_voxel, const glm::dvec3& 
     const glm::ivec3 here = glm::ivec3(glm::floor(p_voxel + step * step_voxels * direction + 0.5));
     if (octree.contains(here)) {
       face.voxel = here;
-      // The ray enters through an edge or corner: choose the axis nearest to its direction.
+      // If the ray enters through an edge or corner, the axis nearest to the ray's direction is chosen.
       double most = -1.0;
       for (int axis = 0; axis < 3; ++axis) {
         const double along = std::abs(direction[axis]) + (here[axis] != before[axis] ? 2.0 : 0.0);

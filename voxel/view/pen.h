@@ -14,7 +14,8 @@ struct Canvas {
   std::vector<std::uint8_t>* rgb = nullptr;  ///< 3 bytes per pixel
 };
 
-using Polyline = std::vector<glm::dvec2>;  ///< pixel positions; a repeated point is a dot
+using Polyline = std::vector<glm::dvec2>;  ///< pixel positions of the line's points; a repeated point draws a
+                                           ///< dot
 
 struct Pen {
   double width_px = 1.0;

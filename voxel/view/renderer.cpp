@@ -16,7 +16,8 @@ bool same_samples(const std::optional<GreyOctree>& a, const std::optional<GreyOc
   return a.has_value() == b.has_value() && (!a || &a->universe() == &b->universe());
 }
 
-// Comparisons name every field, so that a new field does not compile until it is compared here.
+// The comparisons bind every field by name, so that code with a new field does not compile until the field is
+// compared here.
 
 bool same_expression(const std::optional<Expression>& a, const std::optional<Expression>& b) {
   return a.has_value() == b.has_value() && (!a || &a->term() == &b->term());

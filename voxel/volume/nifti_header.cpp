@@ -197,7 +197,7 @@ class NiftiReader {
       geometry.mm_per_unit = glm::dvec3(unit->second.second);
     } else if (code != NIFTI_UNITS_UNKNOWN) {
       header_.audit.push_back(
-          {"length_unit", Verdict::Warn, print("xyzt_units has the code %d, which is no unit", code)});
+          {"length_unit", Verdict::Warn, print("xyzt_units has the code %d, which is not a unit", code)});
     }
   }
 
@@ -232,7 +232,7 @@ class NiftiReader {
   glm::dmat4 qform(std::size_t axes) {
     const glm::dvec3 length = spacing(axes);
     require(are_lengths({fields_.quaternion, fields_.qoffset}),
-            "its qform has a number that is not finite or beyond all lengths");
+            "its qform has a number that is not finite or larger than any length in a scan");
     const double squared = glm::dot(fields_.quaternion, fields_.quaternion);
     constexpr double rounding = 8.0 * static_cast<double>(std::numeric_limits<float>::epsilon());
     if (squared > 1.0 + rounding)
@@ -264,7 +264,7 @@ class NiftiReader {
       return std::isfinite(column.x) && std::isfinite(column.y) && std::isfinite(column.z);
     };
     if (!is_finite(s[0]) || !is_finite(s[1]) || !is_finite(s[2]) || !is_finite(s[3])) return false;
-    require(are_lengths({s[0], s[1], s[2], s[3]}), "its sform has a number beyond all lengths");
+    require(are_lengths({s[0], s[1], s[2], s[3]}), "its sform has a number larger than any length in a scan");
     third_is_missing_ = axes < 3 && glm::dvec3(s[2]) == glm::dvec3(0.0);
     const glm::dvec3 third =
         third_is_missing_ ? glm::cross(glm::dvec3(s[0]), glm::dvec3(s[1])) : glm::dvec3(s[2]);
@@ -351,7 +351,7 @@ class NiftiReader {
       q = qform(axes);
     } catch (const Error&) {
       header_.audit.push_back(
-          {"forms", Verdict::Warn, "the header's qform is damaged: its sform was taken, which is sound"});
+          {"forms", Verdict::Warn, "the header's qform is damaged: its sform, which is valid, was taken"});
       return;
     }
     header_.audit.resize(lines);  // the qform is not used, so its own flaws are not reported
@@ -472,9 +472,10 @@ class NiftiReader {
       return;
     }
     if (!std::isfinite(intercept))
-      refuse(path_, print("its slope is %g, but its intercept is no finite number: the values are therefore "
-                          "unknown; save the volume again",
-                          slope));
+      refuse(path_,
+             print("its slope is %g, but its intercept is not a finite number: the values are therefore "
+                   "unknown; save the volume again",
+                   slope));
     stored.slope = slope;
     stored.intercept = intercept;
     header_.audit.push_back(rescale_finding(stored, "scl_slope and scl_inter"));

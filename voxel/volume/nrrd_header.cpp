@@ -326,8 +326,8 @@ class NrrdReader {
           std::abs(stretch / (cells + (is_node ? 1 : -1)) - spacing) > 1e-3 * std::abs(spacing))
         header_.audit.push_back(
             {"spacing", Verdict::Warn,
-             print("axis %zu has a spacing of %.6g and ends that make it %.6g: the spacing is taken",
-                   axis + 1, spacing, stretch / cells)});
+             print("axis %zu has a spacing of %.6g, but its ends imply %.6g: the spacing is taken", axis + 1,
+                   spacing, stretch / cells)});
       if (!std::isfinite(spacing)) {
         const double cells = geometry.dims[static_cast<int>(i)] - (is_node ? 1 : 0);
         spacing = cells > 0.0 ? (highs[axis] - lows[axis]) / cells : std::numeric_limits<double>::quiet_NaN();
@@ -351,7 +351,7 @@ class NrrdReader {
       header_.audit.push_back(
           {"origin", Verdict::Warn,
            "the file states where its axes begin, but not whether a sample lies there or half a "
-           "voxel further (centers): half a voxel further is assumed"});
+           "voxel further (centers): the latter is assumed"});
     if (!has_origin) warn_of_origin();
   }
 

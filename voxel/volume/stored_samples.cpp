@@ -151,7 +151,7 @@ void put_values(const Samples<Stored>& stored, const StoredSamples& how, Scene& 
     fits_int16 = fits_int16 && in_place >= std::numeric_limits<std::int16_t>::min();
     scene.audit.push_back({"finite", Verdict::Warn,
                            std::to_string(found.unreal_count) +
-                               " samples are no finite numbers of single precision; they are " +
+                               " samples are not finite numbers in single precision; they are " +
                                (scene.padding ? "taken as not measured" : "set to the lowest value") +
                                " and hold " + std::to_string(in_place)});
   }

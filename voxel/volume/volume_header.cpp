@@ -109,7 +109,8 @@ Finding rescale_finding(const StoredSamples& stored, const std::string& says) {
   if (std::abs(stored.slope) < least_step * std::abs(stored.intercept))
     return {"rescale", Verdict::Warn,
             print("values are %.9g * stored + %.9g (", stored.slope, stored.intercept) + says +
-                "): beside such an intercept single precision loses the steps of the stored numbers"};
+                "): with so large an intercept single precision cannot represent the steps of the stored "
+                "numbers"};
   return {"rescale", Verdict::Pass,
           print("values are %.9g * stored %c %.9g (", stored.slope, stored.intercept < 0.0 ? '-' : '+',
                 std::abs(stored.intercept)) +
@@ -145,7 +146,7 @@ void add_third_axis(VolumeHeader& header) {
 void warn_of_minus_signs(const char* name, const std::vector<double>& spacings, VolumeHeader& header) {
   if (std::none_of(spacings.begin(), spacings.end(), [](double spacing) { return spacing < 0.0; })) return;
   header.audit.push_back({"spacing", Verdict::Warn,
-                          std::string(name) + " has a minus sign, which a spacing cannot have: that axis is "
+                          std::string(name) + " has a minus sign, which a spacing cannot have: the axis is "
                                               "assumed to run backwards; check left and right"});
 }
 

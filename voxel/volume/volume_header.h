@@ -26,7 +26,7 @@ std::optional<VolumeFormat> volume_format(const std::filesystem::path& path);
 /// too.
 std::optional<VolumeFormat> readable_volume_format(const std::filesystem::path& path);
 
-/// NIfTI's header and samples in two files.
+/// The two files of a NIfTI volume whose header and samples are separate.
 struct NiftiPair {
   std::filesystem::path header, image;
 };
@@ -92,8 +92,8 @@ void take_padding(const std::optional<std::string>& text, VolumeHeader& header);
 
 /// The audit's line about slope and intercept. `says` contains the format's names of both.
 Finding rescale_finding(const StoredSamples& stored, const std::string& says);
-/// Adds a third axis to a header of two axes: perpendicular to both, with a spacing of 1 mm. The audit warns
-/// of the assumption.
+/// Adds a third axis to a header that has two axes: perpendicular to both, with a spacing of 1 mm. The audit
+/// warns of the assumption.
 void add_third_axis(VolumeHeader& header);
 
 /// Adds a line to the audit if a spacing of the field `name` has a minus sign, which the formats do not

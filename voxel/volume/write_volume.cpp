@@ -73,7 +73,7 @@ class OutFile {
     z_stream stream{};
     if (deflateInit2(&stream, 1, Z_DEFLATED, is_gzip_stream ? MAX_WBITS + 16 : MAX_WBITS, 9,
                      Z_DEFAULT_STRATEGY) != Z_OK)
-      throw Error(ErrorCode::Resource, path_.string() + ": no memory is left to pack its samples");
+      throw Error(ErrorCode::Resource, path_.string() + ": no memory is left to compress its samples");
     const Ended ended{stream};
     std::string packed(std::size_t{1} << 18, '\0');
     for (std::string_view part : parts)
@@ -165,7 +165,7 @@ nifti_1_header nifti_header(const Scene& scene, const fs::path& path, std::size_
   for (int i = 0; i < 7; ++i) {
     const int length = i < 3 ? dims[i] : 1;
     if (length > std::numeric_limits<short>::max())
-      refuse(path, "NIfTI holds at most 32767 samples along an axis; write .nrrd");
+      refuse(path, "NIfTI can store at most 32767 samples along an axis; write .nrrd instead");
     header.dim[i + 1] = static_cast<short>(length);
     header.pixdim[i + 1] = i < 3 ? static_cast<float>(spacing_mm[i]) : 1.0f;
   }
