@@ -33,8 +33,8 @@ struct ScanFitOptions {
   /// The resolution at which the search ends, above 0 and at most 8 mm. A finer one takes longer; below the
   /// scans' spacing nothing is gained.
   double finest_mm = 2.0;
-  std::function<void(const ScanFitStep&)> watch = {};  ///< called with each step of the best search,
-                                                       ///< beginning with its start
+  /// Called with each step of the best search, beginning with its start.
+  std::function<void(const ScanFitStep&)> watch = {};
   Progress progress = {};
 };
 
@@ -45,12 +45,13 @@ struct ScanFit {
   std::size_t starts = 0;             ///< number of motions from which the search began
   std::size_t refined = 0;            ///< number of best starts that were refined at finer resolutions
   std::size_t agreeing = 0;           ///< number of refined starts that ended at the answer
-  std::optional<double> rival;        ///< likeness of the best motion other than the answer, at the
-                                      ///< resolution `rival_mm`; none if there is no other
-  double likeness_there = 0.0;        ///< likeness of the answer at the resolution `rival_mm`
+  /// Likeness of the best motion other than the answer, at the resolution `rival_mm`; none if there is no
+  /// other.
+  std::optional<double> rival;
+  double likeness_there = 0.0;  ///< likeness of the answer at the resolution `rival_mm`
   double rival_mm = 8.0;
-  double least_drop = 0.0;  ///< smallest loss of likeness by a further motion that shifts the scans' edge by
-                            ///< `probe_mm`
+  /// Smallest loss of likeness by a further motion that shifts the scans' edge by `probe_mm`.
+  double least_drop = 0.0;
   double probe_mm = 4.0;
   std::size_t motions = 0;  ///< number of motions whose likeness was computed
   Verdict verdict = Verdict::Pass;

@@ -18,8 +18,8 @@ struct CoarseScan {
   glm::dmat4 voxel_from_lps{1.0};
   glm::dmat4 lps_from_voxel{1.0};
   double measured_mm3 = 0.0;
-  float low = 0.0f, high = 1.0f;  ///< the values' range after the lowest and the highest 1/200 of them are
-                                  ///< left out
+  /// The values' range after the lowest and the highest 1/200 of them are left out.
+  float low = 0.0f, high = 1.0f;
 
   std::size_t index(int x, int y, int z) const {
     return static_cast<std::size_t>(x) +

@@ -23,11 +23,11 @@ struct Covered {
 
 /// An axis of the octree, and the parallel axis of the lattice.
 struct Along {
-  int axis = 0;                                    ///< number of the lattice's axis
-  std::size_t stride = 1;                          ///< step between neighbouring samples along this axis of
-                                                   ///< the lattice
-  std::vector<std::vector<Covered>> covered = {};  ///< for each voxel of the octree along its axis, the parts
-                                                   ///< of lattice voxels that it covers
+  int axis = 0;  ///< number of the lattice's axis
+  /// Step between neighbouring samples along this axis of the lattice.
+  std::size_t stride = 1;
+  /// For each voxel of the octree along its axis, the parts of lattice voxels that it covers.
+  std::vector<std::vector<Covered>> covered = {};
 };
 
 /// The lattice voxels, of `count` along an axis, that an octree voxel covers, and the covered lengths.

@@ -12,10 +12,11 @@ namespace octotomy::voxel {
 
 /// The patient and study that a written DICOM object states.
 enum class IdentityChoice {
-  Keep,    ///< patient and study of the source
-  Remove,  ///< patient and study of the source, de-identified by the Basic Application Level Confidentiality
-           ///< Profile of PS3.15
-  New      ///< a patient without a name, and a new study
+  Keep,  ///< patient and study of the source
+  /// Patient and study of the source, de-identified by the Basic Application Level Confidentiality Profile of
+  /// PS3.15.
+  Remove,
+  New  ///< a patient without a name, and a new study
 };
 /// keep, remove, new.
 std::optional<IdentityChoice> identity_choice(std::string_view word);

@@ -18,8 +18,8 @@ struct Projection {
   /// Column (i, j) is entry i + side j; i and j count along the two other axes of the universe in their
   /// order. The entry of an empty column is -1.
   std::vector<std::int32_t> before;
-  std::uint64_t visited = 0;  ///< number of elements of the code that were read: faces, voxels, runs or
-                              ///< segments
+  /// Number of elements of the code that were read: faces, voxels, runs or segments.
+  std::uint64_t visited = 0;
 
   bool operator==(const Projection& other) const { return side == other.side && before == other.before; }
 };

@@ -40,8 +40,8 @@ void erase_all(std::string& text, std::string_view part) {
 
 bool is_ascii(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](char letter) {
-    return static_cast<unsigned char>(letter) < 0x80 && letter != '\x1b';  // an escape sequence switches to
-                                                                           // another set set
+    // An escape sequence switches to another set.
+    return static_cast<unsigned char>(letter) < 0x80 && letter != '\x1b';
   });
 }
 

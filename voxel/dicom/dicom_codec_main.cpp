@@ -122,8 +122,8 @@ int main(int count, char** arguments) {
   if (count != 2 || setenv("TMPDIR", arguments[1], 1) != 0) return 1;
   bool is_confined = false;
 #ifndef OCTOTOMY_SANITIZED  // a sanitizer traces the process
-  // On systems without seccomp or Landlock, the user is protected only by the limits above and by the separate
-  // address space.
+  // On systems without seccomp or Landlock, the user is protected only by the limits above and by the
+  // separate address space.
   is_confined = octotomy::voxel::confine(arguments[1]);
 #endif
   while (answer_next(is_confined)) {

@@ -12,9 +12,9 @@ namespace octotomy::voxel {
 
 /// Facts about a slice's values, found while decoding it.
 struct DecodedSlice {
-  bool fits = true;               ///< every value is an integer in the range of the sample type
-  std::size_t foreign_count = 0;  ///< number of pixels with bits set outside the stored bits, other than
-                                  ///< copies of the sign
+  bool fits = true;  ///< every value is an integer in the range of the sample type
+  /// Number of pixels with bits set outside the stored bits, other than copies of the sign.
+  std::size_t foreign_count = 0;
 };
 
 /// Whether two images have the same stored bytes of pixels in the same format. Throws Error (Input) if a file

@@ -66,9 +66,8 @@ struct Concatenation {
 /// its frames. LPS, millimetres.
 struct DicomSlice {
   std::filesystem::path path;
-  std::string
-      name;  ///< to show to users: the path below the scan's folder, with the frame's number if the file has
-             ///< several
+  /// To show to users: the path below the scan's folder, with the frame's number if the file has several.
+  std::string name;
   int frame = 0;
   DicomPixels pixels;
   std::string class_uid;  ///< SOP class, (0008,0016)
@@ -80,16 +79,16 @@ struct DicomSlice {
   std::string rescale_type;
   int series_number = 0;
   int instance_number = 0;
-  glm::ivec2 size_px{0};              ///< columns, rows
-  glm::dvec2 spacing_mm{0.0};         ///< between columns, between rows
-  glm::dvec3 along_row{1, 0, 0};      ///< direction from column to column, as in the file
-  glm::dvec3 along_column{0, 1, 0};   ///< from row to row
-  glm::dvec3 first_mm{0.0};           ///< centre of the first pixel, LPS
-  std::string assumed_spacing;        ///< the attribute used instead of PixelSpacing, to show to users
-  bool position_of_acr_nema = false;  ///< the position is that of the ACR-NEMA attributes of 1988, because
-                                      ///< DICOM's are absent
-  bool inverted = false;              ///< MONOCHROME1
-  bool is_localizer = false;          ///< by ImageType
+  glm::ivec2 size_px{0};             ///< number of columns and of rows
+  glm::dvec2 spacing_mm{0.0};        ///< distance between columns, and between rows
+  glm::dvec3 along_row{1, 0, 0};     ///< direction from column to column, as in the file
+  glm::dvec3 along_column{0, 1, 0};  ///< direction from row to row, as in the file
+  glm::dvec3 first_mm{0.0};          ///< centre of the first pixel, LPS
+  std::string assumed_spacing;       ///< the attribute used instead of PixelSpacing, to show to users
+  /// The position is that of the ACR-NEMA attributes of 1988, because DICOM's are absent.
+  bool position_of_acr_nema = false;
+  bool inverted = false;      ///< MONOCHROME1
+  bool is_localizer = false;  ///< whether ImageType states a scout view
   std::optional<double> slope;
   std::optional<double> intercept;
   std::shared_ptr<const ModalityLut> lut;  ///< applied instead of slope and intercept
@@ -98,15 +97,15 @@ struct DicomSlice {
   std::vector<RealWorldMapping> real_world;  ///< not applied
   std::optional<double> location_mm;         ///< SliceLocation, whose origin is not stated
   std::string patient_orientation;           ///< PatientOrientation: "L\\P"
-  std::string assumed_coding;          ///< how the file's coding differs from the header's statement, to show
-                                       ///< to users
-  std::string doubts;                  ///< statements in the header that cast doubt on the image as a
-                                       ///< measurement, to show to users
-  std::string assumed_modality;        ///< the modality in the header if the image's class contradicts it
-  std::string assumed_place;           ///< how the position of a frame was computed if the frame states none,
-                                       ///< to show to users
-  std::string excess_pixels;           ///< description of pixel data beyond the images that the header
-                                       ///< states, to show to users
+  /// How the file's coding differs from the header's statement, to show to users.
+  std::string assumed_coding;
+  /// Statements in the header that cast doubt on the image as a measurement, to show to users.
+  std::string doubts;
+  std::string assumed_modality;  ///< the modality in the header if the image's class contradicts it
+  /// How the position of a frame was computed if the frame states none, to show to users.
+  std::string assumed_place;
+  /// Description of pixel data beyond the images that the header states, to show to users.
+  std::string excess_pixels;
   std::optional<double> aspect_ratio;  ///< PixelAspectRatio: height divided by width
   std::optional<int> stated_images;    ///< ImagesInAcquisition, or NumberOfSlices
   Concatenation concatenation;

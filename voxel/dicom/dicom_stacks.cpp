@@ -87,8 +87,8 @@ std::vector<std::vector<DicomSlice>> parted_by_order(std::vector<DicomSlice> sli
   std::stable_sort(slices.begin(), slices.end(), [&](const DicomSlice& a, const DicomSlice& b) {
     return glm::dot(a.first_mm, normal) < glm::dot(b.first_mm, normal);
   });
-  std::vector<std::pair<std::size_t, std::size_t>> places;  // for each position, the index of its first image
-                                                            // and one past that of its last
+  // For each position, the index of its first image and one past that of its last.
+  std::vector<std::pair<std::size_t, std::size_t>> places;
   for (std::size_t i = 0; i < slices.size(); ++i)
     if (i > 0 && glm::dot(slices[i].first_mm - slices[i - 1].first_mm, normal) < same_place_mm())
       places.back().second = i + 1;

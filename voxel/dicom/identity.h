@@ -18,8 +18,8 @@ Identity identity_of(const DicomFile& file);
 /// Studies differ if the two sides have no study UID in common, and so do frames of reference.
 struct IdentityComparison {
   std::vector<std::string> differing;  ///< "patient 'A17' and 'B23'", the first side's value first
-  std::vector<std::string> unstated;   ///< "patient", "study" or "frame of reference", if one side states
-                                       ///< none
+  /// "patient", "study" or "frame of reference", if one side states none.
+  std::vector<std::string> unstated;
 };
 IdentityComparison compared(const Identity& a, const Identity& b);
 

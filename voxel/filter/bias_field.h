@@ -21,11 +21,11 @@ struct BiasFieldOptions {
 
 /// A scan from which the gradual change of brightness caused by an inhomogeneous magnetic field was removed.
 struct BiasCorrection {
-  Scene scene;                               ///< in float: each sample divided by the field at its place
-  double threshold = 0.0;                    ///< the threshold used
-  double field_low = 1.0, field_high = 1.0;  ///< range of the field at the fitted samples; the field's
-                                             ///< geometric mean there is 1
-  std::size_t fitted = 0;                    ///< number of samples to which the field was fitted
+  Scene scene;             ///< in single precision: each sample divided by the field at its place
+  double threshold = 0.0;  ///< the threshold used
+  /// Range of the field at the fitted samples; the field's geometric mean there is 1.
+  double field_low = 1.0, field_high = 1.0;
+  std::size_t fitted = 0;  ///< number of samples to which the field was fitted
 };
 
 /// N4 (Tustison et al., IEEE Trans. Medical Imaging 29, 2010) by ITK, on a thinned scan with four samples

@@ -72,8 +72,7 @@ Scene average_down(const Scene& scene, const glm::ivec3& factor, const Progress&
   if (glm::any(glm::lessThan(factor, glm::ivec3(1))))
     throw InvalidInput("averaging requires 1 or more samples along each axis, not " + text_of(factor));
   if (scene.meaning == Meaning::Label)
-    throw InvalidInput(
-        "labels have no mean, so a label map cannot be averaged down: resample it by the nearest slice");
+    throw InvalidInput("labels have no mean, so a label map cannot be averaged down");
   const glm::ivec3 from = scene.lattice.dims;
   const glm::ivec3 dims = (from + factor - 1) / factor;
   Scene result = empty_part(scene, dims, 0.5 * glm::dvec3(factor - 1));

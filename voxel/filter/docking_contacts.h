@@ -19,9 +19,9 @@ struct PlacedSolid {
 
 /// A point at which an object supports a part.
 struct DockingContact {
-  glm::dvec3 p_mm{0.0};    ///< on the object's surface, LPS
-  glm::dvec3 normal{0.0};  ///< unit vector out of the object: the direction in which the object pushes the
-                           ///< part
+  glm::dvec3 p_mm{0.0};  ///< on the object's surface, LPS
+  /// Unit vector out of the object: the direction in which the object pushes the part.
+  glm::dvec3 normal{0.0};
 };
 
 struct DockingContactsOptions {

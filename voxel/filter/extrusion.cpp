@@ -20,20 +20,20 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr double above_air = 50.0;        ///< HU above the level of air: more than the noise of air, less
-                                          ///< than the lightest foam
-constexpr double least_width_mm = 40.0;   ///< narrower parts are straps, tubes or arms
-constexpr double limb_mm = 10.0;          ///< radius of discs that fit into a child's arm
-constexpr double limb_edge_mm = 2.5;      ///< width of the blurred edge of a limb
-constexpr double least_length = 2.5;      ///< least length of a board or couch, as a multiple of its
-                                          ///< thickness; a head has 1.6, an arm 1.3
-constexpr double fringe_mm = 8.0;         ///< largest distance of a body's outline from the discs that fit
-                                          ///< into the body
+/// HU above the level of air: more than the noise of air, less than the lightest foam.
+constexpr double above_air = 50.0;
+constexpr double least_width_mm = 40.0;  ///< narrower parts are straps, tubes or arms
+constexpr double limb_mm = 10.0;         ///< radius of discs that fit into a child's arm
+constexpr double limb_edge_mm = 2.5;     ///< width of the blurred edge of a limb
+/// Least length of a board or couch, as a multiple of its thickness; a head has 1.6, an arm 1.3.
+constexpr double least_length = 2.5;
+/// Largest distance of a body's outline from the discs that fit into the body.
+constexpr double fringe_mm = 8.0;
 constexpr double least_window_mm = 60.0;  ///< a head's outline changes within a shorter length
 constexpr int slices_per_median = 48;
 constexpr double lies_off_mm = 0.75;  ///< largest distance by which a part deviates sideways from its columns
-constexpr double calm_mm = 4.0;       ///< samples are averaged over this length along the table, to reduce
-                                      ///< noise
+/// Samples are averaged over this length along the table, to reduce noise.
+constexpr double calm_mm = 4.0;
 constexpr double steepest = 0.45;
 
 /// Reads samples by the indices side, back and along, for any order of the lattice's axes.

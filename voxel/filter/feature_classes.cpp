@@ -41,8 +41,8 @@ std::vector<Cluster> clusters_of(const std::vector<Bin>& all, std::size_t count)
     if (cluster.weight > 0.0) cluster.mean /= cluster.weight;
   for (const Bin& bin : all) {
     const glm::dvec2 off = bin.place - clusters[bin.cluster].mean;
-    clusters[bin.cluster].variance += bin.weight * off * off;  // weighted: the sum of squares instead of
-                                                               // their mean
+    // If `weighted` is set, the variance is the sum of squares instead of their mean.
+    clusters[bin.cluster].variance += bin.weight * off * off;
   }
   return clusters;
 }

@@ -25,9 +25,9 @@ struct HeadrestRemoval {
   std::uint64_t parts = 0;   ///< number of parts of `solid`, joined by faces
   std::uint64_t voxels = 0;  ///< number of all removed voxels, rim and foam included
   double solid_mm3 = 0.0;
-  double foam_mm3 = 0.0;     ///< removed volume with samples below the threshold: foam, cloth, blurred edges
-  double bone_mm3 = 0.0;     ///< removed volume with samples of at least dense_hu: metal, carbon, dense
-                             ///< plastic
+  double foam_mm3 = 0.0;  ///< removed volume with samples below the threshold: foam, cloth, blurred edges
+  /// Removed volume with samples of at least dense_hu: metal, carbon, dense plastic.
+  double bone_mm3 = 0.0;
   double middle_y_mm = 0.0;  ///< the patient's coronal middle, LPS; nothing in front of it is removed
   double front_mm3 = 0.0, behind_mm3 = 0.0, extruded_front_mm3 = 0.0;  ///< as in PatientParts
 };

@@ -94,8 +94,8 @@ class NearestPoint {
   }
 
   std::vector<glm::dvec3> points_;
-  std::vector<std::uint8_t> axes_;  ///< for each node the axis across which it is divided, stored at the
-                                    ///< index of its middle point
+  /// For each node the axis across which it is divided, stored at the index of its middle point.
+  std::vector<std::uint8_t> axes_;
 };
 
 /// The depth of voxels' centres below the offset surface.

@@ -24,22 +24,22 @@ namespace octotomy::voxel {
 namespace {
 
 constexpr double cell_mm = 2.0;
-constexpr double above_air = 40.0;         ///< HU above air at which a cell's mean counts as material; the
-                                           ///< mean's noise is a fraction of this
-constexpr double contact_mm = 3.0;         ///< length of the stump that remains on the core where a part was
-                                           ///< cut off
-constexpr double mask_mm = 4.0;            ///< largest thickness of a mask on the face
-constexpr double silhouette_mm = 10.0;     ///< distance inside the core's outline, seen from behind, at which
-                                           ///< there is no ear
-constexpr double close_mm = 4.0;           ///< gaps in the skin up to twice this width are closed
-constexpr double foam_limit = -200.0;      ///< HU; a threshold of at least this value lies above soft tissue
-constexpr double least_core_share = 0.3;   ///< least share of the largest part that the core contains; with
-                                           ///< less, the object is thin throughout
-constexpr double most_front_share = 0.25;  ///< a thick part with a larger share in front of the middle is no
-                                           ///< support
-constexpr double thick_mm = 4.0;           ///< a part is thick if it contains a ball of this radius
-constexpr double least_bone_share = 0.01;  ///< least share of bone in a limb's samples; in an arm it is about
-                                           ///< a tenth
+/// HU above air at which a cell's mean counts as material; the mean's noise is a fraction of this.
+constexpr double above_air = 40.0;
+/// Length of the stump that remains on the core where a part was cut off.
+constexpr double contact_mm = 3.0;
+constexpr double mask_mm = 4.0;  ///< largest thickness of a mask on the face
+/// Distance inside the core's outline, seen from behind, at which there is no ear.
+constexpr double silhouette_mm = 10.0;
+constexpr double close_mm = 4.0;       ///< gaps in the skin up to twice this width are closed
+constexpr double foam_limit = -200.0;  ///< HU; a threshold of at least this value lies above soft tissue
+/// Least share of the largest part that the core contains; with less, the object is thin throughout.
+constexpr double least_core_share = 0.3;
+/// A thick part with a larger share in front of the middle is no support.
+constexpr double most_front_share = 0.25;
+constexpr double thick_mm = 4.0;  ///< a part is thick if it contains a ball of this radius
+/// Least share of bone in a limb's samples; in an arm it is about a tenth.
+constexpr double least_bone_share = 0.01;
 
 class Parter {
  public:

@@ -17,9 +17,8 @@ struct PatientOptions {
   /// not supports. Values below detach_mm plus four millimetres are raised to this sum, to include the
   /// patient's surface, which the ball does not reach.
   double near_mm = 25.0;
-  double board_mm =
-      40.0;  ///< above 0: largest thickness of a solid board; with air around it, a couch may be twice as
-             ///< thick
+  /// Largest thickness of a solid board, above 0. A couch may be twice as thick if air surrounds it.
+  double board_mm = 40.0;
   double rim_mm = 2.0;              ///< width of the patient's blurred edge, which is never a support's
   std::vector<glm::dvec3> keep_mm;  ///< LPS points in parts that are not supports, such as a dry skull's jaw
   Progress progress{};
@@ -30,11 +29,12 @@ constexpr double dense_hu = 300.0;
 
 /// Class of a sample.
 enum class Belongs : std::uint8_t {
-  Air,       ///< samples below the threshold that belong neither to the patient nor to a support
-  Patient,   ///< the patient, cavities and blurred edge included
-  Support,   ///< boards, couches, foam and holders behind the patient's coronal middle
-  Doubtful,  ///< solid parts of the patient or of a support: in front of the coronal middle, or inseparable
-             ///< from the patient
+  Air,      ///< samples below the threshold that belong neither to the patient nor to a support
+  Patient,  ///< the patient, cavities and blurred edge included
+  Support,  ///< boards, couches, foam and holders behind the patient's coronal middle
+  /// Solid parts of the patient or of a support: in front of the coronal middle, or inseparable from the
+  /// patient.
+  Doubtful,
 };
 
 struct PatientParts {
@@ -43,8 +43,8 @@ struct PatientParts {
   /// patient, or some millimetres farther back, because the tip of the nose is not counted and a mask may
   /// cover the face. No sample in front of it is classed as a support.
   double middle_y_mm = 0.0;
-  glm::dvec2 table_slope{0.0};      ///< shift of the table per millimetre along it: to the side and to the
-                                    ///< back
+  /// Shift of the table per millimetre along it: to the side and to the back.
+  glm::dvec2 table_slope{0.0};
   double front_mm3 = 0.0;           ///< volume of doubtful samples in front of the middle
   double behind_mm3 = 0.0;          ///< volume of doubtful samples behind the middle
   double extruded_front_mm3 = 0.0;  ///< the part of front_mm3 that belongs to a board or cradle

@@ -10,8 +10,8 @@
 namespace octotomy::voxel {
 
 struct ScaleSpaceOptions {
-  double sigma_mm = 4.0;  ///< standard deviation of the coarsest blur; objects at about this distance or less
-                          ///< become one
+  /// Standard deviation of the coarsest blur; objects at about this distance or less become one.
+  double sigma_mm = 4.0;
   double low = 0.0;  ///< the window, in sample units, both bounds included: samples outside have no label
   double high = 0.0;
   bool is_dark = false;  ///< follows minima, for objects that are darker than their surroundings
@@ -21,11 +21,11 @@ struct ScaleSpaceOptions {
 /// The regions of a scan that belong to one maximum of its coarsest blur, as a label map: 1 is the largest.
 struct ScaleSpace {
   Scene labels;
-  std::vector<double> sigmas_mm;       ///< widths of the stack's blurs, from the coarsest to the finest; 0 is
-                                       ///< the scan itself
-  std::vector<std::size_t> maxima;     ///< number of maxima at each of these widths
-  std::vector<std::uint64_t> samples;  ///< number of samples of each label: of label 1, which is the largest,
-                                       ///< then of label 2, ...
+  /// Widths of the stack's blurs, from the coarsest to the finest; 0 is the scan itself.
+  std::vector<double> sigmas_mm;
+  std::vector<std::size_t> maxima;  ///< number of maxima at each of these widths
+  /// Number of samples of each label: of label 1, which is the largest, then of label 2, ...
+  std::vector<std::uint64_t> samples;
 };
 
 /// Follows the maxima of a scan through scale space (thesis 2.3.4; Pizer et al., Information Processing in

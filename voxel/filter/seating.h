@@ -9,16 +9,16 @@
 namespace octotomy::voxel {
 
 struct SeatingOptions {
-  glm::dvec3 direction{0.0, 1.0, 0.0};  ///< unit vector, LPS: the direction in which the part moves to its
-                                        ///< place
+  /// Unit vector, LPS: the direction in which the part moves to its place.
+  glm::dvec3 direction{0.0, 1.0, 0.0};
   Progress progress = {};
 };
 
 /// The place where an object reaches deepest into the space that a part passes through.
 struct Binding {
   glm::dvec3 at_mm{0.0};  ///< a voxel's centre
-  double depth_mm = 0.0;  ///< distance from at_mm to the centre of the nearest voxel outside of that space,
-                          ///< less half a voxel edge
+  /// Distance from at_mm to the centre of the nearest voxel outside of that space, less half a voxel edge.
+  double depth_mm = 0.0;
 };
 
 struct Seating {

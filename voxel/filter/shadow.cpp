@@ -40,8 +40,8 @@ constexpr double cut_off = 0.59, moved_out = 0.75;
 /// for from `look_before` in front of the depth to `look_behind` behind it, in steps of `look_step`. At an
 /// edge of 90 degrees half a step is lost.
 constexpr float look_before = 0.75F, look_behind = 4.0F, look_step = 0.0625F;
-constexpr int tile_side = 16;  ///< a range of depths is stored for each square of this number of columns a
-                               ///< side
+/// A range of depths is stored for each square of this number of columns a side.
+constexpr int tile_side = 16;
 constexpr float no_surface = std::numeric_limits<float>::infinity();
 
 /// A frame with the coordinate z, called depth, along the direction; x and y are perpendicular to it.
@@ -99,8 +99,8 @@ class FirstDepths {
       return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     };
     const double whole = area(p[0], p[1], p[2]);
-    constexpr double edge_on = 1e-12, on_edge = 1e-9;  // edge_on: in areas of a column; on_edge: in shares of
-                                                       // the triangle and in columns
+    // edge_on is in areas of a column; on_edge is in shares of the triangle and in columns.
+    constexpr double edge_on = 1e-12, on_edge = 1e-9;
     if (std::abs(whole) < edge_on) return;
     const glm::dvec2 low = glm::min(glm::min(glm::dvec2(p[0]), glm::dvec2(p[1])), glm::dvec2(p[2])),
                      high = glm::max(glm::max(glm::dvec2(p[0]), glm::dvec2(p[1])), glm::dvec2(p[2]));
@@ -232,8 +232,8 @@ class FirstDepths {
   ColumnFrame frame_;
   Lattice lattice_;
   double pitch_mm_ = 1.0;
-  int beside_outline_ = 0;  ///< number of columns beside an outline in which the surface may have been cut
-                            ///< off
+  /// Number of columns beside an outline in which the surface may have been cut off.
+  int beside_outline_ = 0;
   double far_end_mm_ = -std::numeric_limits<double>::infinity();
   glm::dvec2 origin_{0.0};
   glm::ivec2 dims_{0}, tiles_{0};
@@ -311,8 +311,8 @@ void fill_shares(const ShadowShares& shares, const glm::ivec3& block, int side, 
 }
 
 void check_unit(const glm::dvec3& direction) {
-  constexpr double unit_error = 1e-9;  // error in the length of a direction that was normalised or typed with
-                                       // ten digits
+  // Error in the length of a direction that was normalised or typed with ten digits.
+  constexpr double unit_error = 1e-9;
   if (!(std::abs(glm::length(direction) - 1.0) < unit_error))
     throw std::invalid_argument("the direction of a shadow must be a unit vector");
 }

@@ -20,8 +20,8 @@ struct Shadow {
   /// Each sample is the share of a voxel in the shadow minus one half, so that the window can be combined,
   /// moved and sampled between voxels.
   Window window;
-  double far_end_mm = 0.0;  ///< the surface's farthest position along `direction`, computed from the object's
-                            ///< voxels
+  /// The surface's farthest position along `direction`, computed from the object's voxels.
+  double far_end_mm = 0.0;
 };
 
 /// The points of an object and all points behind it as seen along a direction, up to a plane across that

@@ -9,11 +9,12 @@
 namespace octotomy::voxel {
 
 struct StreakOptions {
-  double metal = 3000.0;    ///< samples of at least this value are metal, in the scene's units (HU)
-  double low = -1000.0;     ///< lower samples are raised to this value, because dark streaks are below air
-  double high = 3000.0;     ///< higher samples, of metal and the brightest streaks, are lowered to this value
-  double reach_mm = 100.0;  ///< samples up to this distance from metal in the same slice are clamped, because
-                            ///< streaks lie in the plane of the X-rays
+  double metal = 3000.0;  ///< samples of at least this value are metal, in the scene's units (HU)
+  double low = -1000.0;   ///< lower samples are raised to this value, because dark streaks are below air
+  double high = 3000.0;   ///< higher samples, of metal and the brightest streaks, are lowered to this value
+  /// Samples up to this distance from metal in the same slice are clamped, because streaks lie in the plane
+  /// of the X-rays.
+  double reach_mm = 100.0;
   Progress progress{};
 };
 

@@ -27,7 +27,7 @@ class SurfaceCrossings {
   /// The crossings, the middles of the chords between two crossings in a lattice square, and the middles of
   /// the cells whose crossings form one ring.
   std::vector<glm::dvec3> with_middles() const;
-  /// Calls `visit`, from several threads, with the triangles of a surface through the crossings: In each
+  /// Calls `visit`, from several threads, with the triangles of a surface through the crossings. In each
   /// cell, a fan joins the ring of crossings to its middle, which is moved outward to the solid's surface, so
   /// that little of the solid's edges is cut off. Neighbouring cells share the chords of their rings, so that
   /// the surface is closed where the solid ends within the universe. The triangles' winding is arbitrary.

@@ -43,8 +43,8 @@ glm::dvec3 flat_parts_mm2(const Octree& octree) {
   tbb::parallel_sort(faces.begin(), faces.end());
   std::vector<std::size_t> part(faces.size());
   std::iota(part.begin(), part.end(), std::size_t{0});
-  std::size_t row_before = 0;  // index of the first face not sorted before the neighbour of face i in the
-                               // preceding row
+  // Index of the first face not sorted before the neighbour of face i in the preceding row.
+  std::size_t row_before = 0;
   for (std::size_t i = 0; i < faces.size(); ++i) {
     // Faces in the first column or row have no preceding neighbour; for them, the number below belongs to
     // another row or plane.

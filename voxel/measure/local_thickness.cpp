@@ -25,9 +25,9 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr double no_larger = 1.0 + 1e-3;  ///< a ball must be larger than the largest so far by this factor to
-                                          ///< be examined
-constexpr double coverage_99 = 2.576;     ///< standard errors of a normal distribution
+/// A ball must be larger than the largest so far by this factor to be examined.
+constexpr double no_larger = 1.0 + 1e-3;
+constexpr double coverage_99 = 2.576;  ///< standard errors of a normal distribution
 
 std::size_t count_of(const glm::ivec3& dims) {
   return static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) *

@@ -39,8 +39,8 @@ struct VoxelThickness {
   /// sampled voxels.
   double mean_half_width_mm = 0.0;
   std::vector<ThicknessAtVoxel> surface;
-  std::optional<std::size_t> thinnest_wall;  ///< its index in `surface`; none if no sampled voxel belongs to
-                                             ///< a wall
+  /// Its index in `surface`; none if no sampled voxel belongs to a wall.
+  std::optional<std::size_t> thinnest_wall;
 };
 
 /// Local thickness of an octree's voxels: the diameter of the largest ball inside the object that contains a

@@ -88,10 +88,10 @@ CutName cut(const std::string& name) {
 /// Properties of the numbers at one position, over all names with equal text.
 struct NumberProperties {
   bool has_minus = false, has_other = false, is_behind_word = false;
-  std::size_t least_digits = 0, most_digits = 0;  ///< least and largest number of digits after a dot, among
-                                                  ///< numbers with a dot
-  bool ends_with_zero = false;                    ///< whether a number has several digits after a dot and
-                                                  ///< ends with 0
+  /// Least and largest number of digits after a dot, among numbers with a dot.
+  std::size_t least_digits = 0, most_digits = 0;
+  /// Whether a number has several digits after a dot and ends with 0.
+  bool ends_with_zero = false;
 
   void add(const NumberInName& number) {
     (number.sign == '-' ? has_minus : has_other) = true;
@@ -255,8 +255,8 @@ std::string stacks_named(const std::vector<fs::path>& files) {
 }
 
 std::string numbered_alike(const SliceNames& names) {
-  std::map<std::string, std::set<double>> numbers_of;  // the names' numbers, by the text before the last
-                                                       // number
+  // The names' numbers, by the text before the last number.
+  std::map<std::string, std::set<double>> numbers_of;
   for (std::size_t i = 0; i < names.files.size(); ++i) {
     const std::string stem = names.files[i].stem().string();
     const std::size_t last = stem.find_last_of("0123456789");

@@ -16,10 +16,11 @@ namespace octotomy::voxel {
 ///   digits after the dot, and a number with several such digits ends with 0, the dot is a separator: 1.10
 ///   comes after 1.9.
 struct SliceNames {
-  std::vector<std::filesystem::path> files;   ///< in the order of their numbers
-  std::vector<std::optional<double>> number;  ///< for each file the last number in its name; none if the name
-                                              ///< has no number, or one of more than nine digits
-  std::vector<std::string> doubts;            ///< for each ambiguity in the names, the assumption made
+  std::vector<std::filesystem::path> files;  ///< in the order of their numbers
+  /// For each file the last number in its name; none if the name has no number, or one of more than nine
+  /// digits.
+  std::vector<std::optional<double>> number;
+  std::vector<std::string> doubts;  ///< for each ambiguity in the names, the assumption made
 };
 /// Orders files by name. Names with equal numbers are ordered by their letters. Cost: n log n.
 SliceNames ordered_by_name(const std::vector<std::filesystem::path>& files);

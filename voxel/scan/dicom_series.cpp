@@ -599,8 +599,8 @@ class SeriesAssembler {
     std::vector<double> gaps;
     for (std::size_t i = 1; i < stack.slices.size(); ++i)
       gaps.push_back(stack.height_mm(stack.slices[i]) - stack.height_mm(stack.slices[i - 1]));
-    std::erase_if(gaps, [](double gap) { return gap < 1e-6; });  // less than the rounding of positions in any
-                                                                 // file
+    // Less than the rounding of positions in any file.
+    std::erase_if(gaps, [](double gap) { return gap < 1e-6; });
     double usual_gap_mm = 0.0;
     if (!gaps.empty()) {
       std::nth_element(gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2), gaps.end());

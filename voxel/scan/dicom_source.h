@@ -24,8 +24,8 @@ struct DicomSource {
   struct Image {
     std::string class_uid;
     std::string instance_uid;
-    double height_mm = 0.0;  ///< position of the image's plane along `normal`, from the frame of reference's
-                             ///< origin
+    /// Position of the image's plane along `normal`, from the frame of reference's origin.
+    double height_mm = 0.0;
   };
 
   /// Patient, study, frame of reference and acquisition by tag, from the first image's file and in its
@@ -37,8 +37,8 @@ struct DicomSource {
   std::string modality;
   std::vector<Image> images;  ///< sorted along the normal; each frame of a file is an image
   glm::dvec3 normal{0, 0, 1};
-  std::optional<Lattice> lattice = {};  ///< lattice of the images at their stated positions; none if they
-                                        ///< form no lattice
+  /// Lattice of the images at their stated positions; none if they form no lattice.
+  std::optional<Lattice> lattice = {};
   Lattice around = {};  ///< the lattice on which read_scene() returns the samples, which contains all images
   /// The lines of read_scene()'s audit that follow from headers: about the chosen series, the images left
   /// out, and the positions. Lines about samples are absent.

@@ -27,9 +27,9 @@ struct StoredImage {
   int orientation = 1;
   double pixels_per_unit = 0.0;         ///< resolution along rows, as the file states it; 0: not stated
   double pixels_per_unit_across = 0.0;  ///< across rows
-  double mm_per_unit = 0.0;             ///< length of the resolution's unit; 0: the unit is not stated or is
-                                        ///< not a length
-  bool is_white_zero = false;           ///< TIFF's WhiteIsZero: large samples are dark
+  /// Length of the resolution's unit; 0: the unit is not stated or is not a length.
+  double mm_per_unit = 0.0;
+  bool is_white_zero = false;  ///< TIFF's WhiteIsZero: large samples are dark
   bool is_lossy = false;
   std::string description;  ///< free text in which ImageJ and OME describe the file
 };

@@ -281,8 +281,8 @@ class NeighbourAudit {
   std::vector<int> flips_;
   std::vector<char> is_judged_;
   std::vector<std::string> unlike_;
-  std::vector<Pair> pairs_;     ///< entry i: correlations of slices i and i + 1, one for each flip of the
-                                ///< latter
+  /// Entry i: correlations of slices i and i + 1, one for each flip of the latter.
+  std::vector<Pair> pairs_;
   std::vector<double> across_;  ///< entry i: correlation of slices i and i + 2
   double usual_disagreement_ = 0.0;
 };

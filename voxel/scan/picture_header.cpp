@@ -44,8 +44,8 @@ std::uint32_t little_endian_at(std::string_view bytes, std::size_t at) {
 /// Reads the sizes of image and tiles at the start of a JPEG 2000 codestream. Returns the largest sample that
 /// its bit depth allows; 0 above 16 bits.
 std::uint32_t read_codestream(std::string_view bytes, std::size_t most_bytes) {
-  constexpr std::size_t header_bytes = 43, depth_at = 42;  // length of the header, up to the first channel's
-                                                           // depth
+  // Length of the header, up to the first channel's depth.
+  constexpr std::size_t header_bytes = 43, depth_at = 42;
   if (!bytes.starts_with(codestream_begin))
     throw InvalidInput("is a JPEG 2000 picture that does not begin with its size");
   if (bytes.size() < header_bytes) throw InvalidInput("is a JPEG 2000 picture that ends in its header");

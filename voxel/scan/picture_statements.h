@@ -16,15 +16,15 @@ namespace octotomy::voxel {
 
 /// Statements of one picture, from ImageJ's or OME's description and the format's own tags.
 struct StatedPicture {
-  std::string program;                             ///< "ImageJ" or "OME"; empty if neither is the writer
-  std::array<std::optional<double>, 3> size_mm{};  ///< stated by the program: a pixel's sizes and the
-                                                   ///< distance between slices
-  std::string unit;                                ///< unit of size_mm as the program writes it
-  std::string not_sizes;              ///< why the program's numbers are not lengths; empty if they are
-  std::optional<glm::dvec2> page_mm;  ///< a pixel's size from the resolution of a page; none for default
-                                      ///< print resolutions
-  std::string further_axis;           ///< "7 times"
-  std::string calibration;            ///< of grey values, as ImageJ states it: "-1024 + 1 g, HU"
+  std::string program;  ///< "ImageJ" or "OME"; empty if neither is the writer
+  /// Stated by the program: a pixel's sizes and the distance between slices.
+  std::array<std::optional<double>, 3> size_mm{};
+  std::string unit;       ///< unit of size_mm as the program writes it
+  std::string not_sizes;  ///< why the program's numbers are not lengths; empty if they are
+  /// A pixel's size from the resolution of a page; none for default print resolutions.
+  std::optional<glm::dvec2> page_mm;
+  std::string further_axis;  ///< "7 times"
+  std::string calibration;   ///< of grey values, as ImageJ states it: "-1024 + 1 g, HU"
   bool has_origin = false;
   double images = 1.0;  ///< number of images that the program states for the file
 };

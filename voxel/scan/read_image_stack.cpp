@@ -63,8 +63,8 @@ SampleType sample_type_of(const StoredImage& image) {
   return SampleType::Float;
 }
 
-/// A sentence on files that seem to be missing. They seem to be if the numbers in most neighbouring names
-/// differ by the least step, and some by more. Otherwise the sentence is empty.
+/// A sentence on files that seem to be missing; empty if none does. Files seem to be missing if the numbers
+/// in most neighbouring names differ by the least step, but some differ by more.
 std::string skipped(const SliceNames& names) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < names.files.size(); ++i) {

@@ -14,18 +14,17 @@ namespace octotomy::voxel {
 struct Structure {
   int number = 0;
   std::string name;  ///< as written, in UTF-8
-  std::vector<std::vector<glm::dvec3>>
-      contours_mm;             ///< closed planar contours, LPS, with their offset added; the closing edge is
-                               ///< implied
+  /// Closed planar contours, LPS, with their offset added; the closing edge is implied.
+  std::vector<std::vector<glm::dvec3>> contours_mm;
   std::size_t others = 0;      ///< number of points and open lines, which enclose no area
   std::size_t degenerate = 0;  ///< number of closed contours of one or two points, which enclose no area
   std::size_t miscounted = 0;  ///< number of contours whose point count differs from NumberOfContourPoints
-  std::size_t stated_points = 0, held_points = 0;  ///< stated and actual point count of the first such
-                                                   ///< contour
-  std::size_t moved = 0;                           ///< number of contours whose points a ContourOffsetVector
-                                                   ///< moved
-  glm::dvec3 farthest_offset_mm{0.0};              ///< the longest of these vectors, LPS
-  std::string flaw = {};                           ///< why the contours cannot be read; empty: they can
+  /// Stated and actual point count of the first such contour.
+  std::size_t stated_points = 0, held_points = 0;
+  /// Number of contours whose points a ContourOffsetVector moved.
+  std::size_t moved = 0;
+  glm::dvec3 farthest_offset_mm{0.0};  ///< the longest of these vectors, LPS
+  std::string flaw = {};               ///< why the contours cannot be read; empty: they can
   /// Whether the file states that the region continues between neighbouring contours at any distance: the
   /// type INTERPOLATED_PLANAR.
   bool is_interpolated = false;

@@ -80,10 +80,10 @@ struct SeriesEntry {
   int number = 0;  ///< the scanner's series number
   std::size_t slices = 0;
   glm::ivec2 size_px{0};
-  std::string choice = {};     ///< for ReadOptions::series
-  std::string stack = {};      ///< the attributes in which it differs from the series' other stacks: "kernel
-                               ///< H60s"
-  glm::dvec2 spacing_mm{0.0};  ///< between columns, between rows
+  std::string choice = {};  ///< for ReadOptions::series
+  /// The attributes in which a stack differs from the series' other stacks: "kernel H60s".
+  std::string stack = {};
+  glm::dvec2 spacing_mm{0.0};           ///< between columns, between rows
   std::optional<double> slice_mm = {};  ///< mean distance of neighbouring images; none for a single image
   std::string study_date = {};          ///< as the header states it: "20240131"; may be empty
 };

@@ -411,8 +411,8 @@ class Layer {
     line.start_px = medians_of(line.off_px);
     std::vector<glm::dvec2> sizes;
     for (glm::dvec2& off : line.off_px) sizes.push_back(glm::abs(off -= line.start_px));
-    line.scatter_px = 1.48 * medians_of(sizes);  // estimates the standard deviation of normally distributed
-                                                 // noise from the median
+    // Estimates the standard deviation of normally distributed noise from the median.
+    line.scatter_px = 1.48 * medians_of(sizes);
     return line;
   }
 

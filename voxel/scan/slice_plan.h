@@ -21,13 +21,14 @@ struct SlicePlan {
   };
   std::vector<Source> sources;  ///< one for each slice of the lattice
   double step_mm = 1.0;
-  double low_mm = 0.0;               ///< height of the lattice's first slice above the stack's first
-  bool leans = false;                ///< the stack's slices are shifted sideways against each other
-  std::vector<glm::dvec2> aside_px;  ///< sideways shift of each slice of the stack, counted from `origin_px`;
-                                     ///< empty if no slice is shifted
-  glm::dvec2 origin_px{0.0};         ///< reference for sideways shifts, in pixels of the first slice; not
-                                     ///< always 0, because that slice's position may be noisy
-  glm::ivec2 low_px{0};              ///< first pixel of the lattice, counted from `origin_px`
+  double low_mm = 0.0;  ///< height of the lattice's first slice above the stack's first
+  bool leans = false;   ///< the stack's slices are shifted sideways against each other
+  /// Sideways shift of each slice of the stack, counted from `origin_px`; empty if no slice is shifted.
+  std::vector<glm::dvec2> aside_px;
+  /// Reference for sideways shifts, in pixels of the first slice; not always 0, because that slice's position
+  /// may be noisy.
+  glm::dvec2 origin_px{0.0};
+  glm::ivec2 low_px{0};  ///< first pixel of the lattice, counted from `origin_px`
   glm::ivec2 size_px{0};
   std::vector<Hole> holes;
   std::size_t slice_count = 0;  ///< number of slices of the stack

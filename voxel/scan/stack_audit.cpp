@@ -37,8 +37,8 @@ class StackAudit {
   }
 
  private:
-  using Values = std::map<std::string, std::vector<std::string>>;  ///< for each value the names of the slices
-                                                                   ///< that have it
+  /// For each value the names of the slices that have it.
+  using Values = std::map<std::string, std::vector<std::string>>;
 
   void find(const char* check, Verdict verdict, std::string detail, std::vector<std::string> files = {}) {
     audit_.push_back({check, verdict, std::move(detail), std::move(files)});

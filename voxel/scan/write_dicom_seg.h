@@ -16,10 +16,10 @@ namespace octotomy::voxel {
 
 /// How the voxels of several objects are stored.
 enum class DicomSegKind {
-  Binary,  ///< a frame of bits for each object and plane; objects may share voxels, and every reader supports
-           ///< it
-  LabelMap  ///< a frame of object numbers for each plane (Supplement 243); for many objects that share no
-            ///< voxel
+  /// A frame of bits for each object and plane; objects may share voxels, and every reader supports it.
+  Binary,
+  /// A frame of object numbers for each plane (Supplement 243); for many objects that share no voxel.
+  LabelMap
 };
 
 struct DicomSegOptions {
@@ -61,9 +61,9 @@ void write_dicom_seg(std::span<const DicomSegment> segments, const std::filesyst
 
 /// The share of each sample's voxel that an object fills.
 struct DicomFractions {
-  std::string label;                    ///< 1 to 64 characters
-  std::vector<std::uint8_t> fractions;  ///< one for each sample of the lattice, x fastest; 255: the object
-                                        ///< fills the whole voxel
+  std::string label;  ///< 1 to 64 characters
+  /// One for each sample of the lattice, x fastest; 255: the object fills the whole voxel.
+  std::vector<std::uint8_t> fractions;
 };
 
 /// Writes shares of voxels as a FRACTIONAL segmentation of the type OCCUPANCY, one byte a pixel. Its frames

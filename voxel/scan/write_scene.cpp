@@ -15,8 +15,8 @@ std::uint64_t bytes_of_sample(const Scene& scene) {
   return std::visit([](const auto& samples) { return sizeof(samples[0]); }, scene.samples);
 }
 
-/// The extension of the data file for compressed samples; none for formats that store samples in the header's
-/// file.
+/// The path of the data file for a header's compressed samples; none for formats that store samples in the
+/// header's file.
 std::optional<std::filesystem::path> data_file_beside(std::filesystem::path header) {
   const std::string extension = extension_of(header);
   if (extension == ".nhdr") return header.replace_extension(".raw.gz");

@@ -85,9 +85,10 @@ class EdgeTree {
     visit_node(node.second, low_mm, high_mm, visit_edge);
   }
 
-  std::vector<glm::dvec2> points_;  ///< points of all polygons, one polygon after the other; each polygon's
-                                    ///< last point is also stored before its first
-  std::vector<Node> nodes_;         ///< a parent before its children
+  /// Points of all polygons, one polygon after the other; each polygon's last point is also stored before its
+  /// first.
+  std::vector<glm::dvec2> points_;
+  std::vector<Node> nodes_;  ///< a parent before its children
 };
 
 }  // namespace octotomy::voxel

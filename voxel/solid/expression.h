@@ -112,8 +112,8 @@ glm::dmat4 moved_from_still(const Motion& motion);
 /// Look-ups for the names in an expression's text. Each throws InvalidInput for an unknown name.
 struct Names {
   std::function<Expression(std::string_view name)> object;
-  std::function<glm::dmat4(std::string_view name)> motion;  ///< may be empty; `move` in the text is then an
-                                                            ///< error
+  /// May be empty; `move` in the text is then an error.
+  std::function<glm::dmat4(std::string_view name)> motion;
 };
 
 /// Parses `a & b`, `a | b`, `a - b`, `a ^ b`, `~a`, `move(a, m)` and parentheses. As in Python, `~` binds

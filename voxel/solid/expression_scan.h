@@ -23,11 +23,11 @@ struct ExpressionScanOptions {
 
 struct ExpressionScan {
   Scene scene;
-  std::uint64_t hole_samples = 0;     ///< number of samples outside the expression
-  std::uint64_t filled_samples = 0;   ///< number of samples in objects without samples only
-  std::uint64_t changed_samples = 0;  ///< holes, and samples that differ from the frame's sample at this
-                                      ///< place
-  double hole = 0.0, filled = 0.0;    ///< as used
+  std::uint64_t hole_samples = 0;    ///< number of samples outside the expression
+  std::uint64_t filled_samples = 0;  ///< number of samples in objects without samples only
+  /// Holes, and samples that differ from the frame's sample at this place.
+  std::uint64_t changed_samples = 0;
+  double hole = 0.0, filled = 0.0;  ///< as used
 };
 
 /// Computes the scan that a scanner would make of an expression: samples on the frame's lattice, each from

@@ -137,8 +137,8 @@ class SourceWalk {
   std::vector<Source> found_;
   std::vector<glm::dmat4> motions_{glm::dmat4(1.0)};  // products, from outermost
   std::vector<glm::dmat4> around_;                    // the factors
-  std::vector<TermPointer> next_{nullptr};  // Open::alternative of each term not yet visited, in the order of
-                                            // for_each_term()'s stack
+  // Open::alternative of each term not yet visited, in the order of for_each_term()'s stack.
+  std::vector<TermPointer> next_{nullptr};
   std::vector<Open> open_;
   bool positive_ = true;
 };

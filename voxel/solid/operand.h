@@ -85,8 +85,8 @@ class SliceMaskOperand {
 
  private:
   SliceDistance distance_;
-  Linear u_, v_, w_;  ///< coordinates in the view and across the slices in millimetres, as functions of
-                      ///< target voxels
+  /// Coordinates in the view and across the slices in millimetres, as functions of target voxels.
+  Linear u_, v_, w_;
 };
 
 /// A grey octree's window on the target's own lattice.
@@ -150,9 +150,9 @@ class HalfOctreeOperand {
  private:
   const Octree* octree_;
   glm::dmat4 source_from_target_;
-  std::array<glm::dvec3, 125> points_;  ///< offsets of the points from a voxel's centre, in voxels of the
-                                        ///< source
-  glm::dvec3 reach_{0.0};               ///< largest offset of a point along each axis
+  /// Offsets of the points from a voxel's centre, in voxels of the source.
+  std::array<glm::dvec3, 125> points_;
+  glm::dvec3 reach_{0.0};  ///< largest offset of a point along each axis
 };
 
 /// A grey octree's window on another lattice or under a motion: samples on the scan's own lattice are

@@ -94,8 +94,8 @@ CornerSquares corner_squares(const glm::dmat3& columns, const glm::dvec3& c) {
 bool comes_within(double radius, const glm::dmat3& columns, const glm::dvec3& c, double nearest_corner2) {
   const double centre2 = glm::dot(c, c), radius2 = square(radius);
   if (std::min(centre2, nearest_corner2) < radius2 * (1.0 - vanishing)) return true;
-  double along = centre2;  // the least projection on the direction to the centre, multiplied by the centre's
-                           // distance
+  // The least projection on the direction to the centre, multiplied by the centre's distance.
+  double along = centre2;
   for (int i = 0; i < 3; ++i) along -= std::abs(glm::dot(columns[i], c));
   if (along > radius * std::sqrt(centre2) + vanishing * centre2) return false;
   return nearest_square(columns, c) < radius2;

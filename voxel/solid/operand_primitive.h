@@ -40,7 +40,7 @@ class BallOperand {
   double radius_;
   bool orthogonal_;               ///< whether a voxel's edges are at right angles in the ball's frame
   glm::dmat3 edges_from_local_;   ///< only if orthogonal: maps to the directions of the edges
-  glm::dvec3 edge_lengths_{0.0};  ///< only if orthogonal: half edge lengths in the ball's frame
+  glm::dvec3 edge_lengths_{0.0};  ///< only if orthogonal: lengths of a voxel's edges in the ball's frame
 };
 
 class HalfSpaceOperand {

@@ -268,10 +268,10 @@ class Crossings {
   std::vector<Measures> measures_;
   std::vector<std::size_t> first_;  ///< number of each polygon's first edge
   std::size_t edge_count_ = 0, pairs_left_ = 0;
-  std::vector<std::optional<glm::dvec2>> at_;  ///< for each polygon with a crossing, a point near the
-                                               ///< crossing
-  std::vector<std::size_t> asked_;             ///< for each polygon, the number of the last one compared with
-                                               ///< it
+  /// For each polygon with a crossing, a point near the crossing.
+  std::vector<std::optional<glm::dvec2>> at_;
+  /// For each polygon, the number of the last one compared with it.
+  std::vector<std::size_t> asked_;
   std::vector<double> twice_areas_, lengths_;
   int loops_walked_ = 0;
 };

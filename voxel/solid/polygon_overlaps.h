@@ -25,8 +25,8 @@ struct CrossingPolygon {
 
 struct CrossingPolygons {
   std::vector<CrossingPolygon> all;  ///< each polygon once, ascending
-  bool is_complete = true;           ///< false if the search stopped at its limit, with some pairs of edges
-                                     ///< unchecked
+  /// False if the search stopped at its limit, with some pairs of edges unchecked.
+  bool is_complete = true;
 };
 
 /// The polygons that cross another one, and those that cross themselves. Of two crossing polygons each has a

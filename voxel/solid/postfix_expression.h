@@ -34,8 +34,8 @@ struct PostfixExpression {
     const Expression::Leaf* leaf = nullptr;  ///< owned by the expression
     glm::dmat4 moved_from_still{1.0};        ///< LPS to LPS
     bool still = true;                       ///< whether all motions above it are the identity
-    bool is_scan = false;                    ///< whether it is the scan of a window, which is pushed right
-                                             ///< after the window
+    /// Whether it is the scan of a window, which is pushed right after the window.
+    bool is_scan = false;
   };
   enum class Code : std::uint8_t { Push, And, Or, Minus, Xor, Not };
   struct Step {

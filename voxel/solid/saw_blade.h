@@ -13,9 +13,9 @@ namespace octotomy::voxel {
 struct SawLine {
   std::vector<glm::dvec3> line_mm;  ///< points of the cut on the bone, LPS; at least two
   glm::dvec3 direction{0, 1, 0};    ///< direction of the blade into the bone, LPS; any length above 0
-  double depth_mm = 100.0;          ///< depth along the direction, counted from the line's point that the
-                                    ///< blade meets first; above 0
-  double kerf_mm = 1.0;             ///< width of the cut, half on either side of the line; above 0
+  /// Depth along the direction, counted from the line's point that the blade meets first; above 0.
+  double depth_mm = 100.0;
+  double kerf_mm = 1.0;  ///< width of the cut, half on either side of the line; above 0
 };
 
 /// The volume that the saw removes. Pieces of the line meet in mitres; the line's ends are square. Throws

@@ -15,10 +15,10 @@ namespace octotomy::voxel {
 /// the border of the object is inside only at the object's lower end.
 struct SliceMask {
   struct Slice {
-    double position_mm = 0.0;                          ///< position of the slice's plane: p . look for its
-                                                       ///< points p
-    std::vector<std::vector<glm::dvec2>> polygons_mm;  ///< in the view's millimetres; without polygons the
-                                                       ///< slice is empty
+    /// Position of the slice's plane: p . look for its points p.
+    double position_mm = 0.0;
+    /// In the view's millimetres; without polygons the slice is empty.
+    std::vector<std::vector<glm::dvec2>> polygons_mm;
   };
   /// The object between two slices that are not empty. Nearest: the region of the nearer slice. ShapeBased:
   /// the points at which the distances to the two outlines, negative inside and weighted by nearness, sum to

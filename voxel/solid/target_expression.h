@@ -45,9 +45,9 @@ class TargetExpression {
 
 /// A rule other than voxel centres, for the leaves that are undecided in the covers of blocks.
 struct LeafRule {
-  double margin = TargetBlock::cuboids;                         ///< as in TargetBlock
-  std::function<std::uint64_t(const glm::ivec3& origin)> word;  ///< returns the word of the leaf at `origin`;
-                                                                ///< called from several threads
+  double margin = TargetBlock::cuboids;  ///< as in TargetBlock
+  /// Returns the word of the leaf at `origin`; called from several threads.
+  std::function<std::uint64_t(const glm::ivec3& origin)> word;
 };
 
 /// The walk behind combine(), digitise() and digitise_partial(). `rule` decides the leaves that are undecided

@@ -27,10 +27,8 @@ class TopBlocks {
   TopBlocks& operator=(const TopBlocks&) = delete;
 
   const ExpressionBlocks& blocks() const { return blocks_; }
-  const TopBlock& root() const {
-    return root_;
-  }  ///< the universe's block; in a small universe it is lower
-     ///< than `least_height`
+  /// The universe's block; in a small universe it is lower than `least_height`.
+  const TopBlock& root() const { return root_; }
 
  private:
   void enter_children(TopBlock& block, int least_height) const;

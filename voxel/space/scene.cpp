@@ -72,8 +72,8 @@ void check(const Scene& scene) {
     for (int row = 0; row < 4; ++row)
       if (!std::isfinite(lattice.lps_from_voxel[column][row]))
         throw InvalidInput(scene.source + ": the lattice's position is not finite");
-  const glm::dvec3 spacing_mm = lattice.spacing_mm();  // the spacing is checked too, because the squares of
-                                                       // large steps overflow before the steps do
+  // The spacing is checked too, because the squares of large steps overflow before the steps do.
+  const glm::dvec3 spacing_mm = lattice.spacing_mm();
   if (!std::isfinite(spacing_mm.x + spacing_mm.y + spacing_mm.z) ||
       !glm::all(glm::greaterThan(spacing_mm, glm::dvec3(0.0))))
     throw InvalidInput(scene.source + ": the lattice's spacing is not a finite length in millimetres");

@@ -53,9 +53,9 @@ struct Identity {
   std::string birth_date = {};  ///< YYYYMMDD
   std::string sex = {};         ///< M, F or O
   std::string series_uid = {};  ///< series from which a scan was read; empty for other files
-  std::vector<std::string> referred_series_uids = {};  ///< for a structure set, the series on which it was
-                                                       ///< drawn
-  std::string study_date = {};                         ///< YYYYMMDD
+  /// For a structure set, the series on which it was drawn.
+  std::vector<std::string> referred_series_uids = {};
+  std::string study_date = {};  ///< YYYYMMDD
 };
 
 /// Samples on a lattice, x fastest.

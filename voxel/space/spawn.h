@@ -16,8 +16,8 @@ struct Spawn {
   std::vector<std::string> words = {};  ///< the program, found by PATH if it has no slash, and its arguments
   std::optional<int> in = {}, out = {}, errors = {};
   bool has_environment = true;  ///< whether it inherits the environment; if not, it has no variables
-  bool has_own_group = false;   ///< whether it has a separate process group; if not, it receives our
-                                ///< terminal's signals
+  /// Whether it has a separate process group; if not, it receives our terminal's signals.
+  bool has_own_group = false;
 };
 
 /// Starts the program and returns its process. The program inherits no other open file, no blocked signal,

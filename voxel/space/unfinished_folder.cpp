@@ -167,9 +167,7 @@ void remove_unfinished() noexcept {
   // or removes a folder.
   const bool settled = names_mutex().try_lock_for(std::chrono::milliseconds(100));
   static_cast<void>(settled);
-  if (!folders().mutex.try_lock_for(std::chrono::seconds(10)))
-    return;  // the next run removes the remaining
-             // folders
+  if (!folders().mutex.try_lock_for(std::chrono::seconds(10))) return;  // the next run removes the others
   for (const fs::path& path : folders().paths) quietly([&path] { remove_folder(path); });
   for (const auto* undo : folders().undone_at_end) quietly(*undo);
 }

@@ -127,9 +127,9 @@ class GreyOctree {
     std::int16_t background;
     double step = 1.0;
     Octree scan = Octree::empty({});
-    std::vector<Level> levels;                  ///< blocks' ranges at heights 2, 3, ... up to the root's
-    std::vector<std::uint32_t> brick_of_block;  ///< number of each block's brick; brick 0 contains only the
-                                                ///< background
+    std::vector<Level> levels;  ///< blocks' ranges at heights 2, 3, ... up to the root's
+    /// Number of each block's brick; brick 0 contains only the background.
+    std::vector<std::uint32_t> brick_of_block;
     /// Numbers may have gaps. An unused brick is never written, so it takes memory only if it shares a page
     /// with a used one.
     std::vector<GreyBrick, LargeAllocator<GreyBrick>> bricks;
@@ -138,8 +138,8 @@ class GreyOctree {
   explicit GreyOctree(std::shared_ptr<const Storage> storage) : storage_(std::move(storage)) {}
   struct KeptScan;
   std::shared_ptr<const Storage> storage_;
-  std::shared_ptr<KeptScan> kept_;  ///< null if no scan is stored, or if on_scan_lattice() returns this
-                                    ///< octree
+  /// Null if no scan is stored, or if on_scan_lattice() returns this octree.
+  std::shared_ptr<KeptScan> kept_;
 };
 
 /// The default sample, in the scan's unit, of voxels outside a scan: below any CT sample.

@@ -189,8 +189,8 @@ class GreyOctreeBuild::Work {
   std::shared_ptr<GreyOctree::Storage> storage_;
   std::vector<Block> scan_;  // for each block the voxels that lie in the scan
   std::vector<Shared> shared_;
-  std::vector<std::pair<int, int>> layers_;  // layers that have not been begun, the next one last: number of
-                                             // slices that the layer reads, and its z
+  // Layers that have not been begun, the next one last: number of slices that the layer reads, and its z.
+  std::vector<std::pair<int, int>> layers_;
   std::atomic<std::size_t> brick_count_ = 0;
   tbb::isolated_task_group tasks_;  // the last member, so that the others outlive the tasks
 };

@@ -59,8 +59,8 @@ struct Node {
   std::int32_t height = 2;
   std::uint64_t voxel_count = 0;  ///< number of voxels of the object in this block
   std::uint64_t full = 0;         ///< children that are Full
-  std::uint64_t partial = 0;      ///< children that are Partial; their payloads are stored in ascending child
-                                  ///< number
+  /// Children that are Partial; their payloads are stored in ascending child number.
+  std::uint64_t partial = 0;
 
   /// The index of a child in the payload. Precondition: the child's bit of `partial` is set.
   int rank(int child) const {

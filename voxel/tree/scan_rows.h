@@ -71,8 +71,8 @@ class ScanRows {
   std::int16_t background_;
   double step_;
   glm::dmat4 scan_from_universe_;
-  std::optional<glm::ivec3> offset_;  ///< offset from the universe's voxels to the scan's samples, if the two
-                                      ///< lattices coincide
+  /// Offset from the universe's voxels to the scan's samples, if the two lattices coincide.
+  std::optional<glm::ivec3> offset_;
   std::array<std::vector<AxisPosition>, 3>
       along_;  ///< for each axis and voxel its position, if the lattices' axes are parallel
   struct {

@@ -43,15 +43,15 @@ EdgeLetters edge_letters(const View& view);
 
 /// The texts, scale bar, legend and colour bar to draw on a picture.
 struct Annotation {
-  std::string title;                   ///< top left
-  bool sides = true;                   ///< whether letters of the patient's sides are drawn at the picture's
-                                       ///< four edges
-  std::optional<EdgeLetters> letters;  ///< letters to draw instead of the view's, for a picture on a curved
-                                       ///< sheet
-  bool scale = true;                   ///< whether a scale bar with a round length is drawn at the bottom
-                                       ///< right; never in perspective
-  std::vector<LegendEntry> legend;     ///< bottom left
-  std::optional<ColourBar> bar;        ///< at the right edge
+  std::string title;  ///< top left
+  /// Whether letters of the patient's sides are drawn at the picture's four edges.
+  bool sides = true;
+  /// Letters to draw instead of the view's, for a picture on a curved sheet.
+  std::optional<EdgeLetters> letters;
+  /// Whether a scale bar with a round length is drawn at the bottom right; never in perspective.
+  bool scale = true;
+  std::vector<LegendEntry> legend;  ///< bottom left
+  std::optional<ColourBar> bar;     ///< at the right edge
 };
 
 /// Draws an annotation into a picture on `plane`, dark on a light picture and light on a dark one. Letters

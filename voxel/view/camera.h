@@ -85,8 +85,8 @@ VoxelRays voxel_rays(const Universe& universe, const ImagePlane& plane);
 /// Which axes of the universe are parallel to a view's right, up and look, in this order.
 struct AxisView {
   std::array<int, 3> axis{0, 1, 2};
-  std::array<bool, 3> reversed{false, false, false};  ///< whether the axis's index decreases along the
-                                                      ///< direction
+  /// Whether the axis's index decreases along the direction.
+  std::array<bool, 3> reversed{false, false, false};
 };
 /// The universe's axes in a view. None if the view's directions are not parallel to the axes, or the axes are
 /// not perpendicular.

@@ -16,10 +16,11 @@ namespace octotomy::voxel {
 /// The visible surface in every column of voxels along one of the universe's axes: the thesis's quadtree
 /// image at full resolution. Pictures of any pixel size are sampled from this map.
 struct ColumnMap {
-  int side = 0;               ///< number of columns along each of the image's axes
-  glm::dvec2 spacing_mm{1};   ///< distance between columns, along right and up
-  std::vector<Seen> columns;  ///< column (i, j) is entry i + side j; i, j are universe indices along the
-                              ///< axes of right and up, which may run either way
+  int side = 0;              ///< number of columns along each of the image's axes
+  glm::dvec2 spacing_mm{1};  ///< distance between columns, along right and up
+  /// Column (i, j) is entry i + side j; i, j are universe indices along the axes of right and up, which may
+  /// run either way.
+  std::vector<Seen> columns;
 
   /// The surface in column (i, j). Precondition: 0 <= i, j < side.
   const Seen& at(int i, int j) const {

@@ -17,9 +17,9 @@ namespace octotomy::voxel {
 /// extinction is applied only where samples change, so that surfaces are visible and the insides of tissues
 /// are not. Departure from Levoy: all samples use the same ramp of the gradient's magnitude.
 struct GradientOpacity {
-  double clear_per_mm = 0.0;   ///< samples that change by at most this much per mm are clear; 0 or more
-  double opaque_per_mm = 1.0;  ///< from this change per mm on, the full extinction is applied; above
-                               ///< clear_per_mm
+  double clear_per_mm = 0.0;  ///< samples that change by at most this much per mm are clear; 0 or more
+  /// From this change per mm on, the full extinction is applied; above clear_per_mm.
+  double opaque_per_mm = 1.0;
 
   double share(double slope_per_mm) const;  ///< share of the extinction that is applied, 0..1
 };

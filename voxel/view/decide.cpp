@@ -57,9 +57,9 @@ class DecidedRays {
  private:
   struct Ray {
     glm::dvec3 start{0.0};
-    glm::dvec3 per_mm{0.0};        ///< the ray's step per millimetre of depth, in voxels
-    double mm_per_depth_mm = 1.0;  ///< length of the ray in mm per millimetre of depth; above 1 with an eye
-                                   ///< at a finite distance
+    glm::dvec3 per_mm{0.0};  ///< the ray's step per millimetre of depth, in voxels
+    /// Length of the ray in mm per millimetre of depth; above 1 with an eye at a finite distance.
+    double mm_per_depth_mm = 1.0;
     std::vector<TakenSpan> taken;
     glm::dvec3 at(double depth_mm) const { return start + depth_mm * per_mm; }
   };

@@ -15,11 +15,11 @@ namespace octotomy::voxel {
 
 /// The surface that a line of sight meets first, or background.
 struct Seen {
-  float depth_mm = std::numeric_limits<float>::infinity();  ///< depth along look from the image plane;
-                                                            ///< infinity: background
-  std::int16_t object = -1;                                 ///< index of the object, -1: background
-  bool stepped = false;  ///< whether the depth is that of a voxel's face instead of interpolated by partial
-                         ///< volume
+  /// Depth along look from the image plane; infinity: background.
+  float depth_mm = std::numeric_limits<float>::infinity();
+  std::int16_t object = -1;  ///< index of the object, -1: background
+  /// Whether the depth is that of a voxel's face instead of interpolated by partial volume.
+  bool stepped = false;
 
   bool lit() const { return object >= 0; }
 };

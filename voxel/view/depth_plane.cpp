@@ -19,9 +19,9 @@ constexpr int smoothing_taps = 4;
 /// equal distance on both sides that continue the surface.
 struct Smoothing {
   std::ptrdiff_t tap = 1;  ///< distance between taps, in values
-  float limit_mm = 1.0f;   ///< largest difference from the pixel to the first tap; for further taps it grows
-                           ///< in proportion
-  float band_mm = 0.5f;    ///< largest change of a depth
+  /// Largest difference from the pixel to the first tap; for further taps it grows in proportion.
+  float limit_mm = 1.0f;
+  float band_mm = 0.5f;  ///< largest change of a depth
 };
 
 /// Smooths `count` values of `from` into `to`, within the band around the original depths `found`.
@@ -53,8 +53,8 @@ OCTOTOMY_VECTOR_CLONES void smooth_row(const float* __restrict from, const float
 /// depths into the plane and also computes the lit part of the row.
 struct RowFacts {
   float nearest_mm = beyond_mm;
-  glm::ivec2 stepped{0};  ///< the first pixel with a voxel's face and one past the last; no such pixels if
-                          ///< equal
+  /// The first pixel with a voxel's face and one past the last; no such pixels if equal.
+  glm::ivec2 stepped{0};
 };
 RowFacts copy_row(const DepthImage& image, int y, float* row, glm::ivec2& lit) {
   RowFacts facts;

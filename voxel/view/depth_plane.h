@@ -48,8 +48,8 @@ int stride_px(const Scenery& scenery);
 /// the objects.
 struct DepthPlane {
   Plane depth;
-  std::vector<glm::ivec2> lit;  ///< for each row the first lit pixel and one past the last; equal if none is
-                                ///< lit
+  /// For each row the first lit pixel and one past the last; equal if none is lit.
+  std::vector<glm::ivec2> lit;
   float nearest_mm = beyond_mm;
 };
 

@@ -49,8 +49,8 @@ using SeenAt = std::function<Seen(const glm::dvec2& p_px, const DepthSpan& span)
 struct Layer {
   DepthImage image;                    ///< an object's number is its index in the list of objects drawn
   std::vector<glm::vec3> cut_normals;  ///< from flatten_cuts()
-  SeenAt seen_at;                      ///< traces surfaces at other positions; owns its data, and any number
-                                       ///< of threads may call it
+  /// Traces surfaces at other positions; owns its data, and any number of threads may call it.
+  SeenAt seen_at;
 };
 
 /// The objects without the parts that the options' cuts remove. Builds their octrees, except for node tracing

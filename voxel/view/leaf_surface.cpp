@@ -207,11 +207,11 @@ struct Fours {
 /// The state of the search along the rays of one vector.
 struct Search {
   Origins origins;
-  Int outside;            ///< at the entry
-  Int faces;              ///< rays whose surface is their voxel's face
-  Int crossed;            ///< rays whose surface lies between their last two probes; the entry counts as a
-                          ///< probe
-  Float near_mm, far_mm;  ///< distances from the entry to these two probes
+  Int outside;  ///< rays that are outside the surface at their entry
+  Int faces;    ///< rays whose surface is their voxel's face
+  /// Rays whose surface lies between their last two probes; the entry counts as a probe.
+  Int crossed;
+  Float near_mm, far_mm;        ///< distances from the entry to these two probes
   Float near_value, far_value;  ///< samples at these two probes
 };
 

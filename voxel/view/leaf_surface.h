@@ -44,9 +44,9 @@ class LeafSurface {
   const GreyOctree& grey_;
   const Mirror& mirror_;
   std::optional<glm::dmat4> still_from_voxel_;  ///< DrawnObject::still_from_voxel()
-  glm::dvec3 per_mm_;                           ///< step of the rays per millimetre of depth, in voxels of
-                                                ///< the samples
-  float half_voxel_mm_;                         ///< depth that half a voxel's length along a ray spans
+  /// Step of the rays per millimetre of depth, in voxels of the samples.
+  glm::dvec3 per_mm_;
+  float half_voxel_mm_;  ///< depth that half a voxel's length along a ray spans
   float threshold_;
   int universe_side_;
   glm::ivec3 leaf_{std::numeric_limits<int>::min()};

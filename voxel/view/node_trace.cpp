@@ -459,8 +459,8 @@ class Depths {
   const TracedFrame& frame_;
   double spacing_mm_;
   std::vector<std::optional<ColumnSamples>> readers_;
-  std::vector<std::unique_ptr<MovedColumns>> moved_;  ///< one for each object that was moved away from its
-                                                      ///< samples
+  /// One for each object that was moved away from its samples.
+  std::vector<std::unique_ptr<MovedColumns>> moved_;
 };
 
 }  // namespace

@@ -53,12 +53,12 @@ class ParallelRays {
   VoxelRays rays_;
   Mirror mirror_;
   glm::dmat3x2 px_from_mirrored_{1.0};  ///< of directions
-  std::array<glm::vec2, 64> places_;    ///< centres of a block's children relative to the block's centre in
-                                        ///< the picture, for children of edge 1
-  glm::vec2 half_px_{0.0f};             ///< half the extent of a block of edge 1
-  float rounding_px_ = 0.0f;            ///< upper bound of the error of blocks' positions
-  std::vector<std::uint64_t> passed_;   ///< for each cell of a leaf's extent in the picture, the voxels that
-                                        ///< rays in the cell may pass
+  /// Centres of a block's children relative to the block's centre in the picture, for children of edge 1.
+  std::array<glm::vec2, 64> places_;
+  glm::vec2 half_px_{0.0f};   ///< half the extent of a block of edge 1
+  float rounding_px_ = 0.0f;  ///< upper bound of the error of blocks' positions
+  /// For each cell of a leaf's extent in the picture, the voxels that rays in the cell may pass.
+  std::vector<std::uint64_t> passed_;
 };
 
 }  // namespace octotomy::voxel

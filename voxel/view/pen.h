@@ -14,8 +14,8 @@ struct Canvas {
   std::vector<std::uint8_t>* rgb = nullptr;  ///< 3 bytes per pixel
 };
 
-using Polyline = std::vector<glm::dvec2>;  ///< pixel positions of the line's points; a repeated point draws a
-                                           ///< dot
+/// Pixel positions of the line's points; a repeated point draws a dot.
+using Polyline = std::vector<glm::dvec2>;
 
 struct Pen {
   double width_px = 1.0;

@@ -87,8 +87,8 @@ class CellSamples {
   glm::ivec3 last_cell_, last_block_;
   glm::ivec3 cell_{-1000}, block_{-1000};
   std::array<double, 4> lower_{},
-      upper_{};  ///< samples at both ends of the cell's edges along x; an edge at (y, z) of the cell has
-                 ///< number z + 2y
+      /// Samples at both ends of the cell's edges along x; an edge at (y, z) of the cell has number z + 2y.
+      upper_{};
   std::array<const std::int16_t*, 8> bricks_{};  ///< bricks of a block and of the next blocks along each axis
 };
 

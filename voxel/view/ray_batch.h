@@ -22,9 +22,9 @@ struct RayBatch {
   ByRay<std::int32_t> x{}, y{};             ///< pixels
   std::array<ByRay<double>, 3> start{};     ///< for each axis the ray's point at depth 0, in index space
   std::array<ByRay<std::int32_t>, 3> at{};  ///< for each axis the voxel's position in the leaf, mirrored
-  ByRay<double> enter_mm{}, leave_mm{};     ///< depths at which the ray enters and leaves the voxel; 0 if it
-                                            ///< does not pass the voxel
-  ByRay<std::int32_t> entered_through{};    ///< axis
+  /// Depths at which the ray enters and leaves the voxel; 0 if it does not pass the voxel.
+  ByRay<double> enter_mm{}, leave_mm{};
+  ByRay<std::int32_t> entered_through{};  ///< axis
 
   Passage passage(std::size_t ray) const {
     return {leaf + glm::ivec3(at[0][ray], at[1][ray], at[2][ray]), enter_mm[ray], leave_mm[ray],

@@ -45,8 +45,8 @@ Sheet plane_sheet(const Lattice& lattice, const View& view, double position_mm, 
 struct CurveOptions {
   std::vector<glm::dvec3> points_mm;  ///< at least two, LPS, from the picture's left to its right
   glm::dvec3 up{0, 0, 1};             ///< the picture's upward direction; any length above 0
-  double height_mm = 60.0;            ///< height of the picture; its middle is the mean of the points' lowest
-                                      ///< and highest position along `up`
+  /// Height of the picture; its middle is the mean of the points' lowest and highest position along `up`.
+  double height_mm = 60.0;
   double pixel_mm = 1.0;
 };
 /// The unrolled sheet through a curve, as for a panoramic view of a dental arch: it consists of the lines

@@ -46,9 +46,9 @@ struct DensityColour {
 /// Samples that colour surfaces. A pixel gets the sample of the first voxel behind the surface, on the
 /// pixel's ray, that a window owns.
 struct Densities {
-  CutTones tones;                      ///< Shading::Density only
-  std::vector<DensityColour> colours;  ///< the first range that contains the sample determines the colour;
-                                       ///< without one it is the object's
+  CutTones tones;  ///< Shading::Density only
+  /// The first range that contains the sample determines the colour; without one it is the object's.
+  std::vector<DensityColour> colours;
 };
 
 struct RenderOptions {

@@ -13,9 +13,9 @@ namespace octotomy::voxel {
 
 /// A light with parallel rays.
 struct Light {
-  glm::vec3 towards{-0.45f, 0.55f, -1.0f};  ///< direction from the surface to the light, in (right, up,
-                                            ///< look); any length above 0
-  float strength = 0.9f;                    ///< brightness, 0..1, of a white surface that faces the light
+  /// Direction from the surface to the light, in (right, up, look); any length above 0.
+  glm::vec3 towards{-0.45f, 0.55f, -1.0f};
+  float strength = 0.9f;  ///< brightness, 0..1, of a white surface that faces the light
 };
 
 /// Shaded: Phong's model, summed over the lights. Depth: brightness depends only on depth. Silhouette: one

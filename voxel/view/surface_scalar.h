@@ -12,8 +12,8 @@ struct SurfaceScalar {
   Universe universe;
   VoxelRange range;
   std::vector<float> values;  ///< x fastest
-  double most = 1.0;          ///< limit of the colours, above 0; values beyond it have the colour of the
-                              ///< limit
+  /// Limit of the colours, above 0; values beyond it have the colour of the limit.
+  double most = 1.0;
 
   /// The value at a position in the universe's index space: trilinear between voxel centres; beyond the
   /// range, the value of the nearest voxel.

@@ -19,8 +19,8 @@ struct TransferPoint {
 
   double sample = 0.0;     ///< -max_sample to max_sample
   glm::vec3 colour{1.0f};  ///< sRGB, 0..1
-  double per_mm = 0.0;  ///< extinction, 0 to max_per_mm: a millimetre transmits the share exp(-per_mm) of the
-                        ///< light
+  /// Extinction, 0 to max_per_mm: a millimetre transmits the share exp(-per_mm) of the light.
+  double per_mm = 0.0;
 };
 
 /// The appearance of samples in a volume picture. Between points, light and extinction are interpolated

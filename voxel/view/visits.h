@@ -28,12 +28,12 @@ struct VisitTally {
 struct Visits {
   std::vector<LevelCount> existing;  ///< number of nodes on levels 1..n
   VisitTally direct;
-  VisitTally all;                            ///< direct and indirect
-  std::uint64_t visited_count = 0;           ///< number of nodes on levels 1..n with at least one visit of
-                                             ///< either kind
+  VisitTally all;  ///< direct and indirect
+  /// Number of nodes on levels 1..n with at least one visit of either kind.
+  std::uint64_t visited_count = 0;
   std::uint64_t directly_visited_count = 0;  ///< number of those nodes with a direct visit
-  std::uint64_t pixel_count = 0;  ///< number of pixels, of the quadtree for views along axes, of the picture
-                                  ///< otherwise
+  /// Number of pixels, of the quadtree for views along axes, of the picture otherwise.
+  std::uint64_t pixel_count = 0;
 
   /// The number of visits to the quadtree per pixel (A.4.1).
   double per_pixel(const VisitTally& tally) const {

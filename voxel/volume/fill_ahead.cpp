@@ -63,8 +63,8 @@ class PartsAhead {
   std::size_t bytes_;
   std::size_t asked_ = 0;
   std::vector<std::atomic<PartState>> places_;
-  tbb::isolated_task_group tasks_;  ///< isolated, so that a thread that waits for these tasks runs no other
-                                    ///< tasks
+  /// Isolated, so that a thread that waits for these tasks runs no other tasks.
+  tbb::isolated_task_group tasks_;
 };
 
 }  // namespace

@@ -159,8 +159,8 @@ class NiftiReader {
 
  private:
   static constexpr int most_code = NIFTI_XFORM_TEMPLATE_OTHER;
-  static constexpr std::size_t most_read = 4096;  ///< size of the header and this program's own extension
-                                                  ///< behind it
+  /// Size of the header and this program's own extension behind it.
+  static constexpr std::size_t most_read = 4096;
 
   void read_fields() {
     bytes_.resize(most_read);
@@ -404,8 +404,8 @@ class NiftiReader {
   /// The geometry in this program's own extension, which is the first extension; none if it is absent or
   /// damaged.
   std::optional<glm::dmat4> own_geometry() const {
-    const std::size_t at = header_bytes_ + 4;  // extensions begin after the flags that state whether there
-                                               // are any
+    // Extensions begin after the flags that state whether there are any.
+    const std::size_t at = header_bytes_ + 4;
     if (bytes_.size() < at + 8 || bytes_[header_bytes_] == 0) return std::nullopt;
     const auto length = static_cast<std::size_t>(std::max(8, whole_at(at)));
     if (length > bytes_.size() - at || whole_at(at + 4) != nifti_text_extension) return std::nullopt;

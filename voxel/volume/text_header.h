@@ -14,11 +14,11 @@ namespace octotomy::voxel {
 
 /// The lines of a NRRD's or MetaImage's header.
 struct TextHeader {
-  std::map<std::string, std::string> fields;  ///< values of the fields by name, in lower case; NRRD's names
-                                              ///< without blanks
-  std::map<std::string, std::string> keys;    ///< values of NRRD's key:=value pairs, by key in lower case
-  std::vector<std::string> listed;            ///< the names of data files in the lines after LIST
-  std::size_t end = 0;                        ///< offset of the samples that follow in the same file
+  /// Values of the fields by name, in lower case; NRRD's names without blanks.
+  std::map<std::string, std::string> fields;
+  std::map<std::string, std::string> keys;  ///< values of NRRD's key:=value pairs, by key in lower case
+  std::vector<std::string> listed;          ///< the names of data files in the lines after LIST
+  std::size_t end = 0;                      ///< offset of the samples that follow in the same file
 
   std::optional<std::string> field(const std::string& name) const;
   /// The numbers of a field, separated by blanks or commas; empty if the field is absent. Throws Error

@@ -43,8 +43,8 @@ struct SampleFiles {
 
   StoredSamples stored;
   Encoding encoding = Encoding::Raw;
-  std::vector<std::filesystem::path> files;  ///< the files in the order of the samples; each contains an
-                                             ///< equal part
+  /// The files in the order of the samples; each contains an equal part.
+  std::vector<std::filesystem::path> files;
   std::uintmax_t file_at = 0;    ///< offset of the samples, or of their encoded stream, in each file
   std::uintmax_t line_skip = 0;  ///< number of lines to skip from there on
   std::uintmax_t byte_skip = 0;  ///< number of bytes to skip after these lines, counted after decoding
