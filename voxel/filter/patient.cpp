@@ -1,7 +1,6 @@
 // 1 Mark the parts that are extruded along the table.
 // 2 Average the other samples over cells of about two millimetres, and find the patient's core: the largest
-// part into
-//   which a ball of detach_mm fits.
+//   part into which a ball of detach_mm fits.
 // 3 Judge every other part: parts near the patient belong to it; parts that hang behind the core are
 //   supports.
 // 4 Close the patient, and fill everything that it encloses in each slice and in space.
