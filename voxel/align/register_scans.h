@@ -30,8 +30,8 @@ struct ScanFitOptions {
   /// Share of the smaller scan, above 0 and at most 1, that the other scan must cover. A lower share allows
   /// scans of regions that overlap little, but also more meaningless motions.
   double least_overlap = 0.3;
-  /// The resolution at which the search ends, above 0 and at most 8 mm. A finer one takes longer; below the
-  /// scans' spacing nothing is gained.
+  /// The resolution at which the search ends, above 0 and at most 8 mm. A finer resolution takes longer; one
+  /// below the scans' spacing does not improve the result.
   double finest_mm = 2.0;
   /// Called with each step of the best search, beginning with its start.
   std::function<void(const ScanFitStep&)> watch = {};

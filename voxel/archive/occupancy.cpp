@@ -43,7 +43,7 @@ std::vector<Covered> covered_by(double centre, double edge, int count) {
   return covered;
 }
 
-/// The lattice's axes in the octree's order; none unless they are parallel to those of the octree.
+/// For each axis of the octree the parallel axis of the lattice; none unless all axes are parallel.
 std::optional<std::array<Along, 3>> axes_along(const Universe& universe, const Lattice& lattice) {
   const glm::dmat4 lattice_from_octree = glm::inverse(lattice.lps_from_voxel) * universe.lps_from_voxel;
   const std::array<std::size_t, 3> strides{

@@ -72,7 +72,8 @@ std::vector<int> layers_of(const Overlaps& overlaps) {
 }
 
 /// Category and type of a segment, then modifier and region, which stay empty. The object's anatomy is
-/// unknown; SNOMED's code "Tissue" is true of every object, and DICOM segmentations state it too.
+/// unknown; SNOMED's code "Tissue" applies to every object; this program's DICOM segmentations state the same
+/// code.
 constexpr const char* tissue_entry =
     "TerminologyEntry:Segmentation category and type - 3D Slicer General Anatomy list~SCT^85756007^Tissue~"
     "SCT^85756007^Tissue~^^~Anatomic codes - DICOM master list~^^~^^|";

@@ -13,7 +13,7 @@ namespace octotomy::voxel {
 /// chosen so that the whole tree has the fewest nodes. Nodes in preorder: E, F, or the axis x, y or z of the
 /// cut, followed by the nodes of the low half and those of the high half.
 struct BiTree {
-  /// Above this depth the search takes more than a gigabyte.
+  /// Above this depth the search needs more than a gigabyte of memory.
   static constexpr int max_depth = 7;
 
   Universe universe;

@@ -28,8 +28,8 @@ enum class Joined { ByFaces, ByEdges };
 /// A connected part of an object's boundary.
 struct TrackedSurface {
   CuberilleFaces faces;
-  /// Number of voxels inside the surface, also those in cavities. For the wall of a cavity, which encloses
-  /// voxels outside the object, minus their number.
+  /// Number of voxels inside the surface, voxels in cavities included. The wall of a cavity encloses voxels
+  /// outside the object; for it, this is minus the number of these voxels.
   std::int64_t enclosed_voxels = 0;
 };
 

@@ -216,7 +216,7 @@ void DicomFile::walk() {
       }
       outside.push_back({explicit_, big_endian_});
       // PS3.5, 6.2.2: sequences of unknown representation are implicit and little-endian inside. Some writers
-      // keep the file's byte order.
+      // use the file's byte order instead.
       if (head.is_unknown) {
         explicit_ = false;
         big_endian_ = big_endian_ && !begins_little_endian_item(bytes_.substr(at_));

@@ -66,8 +66,8 @@ class Attributes {
     if (tag == 0x00209128)  // VR UL
       return word() ? std::to_string(*word()) : std::string();
     const std::string found = text(tag);
-    // VR FL is a binary float, which some writers store as a decimal string. The bytes of a float, such as
-    // those of 0, are not digits.
+    // VR FL is a binary float, which some writers store as a decimal string. The bytes of a binary float,
+    // such as 0, are not digits, so both can be distinguished.
     if ((tag == 0x00209241 || tag == 0x00209245) && word() &&
         (found.empty() || found.find_first_not_of("0123456789.+- ") != std::string::npos))
       return print("%g", static_cast<double>(std::bit_cast<float>(*word())));
@@ -253,7 +253,8 @@ std::optional<NoSlice> take_lut(const DicomFile& file, DicomSlice& slice) {
   return std::nullopt;
 }
 
-/// The real-world mappings of the frame; if it has none, those shared by all frames, else those of the file.
+/// The real-world mappings of the frame; if the frame has none, the mappings shared by all frames; if there
+/// are none either, the mappings of the file.
 std::vector<RealWorldMapping> real_world_of(const DicomFile& file, const DicomFile* own,
                                             const DicomFile* shared, bool is_signed) {
   std::vector<RealWorldMapping> found;

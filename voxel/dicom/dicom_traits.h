@@ -10,11 +10,11 @@ namespace octotomy::voxel {
 
 /// How an attribute separates the images of one series.
 enum class TraitRole {
-  Identity,    ///< images that differ are never joined: only those with the commonest value are used
+  Identity,    ///< images that differ are never joined; only images with the commonest value are used
   Origin,      ///< images that differ are joined only if the caller requests it
   Stack,       ///< splits images at one position into stacks
   Order,       ///< orders the images at one position; splits them if no other attribute does
-  Uniformity,  ///< images that differ stay together; the audit lists those with rarer values
+  Uniformity,  ///< images that differ remain together; the audit lists the images with rarer values
 };
 
 /// A DICOM attribute by which the images of a series are compared. Its value is that of the first of `tags`

@@ -163,7 +163,8 @@ struct Held {
             gives_way(p_mm, std::cos(found) * push + std::sin(found) * side, push);
         if (!way) break;
         const double least = std::asin(std::clamp(-glm::dot(push, *way) / glm::length(*way), 0.0, 1.0));
-        // The angle falls in every round even if rounding would keep it, so the search ends.
+        // The angle is reduced in every round, even if rounding would leave it unchanged, so that the search
+        // ends.
         found = std::min(least, found * (1.0 - 1e-6));
         if (found < 1e-7) found = 0.0;
       }

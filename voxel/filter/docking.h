@@ -19,8 +19,8 @@ struct Docking {
 
 /// Pushes that deviate by a larger angle from the nominal direction are not examined.
 constexpr double most_docking_deg = 89.0;
-/// The largest allowed sum of all reactions, divided by the push's component along its nominal direction. The
-/// limit excludes that walls parallel to the push hold the part by wedging.
+/// The largest allowed sum of all reactions, divided by the push's component along its nominal direction.
+/// Without this limit, walls parallel to the push could hold a part by wedging it.
 constexpr double most_reaction = 10.0;
 
 /// Computes the docking angle for the pushed point at which it is smallest. Contacts push along their

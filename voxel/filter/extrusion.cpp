@@ -264,8 +264,8 @@ class Finder {
     return glm::dvec2(high - low + 1) * glm::dvec2(view_.mm[0], view_.mm[1]);
   }
 
-  /// Removes the columns of discs of limb_mm if these discs together are little longer than wide, like those
-  /// of a head, a neck or an arm that lies on a couch.
+  /// Removes the columns of discs of limb_mm if the discs of a part together are hardly longer than wide:
+  /// they may be a head, a neck or an arm on a couch.
   void without_compact(std::vector<std::uint8_t>& lasting, const DistanceMap& depth) const {
     std::vector<std::uint8_t> inner(lasting.size(), 0), compact(lasting.size(), 0);
     for (int y = 0; y < view_.size[1]; ++y)

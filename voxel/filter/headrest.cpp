@@ -1,5 +1,5 @@
-// Separates the patient from supports, keeps the supports' samples as a grey octree and overwrites them with
-// air.
+// Separates the patient from supports, stores the supports' samples in a grey octree and overwrites them in
+// the scan with air.
 #include "voxel/filter/headrest.h"
 
 #include <algorithm>

@@ -30,7 +30,7 @@ bool is_letter_or_digit(char c) {
 struct NumberInName {
   char sign = '\0';             ///< the sign as written: '-', '+' or '\0' for none
   bool is_behind_word = false;  ///< whether the sign follows a letter
-  std::string whole, fraction;  ///< digits; those of the integer part without leading zeros
+  std::string whole, fraction;  ///< digits before and after the dot; `whole` without leading zeros
   bool is_negative = false, is_decimal = true;
 };
 

@@ -26,7 +26,7 @@ struct SliceNames {
 SliceNames ordered_by_name(const std::vector<std::filesystem::path>& files);
 
 /// Lists the stacks of a folder, "ct_#.png (5 files) and mask_#.png (5 files)", if several files have the
-/// same number and different letters. Empty if the names are those of one stack.
+/// same number but different letters. Empty if the names belong to a single stack.
 std::string stacks_named(const std::vector<std::filesystem::path>& files);
 
 /// A sentence that reports names with the same last number but different numbers before it ("s1_000" and

@@ -368,7 +368,7 @@ class SeriesAssembler {
     return members;
   }
 
-  /// Keeps the largest group of slices that are alike by `alike`. A finding lists the other slices.
+  /// Groups the slices by `alike` and keeps the largest group. A finding lists the other slices.
   void keep_commonest(const char* check, std::vector<DicomSlice>& members,
                       const std::function<bool(const DicomSlice&, const DicomSlice&)>& alike,
                       const std::function<std::string(const DicomSlice&)>& named) {
@@ -390,8 +390,8 @@ class SeriesAssembler {
     members = std::vector<DicomSlice>(std::move(most));
   }
 
-  /// Keeps the commonest patient, study, modality and frame of reference. An image without the attribute
-  /// counts as one of the commonest.
+  /// Keeps the commonest patient, study, modality and frame of reference. An image without such an attribute
+  /// counts as having the commonest value.
   std::vector<DicomSlice> with_one_identity(std::vector<DicomSlice> members) {
     for (std::size_t trait = 0; trait < dicom_traits.size(); ++trait) {
       const bool is_joinable = dicom_traits[trait].role == TraitRole::Origin;

@@ -15,7 +15,7 @@ namespace octotomy::voxel {
 /// one; 2^24 is excluded because 2^24 + 1 is rounded to it.
 constexpr int most_number = (1 << 24) - 1;
 
-/// Assigns numbers to the sets of labels that samples have in common, above all labels: see Scene::overlaps.
+/// Assigns a number above all labels to each set of labels that overlap in a sample: see Scene::overlaps.
 class LabelOverlaps {
  public:
   /// `largest_label` is the largest number that any label or sample has.

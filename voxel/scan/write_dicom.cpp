@@ -178,7 +178,8 @@ class SeriesWriter {
     // If a body part is stated, an empty laterality would mean that the side is unknown (PS3.3, C.7.3.1).
     if (source.attributes.contains(0x00180015) && !source.attributes.contains(0x00200060))
       slice.remove(0x00200060);
-    // Adds 1000, so that the number differs from those of the scanner and viewers list the series separately.
+    // Adds 1000 to the source's series number, so that it differs from the scanner's numbers and viewers list
+    // the series separately.
     slice.put(0x00200011, "IS", std::to_string(source.series_number + 1000));
     const std::vector<DicomSource::Image> images = images_behind(source, scene_.lattice, k);
     if (images.empty()) return;

@@ -129,7 +129,7 @@ std::string packed_pixels(Segments segments, const Extent& extent, const Progres
   return pixels;
 }
 
-/// Keeps one plane at each height, because all objects of a label map share its frame.
+/// Leaves one plane at each height, because all objects of a label map share one frame there.
 void share_planes(Extent& extent) {
   std::vector<Plane>& planes = extent.planes;
   std::sort(planes.begin(), planes.end(), [](const Plane& a, const Plane& b) { return a.z < b.z; });

@@ -25,7 +25,7 @@ bool is_affine(const glm::dmat4& matrix) {
   return true;
 }
 
-// Whether the matrix is affine and keeps lengths. It is rigid if its determinant is also positive.
+// Whether the matrix is affine and preserves lengths. It is rigid if its determinant is also positive.
 bool is_affine_isometry(const glm::dmat4& matrix) {
   return is_affine(matrix) && is_isometry(glm::dmat3(matrix));
 }

@@ -61,8 +61,7 @@ Operand operand_of(const PostfixExpression::Operand& operand, const Universe& ta
       const glm::dmat4 source_from_target = source(octree.universe());
       if (const std::optional<glm::ivec3> offset = whole_voxel_offset(source_from_target))
         return ShiftedOctreeOperand(octree, *offset);
-      // A scan's points are those whose nearest sample belongs to the scan, so the rule Half is not applied
-      // to it.
+      // A point belongs to a scan if its nearest sample does, so the rule Half is not applied to scans.
       if (resampling.voxels == Resampling::Voxels::Half && !operand.is_scan)
         return HalfOctreeOperand(octree, source_from_target);
       return SampledOctreeOperand(octree, source_from_target);

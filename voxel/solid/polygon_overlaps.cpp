@@ -101,7 +101,7 @@ class Crossings {
         asked_(polygons.size(), polygons.size()) {
     for (const Polygon& polygon : polygons) {
       measures_.push_back(measures_of(polygon));
-      // Edges are numbered as in EdgeTree: a polygon of n points takes n + 1 numbers.
+      // Edges are numbered as in EdgeTree, where a polygon of n points uses n + 1 numbers.
       first_.push_back(edge_count_);
       if (!polygon.empty()) edge_count_ += polygon.size() + 1;
     }

@@ -5,8 +5,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-// Finds polygons in one plane for which the even-odd rule yields another region than was drawn: repeated and
-// crossing polygons. Nested polygons and keyholes are not reported.
+// Finds polygons in one plane for which the even-odd rule yields a region other than the one drawn: repeated
+// and crossing polygons. Nested polygons and keyholes are not reported.
 namespace octotomy::voxel {
 
 /// The numbers, ascending, of the polygons that repeat an earlier one: the points of each are within the

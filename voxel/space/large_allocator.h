@@ -43,7 +43,7 @@ struct LargeAllocator {
   }
   template <typename Other>
   void construct(Other* at) {
-    ::new (static_cast<void*>(at)) Other;  // without (), so the element stays uninitialised
+    ::new (static_cast<void*>(at)) Other;  // without parentheses, so that the element remains uninitialised
   }
   template <typename Other, typename... Arguments>
   void construct(Other* at, Arguments&&... arguments) {

@@ -130,8 +130,8 @@ class GreyOctree {
     std::vector<Level> levels;  ///< blocks' ranges at heights 2, 3, ... up to the root's
     /// Number of each block's brick; brick 0 contains only the background.
     std::vector<std::uint32_t> brick_of_block;
-    /// Numbers may have gaps. An unused brick is never written, so it takes memory only if it shares a page
-    /// with a used one.
+    /// Samples by brick number; some numbers may be unused. An unused brick is never written, so it takes
+    /// memory only if it shares a page with a used one.
     std::vector<GreyBrick, LargeAllocator<GreyBrick>> bricks;
     std::size_t brick_count = 0;  ///< number of bricks in use, brick 0 included
   };

@@ -30,7 +30,7 @@ std::optional<TakenSpan> taken_span(const Cutaway& cut, const glm::dvec3& start_
 Expression without(const Expression& object, const std::vector<Cutaway>& cuts);
 
 /// The objects without the parts that the cuts remove, as expressions (DrawnObject::unbuilt). The objects
-/// keep their samples, but visits to them are counted in binary octrees.
+/// retain their samples, but visits are counted in their binary octrees.
 std::vector<DrawnObject> without(const std::vector<DrawnObject>& objects, const std::vector<Cutaway>& cuts);
 
 /// Moves pixels from the voxel faces that a cut made onto the cut itself. The cut face is then flat instead

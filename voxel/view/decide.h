@@ -17,8 +17,8 @@ struct Decision {
   double low = 0.0;             ///< Range: lower bound in the samples' unit, included
   double high = 0.0;            ///< Range: upper bound, included
   double steeper_per_mm = 0.0;  ///< Derivative, Gradient: in the samples' unit per mm
-  /// The number of stretches, on which the criterion holds, that a ray passes before the surface; 0 shows the
-  /// outermost layer.
+  /// The number of stretches on which the criterion is true that a ray passes before it ends at the next one;
+  /// 0 shows the outermost layer.
   int peeled = 0;
 };
 

@@ -76,8 +76,8 @@ struct RenderOptions {
   bool occlusion = true;      ///< darkens surfaces that lie behind their surroundings
   /// Counts the nodes that the algorithm visits (appendix A); takes much longer than drawing.
   bool count = false;
-  /// Blends the colours of four parts of each edge pixel; depth, object and lit pixels remain those of the
-  /// pixel's centre. A frame takes a sixth (node tracing) to a half (ray casting) longer.
+  /// Blends the colours of four parts of each edge pixel; depth and object remain those at the pixel's
+  /// centre. A frame takes a sixth (node tracing) to a half (ray casting) longer.
   bool antialias = true;
   /// The strength of light from everywhere; the strength and the exponent of the first light's mirror image
   /// (thesis 5.1). By default those of Scenery.

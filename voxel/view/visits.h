@@ -31,7 +31,8 @@ struct Visits {
   VisitTally all;  ///< direct and indirect
   /// Number of nodes on levels 1..n with at least one visit of either kind.
   std::uint64_t visited_count = 0;
-  std::uint64_t directly_visited_count = 0;  ///< number of those nodes with a direct visit
+  /// Number of nodes on levels 1..n with at least one direct visit.
+  std::uint64_t directly_visited_count = 0;
   /// Number of pixels, of the quadtree for views along axes, of the picture otherwise.
   std::uint64_t pixel_count = 0;
 

@@ -11,7 +11,8 @@
 namespace octotomy::voxel {
 namespace {
 
-/// The smallest page size. In a larger page, touches after the first take almost no time.
+/// The smallest page size, by which memory is touched. In larger pages, touches after the first take almost
+/// no time.
 constexpr std::size_t page_bytes = 4096;
 /// Twice the size of the largest page that the system uses without an explicit request.
 constexpr std::size_t part_bytes = std::size_t{4} << 20;
