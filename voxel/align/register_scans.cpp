@@ -229,7 +229,7 @@ class Search {
     const double least = is_correlation ? least_correlation : least_entropy;
     if (fit.overlap < options_.least_overlap)
       find(Verdict::Fail, "the scans overlap in only " + rounded(100.0 * fit.overlap) +
-                              " % of the smaller one; lay them on each other by landmarks first, or allow a "
+                              " % of the smaller one; align them by landmarks first, or allow a "
                               "smaller least overlap");
     else if (fit.likeness < least)
       find(Verdict::Fail,
@@ -240,11 +240,11 @@ class Search {
     if (fit.rival && *fit.rival > rival_share * fit.likeness_there)
       find(Verdict::Warn, "another motion is nearly as good: likeness " + rounded(*fit.rival) + " beside " +
                               rounded(fit.likeness_there) + " at " + rounded(fit.rival_mm) +
-                              " mm; lay the scans on each other by landmarks first");
+                              " mm resolution; align the scans by landmarks first");
     if (fit.agreeing < 2)
       find(Verdict::Warn, "only one of " + std::to_string(fit.refined) + " searches ended at this motion");
     if (!(fit.least_drop > 0.0))
-      find(Verdict::Warn, "a motion of " + rounded(fit.probe_mm) +
+      find(Verdict::Warn, "a further motion of " + rounded(fit.probe_mm) +
                               " mm loses no likeness: the scans do not determine the motion");
   }
 
