@@ -29,13 +29,14 @@ constexpr double coarsest_mm = 8.0;
 constexpr std::size_t coarse_points = 12000, fine_points = 100000;
 constexpr double turned_deg = 30.0;
 constexpr std::size_t most_refined = 6;
-/// Likeness that scans of unrelated bodies reach, because any two heads are roundish. An answer with less
-/// likeness is meaningless.
+/// Likenesses that the search reaches even for scans of unrelated people, because all heads are roundish. An
+/// answer with a lower likeness is meaningless.
 constexpr double least_correlation = 0.4, least_entropy = 0.05;
-/// A rival with at least this share of the best likeness could be the true motion.
+/// If another motion reaches more than this share of the best likeness, it could be the true one.
 constexpr double rival_share = 0.95;
 
-/// A rotation vector in radians about the fixed scan's middle, then a translation in mm: fixed to moving.
+/// A motion from the fixed to the moving scan: a rotation vector in radians about the fixed scan's middle,
+/// then a translation in mm.
 using Parameters = std::array<double, 6>;
 
 class Search {
@@ -90,7 +91,7 @@ class Search {
   struct Found {
     Parameters at{};
     double likeness = 0.0;
-    std::vector<ScanFitStep> trail = {};  ///< all steps from the start on, if `watch` is set
+    std::vector<ScanFitStep> trail = {};  ///< all steps since the start; recorded only if `watch` is set
   };
 
   glm::dmat4 motion(const Parameters& at) const {
@@ -101,7 +102,7 @@ class Search {
     return glm::translate(moved, -middle_mm_);
   }
 
-  /// The largest distance between the two positions to which two motions move one corner of the fixed scan.
+  /// The largest distance by which two motions separate a corner of the fixed scan.
   double apart_mm(const Parameters& a, const Parameters& b) const {
     double apart = 0.0;
     for (const glm::dvec3& corner : corners_mm_)
@@ -113,14 +114,14 @@ class Search {
   double value(const ScanPair& pair, const Parameters& at) {
     ++motions_;
     const Likeness likeness = pair.likeness(motion(at));
-    // This value is below every likeness and rises with the overlap, so that the search returns to motions
-    // with enough overlap.
+    // Too little overlap: the value is below every likeness and rises with the overlap, which leads the
+    // search back to motions with enough overlap.
     if (likeness.overlap < options_.least_overlap) return likeness.overlap - 3.0;
     return likeness.value;
   }
 
-  /// Converts a length to a step of parameter k. A rotation by this step moves points at half the scan's
-  /// diagonal by the length.
+  /// The step of parameter k, in radians or mm, that moves points by `step_mm`. For a rotation these points
+  /// lie half the scan's diagonal from its middle.
   double step_of(std::size_t k, double step_mm) const { return k < 3 ? step_mm / radius_mm_ : step_mm; }
 
   Found improved(const ScanPair& pair, double resolution_mm, const Parameters& from, double first_mm,
@@ -158,7 +159,7 @@ class Search {
     return best;
   }
 
-  /// Replaces -0, which products of matrices may contain, by 0.
+  /// Replaces -0 by 0. Products of matrices may contain -0.
   glm::dmat4 fixed_from_moving(const Parameters& at) const {
     glm::dmat4 matrix = glm::inverse(motion(at));
     for (int column = 0; column < 4; ++column) matrix[column] += 0.0;
@@ -172,14 +173,14 @@ class Search {
     for (const ScanFitStep& step : found.trail) options_.watch(step);
   }
 
-  /// The best starts, refined at the coarsest resolution, the best first.
+  /// The best starts after refinement at the coarsest resolution, in descending order of likeness.
   std::vector<Found> from_all_starts(ScanFit& fit) {
     const ScanPair pair(moving_, fixed_, coarsest_mm, coarse_points, options_.by);
     for (const CoarseScan* scan : {&pair.moving(), &pair.fixed()})
       if (!(scan->high > scan->low))
-        throw InvalidInput(std::string("the scan that ") + (scan == &pair.moving() ? "moves" : "stays") +
-                           " has nothing to compare: all but a few samples have one value; give a scan with "
-                           "contrast");
+        throw InvalidInput(
+            std::string("the scan that ") + (scan == &pair.moving() ? "moves" : "stays") +
+            " has nothing to compare: all but a few samples have one value; choose a scan with contrast");
     const Lattice& lattice = moving_.lattice;
     const std::array<glm::dvec3, 3> shifts{
         glm::dvec3(0.0), lattice.lps_mm(0.5 * glm::dvec3(lattice.dims - 1)) - middle_mm_,
@@ -228,23 +229,23 @@ class Search {
     const double least = is_correlation ? least_correlation : least_entropy;
     if (fit.overlap < options_.least_overlap)
       find(Verdict::Fail, "the scans overlap in only " + rounded(100.0 * fit.overlap) +
-                              " % of the smaller one; lay them on each other by landmarks first, or allow a "
+                              " % of the smaller one; align them by landmarks first, or allow a "
                               "smaller least overlap");
     else if (fit.likeness < least)
       find(Verdict::Fail,
-           std::string("no motion makes the scans alike: the ") +
+           std::string("the scans match at no motion: the best ") +
                (is_correlation ? "correlation" : "mutual information") + " is " + rounded(fit.likeness) +
-               ", and unrelated scans reach " + rounded(least) +
-               (is_correlation ? "; scans of different contrast need mutual information" : ""));
+               ", but unrelated scans reach " + rounded(least) +
+               (is_correlation ? "; compare scans of different contrast by mutual information" : ""));
     if (fit.rival && *fit.rival > rival_share * fit.likeness_there)
       find(Verdict::Warn, "another motion is nearly as good: likeness " + rounded(*fit.rival) + " beside " +
                               rounded(fit.likeness_there) + " at " + rounded(fit.rival_mm) +
-                              " mm; lay the scans on each other by landmarks first");
+                              " mm resolution; align the scans by landmarks first");
     if (fit.agreeing < 2)
       find(Verdict::Warn, "only one of " + std::to_string(fit.refined) + " searches ended at this motion");
     if (!(fit.least_drop > 0.0))
-      find(Verdict::Warn, "a motion of " + rounded(fit.probe_mm) +
-                              " mm away is no worse: the scans do not determine the motion");
+      find(Verdict::Warn, "a further motion of " + rounded(fit.probe_mm) +
+                              " mm loses no likeness: the scans do not determine the motion");
   }
 
   const Scene& moving_;

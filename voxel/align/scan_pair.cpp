@@ -10,14 +10,15 @@
 namespace octotomy::voxel {
 namespace {
 
-/// Bins of the joint histogram per scan: enough for bone, soft tissue, fat and air, and few enough that
-/// thousands of points fill them.
+/// Number of bins of the joint histogram for each scan: enough for bone, soft tissue, fat and air, and few
+/// enough that thousands of points fill them.
 constexpr int bins = 40;
-/// Number of partial sums, which are added in their order, so that the result does not depend on the number
+/// Number of partial sums. They are added in a fixed order, so that the result does not depend on the number
 /// of threads.
 constexpr std::size_t parts = 32;
 
-/// Scatters the bits of a number (Steele, Lea, Flood, Fast splittable pseudorandom number generators, 2014).
+/// Hashes a number, so that consecutive numbers yield unrelated bits (Steele, Lea, Flood, Fast splittable
+/// pseudorandom number generators, 2014).
 std::uint64_t scattered(std::uint64_t n) {
   n += 0x9e3779b97f4a7c15ULL;
   n = (n ^ (n >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -33,7 +34,7 @@ double offset(std::uint64_t bits) {
 struct Sums {
   std::uint64_t count = 0;
   double a = 0.0, b = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
-  std::vector<double> joint;  ///< bins * bins, the moving scan's bin fastest
+  std::vector<double> joint;  ///< joint histogram: bins * bins entries, the moving scan's bin fastest
 };
 
 double correlation(const Sums& s) {
@@ -67,7 +68,7 @@ double shared_entropy(const Sums& s) {
 float CoarseScan::at(const glm::dvec3& p_voxel) const {
   const glm::dvec3 floor = glm::floor(p_voxel);
   const glm::ivec3 last = dims - 1;
-  // Along an axis with a single block, the scan is as wide as that block.
+  // Outside the centres of the outermost blocks, their values continue to the blocks' edges.
   std::array<int, 3> first{}, next{};
   glm::vec3 part(0.0f);
   for (int k = 0; k < 3; ++k) {
@@ -209,7 +210,7 @@ Likeness ScanPair::likeness(const glm::dmat4& moving_from_fixed) const {
         s.ab += a * b;
         continue;
       }
-      // A point is shared between the two nearest bins, so that the likeness is continuous.
+      // A point is counted partly in each of the two nearest bins, so that the likeness is continuous.
       const float place = (value - moving_.low) * per_value;
       const int bin = std::min(bins - 2, static_cast<int>(place));
       const double beyond = place - static_cast<float>(bin);

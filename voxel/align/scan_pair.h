@@ -10,31 +10,35 @@
 
 namespace octotomy::voxel {
 
-/// Means of blocks of samples; along each axis a block is about as wide as the resolution.
+/// A scan at a lower resolution: the mean sample of each block. Along each axis a block is about as wide as
+/// the resolution.
 struct CoarseScan {
   glm::ivec3 dims{0};
   std::vector<float> values;  ///< x fastest; NaN: a block without measured samples
   glm::dmat4 voxel_from_lps{1.0};
   glm::dmat4 lps_from_voxel{1.0};
   double measured_mm3 = 0.0;
-  float low = 0.0f, high = 1.0f;  ///< the range of the values without the lowest and the highest 1/200
+  /// The values' range after the lowest and the highest 1/200 of them are left out.
+  float low = 0.0f, high = 1.0f;
 
   std::size_t index(int x, int y, int z) const {
     return static_cast<std::size_t>(x) +
            static_cast<std::size_t>(dims.x) *
                (static_cast<std::size_t>(y) + static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(z));
   }
-  /// The trilinear value, clamped to low..high; NaN outside the scan and next to blocks without samples.
+  /// The trilinear value at a position in blocks, clamped to low..high. NaN outside the scan and next to
+  /// blocks without measured samples.
   float at(const glm::dvec3& p_voxel) const;
 };
 CoarseScan coarse_scan(const Scene& scene, double resolution_mm);
 
-/// The mean position of a scan's blocks, LPS. A block's weight is its value minus the lowest value.
+/// The mean position of a scan's blocks, in LPS millimetres, weighted by how far each block's value, clamped
+/// to low..high, exceeds `low`.
 glm::dvec3 centre_of_mass_mm(const CoarseScan& scan);
 
 struct Likeness {
   double value = 0.0;    ///< -1..1 for correlation, 0..1 for mutual information
-  double overlap = 0.0;  ///< share of the smaller scan that the other one covers
+  double overlap = 0.0;  ///< share of the smaller scan that the other one covers, 0..1
 };
 
 /// Two scans at one resolution, compared at points of the fixed scan. Pseudorandom offsets, computed from the
@@ -46,7 +50,7 @@ class ScanPair {
   ScanPair(const Scene& moving, const Scene& fixed, double resolution_mm, std::size_t most_points,
            ScanLikeness by);
 
-  /// Parallel; same bits on any thread count.
+  /// Runs in parallel; the result has the same bits on any thread count.
   Likeness likeness(const glm::dmat4& moving_from_fixed) const;
   const CoarseScan& moving() const { return moving_; }
   const CoarseScan& fixed() const { return fixed_; }

@@ -21,15 +21,17 @@ struct Covered {
   double length = 0.0;
 };
 
-/// An axis of the octree that is parallel to an axis of the lattice.
+/// An axis of the octree, and the parallel axis of the lattice.
 struct Along {
-  int axis = 0;                                    ///< of the lattice
-  std::size_t stride = 1;                          ///< between the lattice's samples along it
-  std::vector<std::vector<Covered>> covered = {};  ///< by the octree's voxels along the axis
+  int axis = 0;  ///< number of the lattice's axis
+  /// Step between neighbouring samples along this axis of the lattice.
+  std::size_t stride = 1;
+  /// For each voxel of the octree along its axis, the parts of lattice voxels that it covers.
+  std::vector<std::vector<Covered>> covered = {};
 };
 
-/// The parts of the `count` lattice voxels along an axis that are covered by an octree voxel with this centre
-/// and edge length.
+/// The lattice voxels, of `count` along an axis, that an octree voxel covers, and the covered lengths.
+/// Centre, edge and lengths are in lattice voxels.
 std::vector<Covered> covered_by(double centre, double edge, int count) {
   std::vector<Covered> covered;
   const double low = centre - 0.5 * edge, high = centre + 0.5 * edge;
@@ -41,14 +43,14 @@ std::vector<Covered> covered_by(double centre, double edge, int count) {
   return covered;
 }
 
-/// The lattice's axes in the octree's order; none unless they are parallel to those of the octree.
+/// For each axis of the octree the parallel axis of the lattice; none unless all axes are parallel.
 std::optional<std::array<Along, 3>> axes_along(const Universe& universe, const Lattice& lattice) {
   const glm::dmat4 lattice_from_octree = glm::inverse(lattice.lps_from_voxel) * universe.lps_from_voxel;
   const std::array<std::size_t, 3> strides{
       1, static_cast<std::size_t>(lattice.dims.x),
       static_cast<std::size_t>(lattice.dims.x) * static_cast<std::size_t>(lattice.dims.y)};
-  // Rounding in headers turns an axis by less than this. Over the whole universe such a turn is a small part
-  // of a voxel.
+  // Rounded numbers in headers change an axis's direction by less than this, in radians. Across the whole
+  // universe such a change shifts no voxel by more than a small part of its edge.
   constexpr double most_turn = 1e-6;
   std::array<Along, 3> axes;
   std::array<bool, 3> is_taken{};

@@ -23,16 +23,18 @@ class Pixels {
   const SliceBits& slice_;
 };
 
-/// Of the two pixels ahead of a walk that arrives at a corner in this direction, the right one.
+/// A walk along pixels' edges arrives at a corner with the step `way`. Returns the right one of the two
+/// pixels ahead.
 glm::ivec2 right_ahead(const glm::ivec2& corner, const glm::ivec2& way) {
-  // For a walk along +x it has the corner's own indices; the other directions follow by quarter turns.
+  // For a step along +x this pixel has the corner's indices; the other directions follow by quarter turns.
   return corner + glm::ivec2((way.x - way.y - 1) / 2, (way.x + way.y - 1) / 2);
 }
 glm::ivec2 left_ahead(const glm::ivec2& corner, const glm::ivec2& way) {
   return corner + glm::ivec2((way.x + way.y - 1) / 2, (way.y - way.x - 1) / 2);
 }
 
-/// The outline that contains the edge above a pixel; marks all such edges of the outline as visited.
+/// The outline that contains the edge above the given pixel. Marks in `is_done` all pixels whose upper edge
+/// is on this outline.
 PixelOutline outline_from(const Pixels& pixels, const glm::ivec2& pixel, std::vector<bool>& is_done) {
   PixelOutline outline;
   glm::ivec2 corner = pixel, way(1, 0);

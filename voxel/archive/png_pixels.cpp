@@ -31,7 +31,8 @@ int paeth(int left, int above, int corner) {
   return from_above <= from_corner ? above : corner;
 }
 
-/// Reverses the filter of each row; the row's first byte is the filter's number.
+/// Reverses the filters that the encoder applied to the rows. Each row's first byte is the number of its
+/// filter.
 void unfilter(std::vector<std::uint8_t>& rows, std::size_t row_bytes, std::size_t pixel_bytes) {
   for (std::size_t at = 0; at < rows.size(); at += row_bytes + 1) {
     const int filter = rows[at];
@@ -53,7 +54,8 @@ void unfilter(std::vector<std::uint8_t>& rows, std::size_t row_bytes, std::size_
 }  // namespace
 
 ColourPixels png_pixels(std::string_view png) {
-  if (!png.starts_with(std::string_view("\x89PNG\r\n\x1a\n", 8))) refuse_png("it does not begin as one");
+  if (!png.starts_with(std::string_view("\x89PNG\r\n\x1a\n", 8)))
+    refuse_png("its first bytes are not a PNG's signature");
   ColourPixels made;
   std::size_t channels = 0;
   std::string packed;
@@ -68,10 +70,10 @@ ColourPixels png_pixels(std::string_view png) {
       if (length != 13) refuse_png("its header is damaged");
       const std::uint32_t width = big_endian(bytes), height = big_endian(bytes.substr(4));
       if (width < 1 || height < 1 || width > most_side_px || height > most_side_px)
-        refuse_png("its sides are not from 1 to " + std::to_string(most_side_px) + " pixels");
+        refuse_png("its width or height is not from 1 to " + std::to_string(most_side_px) + " pixels");
       if (bytes[8] != 8 || (bytes[9] != 0 && bytes[9] != 2 && bytes[9] != 4 && bytes[9] != 6) ||
           bytes[12] != 0)
-        refuse_png("it is not of 8 bits a channel, grey or colour, and not interlaced");
+        refuse_png("its pixels are not grey or RGB with 8 bits a channel, or it is interlaced");
       channels = bytes[9] == 0 ? 1 : bytes[9] == 4 ? 2 : bytes[9] == 2 ? 3 : 4;
       made.size_px = {static_cast<int>(width), static_cast<int>(height)};
     }

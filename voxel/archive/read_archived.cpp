@@ -78,14 +78,14 @@ std::optional<ArchivedObject> read_archived(const std::filesystem::path& path) {
     if (made.class_uid == capture_class) {
       made.picture = picture_of(file);
       made.title = file.readable_text(0x00204000);
-      if (!made.picture) return std::nullopt;  // grey: an image of a scan
+      if (!made.picture) return std::nullopt;  // a grey picture is an image of a scan
       return made;
     }
     made.media_type = file.readable_text(0x00420012);
     made.title = file.readable_text(0x00420010);
-    // The media type is stored after the document, so it is missing in files that are cut short.
+    // The media type is stored behind the document, so a file that is cut short lacks it.
     if (made.media_type.empty())
-      throw Error(ErrorCode::Input, "does not state its document's media type: is it cut short?");
+      throw Error(ErrorCode::Input, "does not state its document's media type: the file may be cut short");
     made.document = document_of(file);
     return made;
   } catch (const DicomFile::NeedsMore&) {

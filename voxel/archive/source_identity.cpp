@@ -19,8 +19,8 @@ enum class Rule {
   Empty,    ///< Z: the value is emptied
   Drop,     ///< X: the attribute is removed
   Replace,  ///< U: the unique identifier is replaced
-  Number,   ///< kept if its values are numbers, else emptied
-  Word      ///< kept if its values are defined words, else removed
+  Number,   ///< the attribute is kept if all its values are numbers, else emptied
+  Word      ///< the attribute is kept if the standard defines all its values, else removed
 };
 
 struct RuledAttribute {
@@ -56,8 +56,8 @@ constexpr std::array<RuledAttribute, 26> rules{{{0x00080020, "Study Date", Rule:
                                                 {0x00200052, "Frame of Reference UID", Rule::Replace},
                                                 {0x00200060, "Laterality", Rule::Word}}};
 
-/// Allowed values of the attributes with Rule::Word: PS3.3, C.7.3.1.1.2, C.8.3.1 and C.7.3.1; and the terms
-/// for head and trunk of PS3.16, annex L.
+/// The values that attributes with Rule::Word may have, from PS3.3, C.7.3.1.1.2, C.8.3.1 and C.7.3.1; and the
+/// terms for parts of the head and trunk from PS3.16, annex L.
 constexpr std::array<std::string_view, 62> defined_words{
     "HFS",      "HFP",    "HFDR",    "HFDL",   "FFS",       "FFP",      "FFDR",  "FFDL",     "SE",
     "IR",       "GR",     "EP",      "RM",     "SK",        "MTC",      "SS",    "TRSS",     "SP",
@@ -109,7 +109,8 @@ std::string renewed(const std::string& uid, IdentityChoice choice) {
   return digest.uid(std::string(word_of(choice))) + (hash == std::string::npos ? "" : uid.substr(hash));
 }
 
-/// Applies a rule to an attribute. Returns whether the attribute stays. Adds a line about the change, if any.
+/// Applies a rule to an attribute and adds a line that reports a change, if there was one. Returns whether
+/// the attribute stays.
 bool apply(const RuledAttribute& ruled, IdentityChoice choice, DicomSource::Text& text,
            std::vector<std::string>& changes) {
   const std::vector<std::string> values = values_of(text.value);
@@ -177,7 +178,7 @@ DecidedIdentity decide_identity(std::optional<DicomSource> source, IdentityChoic
     } else if (at->first != character_set_tag && !at->second.value.empty()) {
       decided.changes.push_back(described(at->first, "Attribute", "removed"));
     }
-    // No text of the source is left, so its character set is not needed.
+    // No text remains in the source's character set, so the attribute for this set is not needed.
     at = stays ? std::next(at) : made.attributes.erase(at);
   }
   if (choice == IdentityChoice::New) name_new_patient(made);

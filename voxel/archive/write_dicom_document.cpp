@@ -103,7 +103,7 @@ void write_dicom_document(const std::string& bytes, DocumentFormat format, const
     file.put_sequence(0x004008ea, {dicom_code("mm", "UCUM", "mm")});
   } else {
     file.put(0x00080064, "CS", "WSD");  // made at a workstation
-    file.remove(0x00200052);            // pages have no frame of reference
+    file.remove(0x00200052);            // a PDF has no frame of reference
     file.remove(0x00201040);
   }
   StagedFiles staging(path.parent_path());

@@ -25,10 +25,11 @@ using Items = std::vector<DicomAttributes>;
 using Objects = std::span<const DicomSegment>;
 
 constexpr const char* structure_set_storage = "1.2.840.10008.5.1.4.1.1.481.3";
-/// The class of a study in references to it (PS3.6). It is retired, but readers still expect it.
+/// The SOP class that references to a study state (PS3.6). The standard has retired it, but readers still
+/// expect it.
 constexpr const char* study_class = "1.2.840.10008.3.1.2.3.1";
 
-/// Files state positions to a hundredth of a millimetre or better, so planes closer than this are one.
+/// Files state positions to a hundredth of a millimetre or better, so planes closer than this count as one.
 constexpr double same_plane_mm() {
   return 0.01;
 }
@@ -37,16 +38,16 @@ DicomAttributes implicit() {
   return DicomAttributes(DicomAttributes::Coding::ImplicitVr);
 }
 
-/// A plane on which contours are drawn: its position along the voxels' third axis, and the planes of voxels
-/// that it shows.
+/// A plane on which contours are drawn: its position along the voxels' third axis, and the nearest plane of
+/// voxels, whose outlines it shows.
 struct ContourPlane {
   double z_voxel = 0.0;
   int z = 0;
-  double slab_mm = 0.0;  ///< thickness that the contours represent
+  double slab_mm = 0.0;  ///< thickness of the slab that the contours represent
   std::vector<DicomSource::Image> images = {};
 };
 
-/// The distance between neighbouring planes of voxels, measured across them.
+/// The distance in mm between neighbouring planes of voxels, perpendicular to the planes.
 double plane_distance_mm(const Universe& universe) {
   const glm::dmat3 axes(universe.lps_from_voxel);
   return std::abs(glm::dot(axes[2], glm::normalize(glm::cross(axes[0], axes[1]))));
@@ -67,7 +68,7 @@ std::vector<ContourPlane> planes_of_voxels(const Universe& universe,
 std::vector<ContourPlane> planes_of_images(const Universe& universe, const DicomSource& source) {
   const glm::dmat3 axes(universe.lps_from_voxel);
   const glm::dvec3 normal = glm::normalize(glm::cross(axes[0], axes[1]));
-  // Rounding to single precision turns a direction by less than this.
+  // Rounding a normal to single precision changes this cosine by less than the tolerance.
   if (std::abs(std::abs(glm::dot(normal, source.normal)) - 1.0) > 1e-6)
     throw InvalidInput(
         "planes of voxels are not parallel to the source's images: resample the "
@@ -87,8 +88,8 @@ std::vector<ContourPlane> planes_of_images(const Universe& universe, const Dicom
     planes.push_back({z_voxel, static_cast<int>(nearest), 0.0, {image}});
   }
   if (step_mm < 0.0) std::reverse(planes.begin(), planes.end());
-  // A slab extends equally to both sides of its plane. It is as thick as the wider of the two gaps, so that
-  // neighbouring slabs meet.
+  // A slab extends equally to both sides of its plane. Its thickness is the wider one of the gaps to the two
+  // neighbouring planes, so that no gap remains between slabs.
   for (std::size_t i = 0; i < planes.size(); ++i) {
     double slab_mm = planes.size() > 1 ? 0.0 : plane_distance_mm(universe);
     if (i > 0) slab_mm = (planes[i].z_voxel - planes[i - 1].z_voxel) * std::abs(step_mm);
@@ -99,8 +100,9 @@ std::vector<ContourPlane> planes_of_images(const Universe& universe, const Dicom
   return planes;
 }
 
-/// Coordinates to a ten thousandth of a millimetre. Contours lie half a voxel's edge beside the voxels'
-/// centres, so for fine voxels all digits of a decimal string are used.
+/// Coordinates to a ten thousandth of a millimetre. Contours lie half a voxel's edge from the voxels'
+/// centres, so fine voxels need more decimals: with `is_fine`, a coordinate uses all digits of a decimal
+/// string.
 std::string coordinates(const glm::dvec3& p_mm, bool is_fine) {
   if (is_fine) return dicom_decimals(p_mm);
   std::string text;
@@ -178,7 +180,8 @@ class StructureSetWriter {
     file.put(0x00081090, "LO", "octotomy");
     file.put(0x00181020, "LO", OCTOTOMY_VERSION);
     file.put(0x00200013, "IS", "1");
-    // DICOM's short string has 16 characters; the attribute for the name has room for the whole label.
+    // DICOM's short string (VR SH) has at most 16 characters. The attribute for the name stores the whole
+    // label.
     constexpr std::size_t most_of_short = 16;
     file.put(0x30060002, "SH",
              is_ascii(options_.label) ? options_.label.substr(0, most_of_short) : "OCTOTOMY");
@@ -228,7 +231,7 @@ class StructureSetWriter {
     std::vector<PixelOutline> outlines;
   };
 
-  /// Draws the object's outlines on the planes, and records the parts that the outlines leave out.
+  /// Draws the object's outlines on the planes, and counts the planes of voxels that have no outline.
   std::vector<Outlined> outlined(std::size_t i, ContouredObject& drawn) {
     const Octree& object = objects_[i].object;
     const double step_mm = plane_distance_mm(universe_);

@@ -15,8 +15,8 @@ namespace octotomy::voxel {
 
 /// The planes on which contours are drawn.
 enum class ContourPlanes {
-  Images,  ///< those of the source's images; without a source, those of the voxels
-  Voxels,  ///< those of the voxels
+  Images,  ///< the planes of the source's images; without a source, the planes of the voxels
+  Voxels,  ///< the planes of the voxels
 };
 
 struct RtstructOptions {
@@ -29,27 +29,27 @@ struct RtstructOptions {
   Progress progress = {};
 };
 
-/// The outlines drawn for an object, and the parts that they leave out.
+/// Counts of the outlines drawn for an object, and how far the outlines are from the object's voxels.
 struct ContouredObject {
   std::string name;
   std::size_t planes = 0, contours = 0, holes = 0, points = 0;
   /// Planes of voxels on which no contour is drawn, because no image lies there.
   std::size_t planes_left_out = 0;
-  /// The largest distance between a drawn plane and the centres of the voxels that it shows.
+  /// The largest distance between a drawn plane and the plane of voxels that it shows.
   double farthest_mm = 0.0;
 };
 
-/// Writes objects of one universe as a DICOM structure set (PS3.3, A.19), one region of interest each: on
-/// every plane the boundaries of its voxels, along the voxels' edges. A region with a hole has the type
-/// CLOSEDPLANAR_XOR, which combines its contours of a plane by exclusive or; others have CLOSED_PLANAR. A
-/// voxel's centre is inside a region exactly if the voxel is in the object, and the contours enclose the same
-/// area as the voxels. Images between the voxels' planes show the nearest plane. Identifiers are computed
-/// from the content; patient and study are those of the source, as in write_dicom_seg(). Coded with implicit
-/// VR, because contours may be longer than explicit VR allows. Written to a temporary file and renamed into
-/// place. Throws std::invalid_argument if there is no object, an object is empty, universes differ, a text is
-/// too long, or planes of voxels are not parallel to the images; Error (Geometry) if an object lies on none
-/// of the images; Error (Input or Resource) with path and reason; Stopped. Cost: the planes' pixels. Memory:
-/// the file.
+/// Writes objects of one universe as a DICOM structure set (PS3.3, A.19), one region of interest for each.
+/// Its contours on a plane are the boundaries of the object's voxels there, along the voxels' edges. A region
+/// with a hole has the type CLOSEDPLANAR_XOR, which combines the contours of each plane by exclusive or;
+/// other regions have the type CLOSED_PLANAR. A voxel's centre is inside a region exactly if the voxel is in
+/// the object, and the contours enclose the same area as the voxels. Images between the voxels' planes show
+/// the nearest plane. Identifiers are computed from the content; patient and study are those of the source,
+/// as in write_dicom_seg(). Coded with implicit VR, because contours may be longer than explicit VR allows.
+/// Written to a temporary file and renamed into place. Throws std::invalid_argument if there is no object, an
+/// object is empty, universes differ, a text is too long, or planes of voxels are not parallel to the images;
+/// Error (Geometry) if an object lies on none of the images; Error (Input or Resource) with path and reason;
+/// Stopped. Cost: one pass over the pixels of all planes. Memory: the file's size.
 std::vector<ContouredObject> write_rtstruct(std::span<const DicomSegment> objects,
                                             const std::filesystem::path& path,
                                             const RtstructOptions& options = {});

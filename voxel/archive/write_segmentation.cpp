@@ -14,7 +14,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// The shortest text that reads back to the same number.
+/// The shortest decimal text that converts back to the same number.
 template <typename Number>
 std::string exact(Number value) {
   std::array<char, 32> text{};
@@ -25,7 +25,7 @@ std::string vector_of(const glm::dvec3& v) {
   return "(" + exact(v.x) + "," + exact(v.y) + "," + exact(v.z) + ")";
 }
 
-/// Which objects share a voxel, and the bounding box of each object.
+/// The pairs of objects that share a voxel, and each object's bounding box.
 struct Overlaps {
   std::vector<std::vector<bool>> shared;
   std::vector<glm::ivec3> low, high;
@@ -55,7 +55,7 @@ Overlaps overlaps_of(const std::vector<WrittenSegment>& segments) {
   return found;
 }
 
-/// The layer of each object: the first in which it overlaps no object.
+/// The layer of each object: the first layer in which it overlaps no earlier object.
 std::vector<int> layers_of(const Overlaps& overlaps) {
   std::vector<int> layers;
   for (std::size_t i = 0; i < overlaps.shared.size(); ++i) {
@@ -71,8 +71,9 @@ std::vector<int> layers_of(const Overlaps& overlaps) {
   return layers;
 }
 
-/// Category and type of a segment, then its modifier and its region, which stay empty. The object's anatomy is
-/// unknown. SNOMED's "Tissue" applies to every object, as in a DICOM segmentation.
+/// Category and type of a segment, then modifier and region, which stay empty. The object's anatomy is
+/// unknown; SNOMED's code "Tissue" applies to every object; this program's DICOM segmentations state the same
+/// code.
 constexpr const char* tissue_entry =
     "TerminologyEntry:Segmentation category and type - 3D Slicer General Anatomy list~SCT^85756007^Tissue~"
     "SCT^85756007^Tissue~^^~Anatomic codes - DICOM master list~^^~^^|";

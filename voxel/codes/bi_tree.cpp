@@ -43,7 +43,8 @@ class LeastBiTree {
         for (int x = 0; x < side_; ++x)
           sums_[entry({x + 1, y + 1, z + 1})] = (slice.row(y)[x / 64] >> (x % 64)) & 1;
     });
-    // Sums all voxels up to each corner, one axis after the other.
+    // For each corner the number of object voxels below it along all axes, summed along one axis after the
+    // other.
     for (int axis = 0; axis < 3; ++axis)
       for (int z = 1; z <= side_; ++z)
         for (int y = 1; y <= side_; ++y)
@@ -71,7 +72,7 @@ class LeastBiTree {
     return static_cast<std::size_t>(corner.x) +
            edge * (static_cast<std::size_t>(corner.y) + edge * static_cast<std::size_t>(corner.z));
   }
-  /// Boxes of 2^k voxels along an axis are numbered after all larger ones.
+  /// Along an axis, boxes of 2^k voxels are numbered after all boxes with more voxels.
   std::size_t number(const HalvedBox& box) const {
     std::size_t number = 0;
     for (int axis = 2; axis >= 0; --axis) {
@@ -120,8 +121,8 @@ class LeastBiTree {
 
   int depth_, side_;
   std::vector<std::uint32_t> sums_;
-  std::vector<std::uint32_t> least_;  ///< number of nodes of each box's least tree; 0: not searched yet
-  std::vector<std::uint8_t> axes_;    ///< the axis along which each box is halved
+  std::vector<std::uint32_t> least_;  ///< number of nodes of each box's smallest tree; 0: not computed yet
+  std::vector<std::uint8_t> axes_;    ///< the axis along which each box's smallest tree halves it
 };
 
 class BiTreeReader {

@@ -10,10 +10,10 @@
 namespace octotomy::voxel {
 
 /// The symmetric bi-tree (thesis 3.3, after Srihari): each inhomogeneous node is halved along one axis,
-/// chosen so that the whole tree has the fewest nodes. Nodes in preorder: E, F, or the axis x, y or z, which
-/// the nodes of the low and the high half follow.
+/// chosen so that the whole tree has the fewest nodes. Nodes in preorder: E, F, or the axis x, y or z of the
+/// cut, followed by the nodes of the low half and those of the high half.
 struct BiTree {
-  /// Above this depth the search takes more than a gigabyte.
+  /// Above this depth the search needs more than a gigabyte of memory.
   static constexpr int max_depth = 7;
 
   Universe universe;
@@ -21,11 +21,11 @@ struct BiTree {
 };
 
 /// The bi-tree with the fewest nodes; of axes with equal counts, the first is halved. Throws
-/// std::length_error for universes deeper than max_depth. Cost: every box of halved edges is searched once,
-/// (2^(depth + 1) - 1)^3 of them, 6 bytes each.
+/// std::length_error for universes deeper than max_depth. Cost: one search in each of the (2^(depth + 1) -
+/// 1)^3 boxes that halving can reach. Memory: 6 bytes for each box.
 BiTree bi_tree(const Octree& octree);
-/// Throws std::invalid_argument with the position of a node that is missing or surplus, that halves an edge
-/// of one voxel, or whose halves are both Full or both Empty.
+/// The object of a bi-tree. Throws std::invalid_argument with the position of a node that is missing or
+/// surplus, that halves an edge of one voxel, or whose halves are both Full or both Empty.
 Octree octree_of(const BiTree& tree);
 
 /// The nodes as one word, for example `zxEFE`.

@@ -18,7 +18,7 @@ void check_room(int depth, int max_depth) {
   if (depth > max_depth)
     throw TooLarge("a binary array of depth " + std::to_string(depth) + " has 8^" + std::to_string(depth) +
                    " voxels: at most depth " + std::to_string(max_depth) +
-                   " is supported, use treecode instead");
+                   " is supported; use a treecode instead");
 }
 
 std::size_t byte_count(int depth) {
@@ -38,7 +38,7 @@ BinaryArray binary_array(const Octree& octree) {
     const auto side = static_cast<std::size_t>(slice.side);
     for (int y = 0; y < slice.side; ++y) {
       const std::size_t first = side * (static_cast<std::size_t>(y) + side * static_cast<std::size_t>(z));
-      // Two rows of four voxels share a byte; longer rows begin at a byte.
+      // With four voxels a row, two rows share a byte. Longer rows begin at the start of a byte.
       for (std::size_t x = 0; x < side; x += 8)
         array.bytes[(first + x) / 8] |=
             static_cast<std::uint8_t>((slice.row(y)[x / 64] >> (x % 64)) << (first % 8));

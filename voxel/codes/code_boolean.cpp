@@ -24,7 +24,8 @@ Word combined_words(Word a, Word b, SetOperation operation) {
   }
 }
 
-/// Merges two ascending lists of intervals with fields first and last, by a sweep over their ends.
+/// The Boolean of two ascending lists of intervals, by a sweep over the intervals' ends. An interval has the
+/// fields first and last, both included.
 template <typename Interval>
 std::vector<Interval> combined_lists(const std::vector<Interval>& a, const std::vector<Interval>& b,
                                      SetOperation operation) {
@@ -54,7 +55,7 @@ std::vector<Interval> combined_lists(const std::vector<Interval>& a, const std::
   }
 }
 
-/// Combines the slices and rows of two indices; `of_rows` combines rows of which one may be null.
+/// Combines the slices and rows of two indices; `of_rows` combines two rows, one of which may be null.
 template <typename Index, typename OfRows>
 Index combined_rows(const Index& a, const Index& b, const OfRows& of_rows) {
   check_universes(a.universe, b.universe);

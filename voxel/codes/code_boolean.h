@@ -14,13 +14,14 @@ enum class SetOperation { Intersection, Union, Difference };
 // Booleans of two objects in the same code, without an octree. Each throws std::invalid_argument if the
 // universes differ. Precondition: both codes pass the checks of octree_of().
 
-/// Combines word by word. Cost: the array.
+/// Combines the arrays word by word. Cost: one pass over them.
 BinaryArray combined(const BinaryArray& a, const BinaryArray& b, SetOperation operation);
-/// Combines row by row, and skips null rows and slices where the operation allows it.
+/// Combines the indices row by row. Skips null rows and null slices if the operation's result is known
+/// without them.
 MarginalIndex combined(const MarginalIndex& a, const MarginalIndex& b, SetOperation operation);
-/// Merges the two lists. Cost: their lengths.
+/// Merges the two lists of runs. Cost: linear in their lengths.
 RunLength combined(const RunLength& a, const RunLength& b, SetOperation operation);
-/// Merges the lists of each row. Cost: their lengths, and one look at each row.
+/// Merges the two lists of segments of each row. Cost: linear in the number of segments and of rows.
 SegmentIndex combined(const SegmentIndex& a, const SegmentIndex& b, SetOperation operation);
 
 }  // namespace octotomy::voxel

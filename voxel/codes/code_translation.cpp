@@ -7,7 +7,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// Moves slices and rows; `of_row` shifts a row that is not null along x.
+/// Moves slices along z and rows along y. `of_row` shifts a row that is not null along x.
 template <typename Index, typename OfRow>
 Index translated_rows(const Index& index, const glm::ivec3& by, const OfRow& of_row) {
   const int side = index.universe.side();
@@ -75,7 +75,7 @@ RunLength translated(const RunLength& code, const glm::ivec3& by) {
   RunLength result{code.universe, {}};
   for (const Run& run : code.runs)
     for (auto first = static_cast<std::int64_t>(run.first); first <= static_cast<std::int64_t>(run.last);) {
-      // The part of the run in one row.
+      // The part of the run that lies in one row.
       const std::int64_t row = first / side;
       const std::int64_t last = std::min(static_cast<std::int64_t>(run.last), (row + 1) * side - 1);
       const std::int64_t x = std::max<std::int64_t>(0, first % side + by.x);

@@ -8,11 +8,11 @@
 
 namespace octotomy::voxel {
 
-// Translations by whole voxels of an object in its code, without an octree (thesis 7.4.1, 7.4.2). Voxels that
+// Translate an object by whole voxels within its code, without an octree (thesis 7.4.1, 7.4.2). Voxels that
 // leave the universe are lost. Precondition: the code passes the checks of octree_of().
 
-/// Adds the step to every face. Throws std::invalid_argument if a face leaves the universe: its list would
-/// not show the faces where the object is cut off.
+/// Adds the step to every face. Throws std::invalid_argument if a face leaves the universe, because the list
+/// would lack the faces at which the universe cuts the object off.
 CuberilleFaces translated(const CuberilleFaces& faces, const glm::ivec3& by);
 /// Moves the slices' and rows' pointers along z and y, and shifts the rows' bits along x.
 MarginalIndex translated(const MarginalIndex& index, const glm::ivec3& by);

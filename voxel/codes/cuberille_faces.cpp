@@ -105,7 +105,7 @@ Octree octree_of(const CuberilleFaces& faces) {
       const bool missing =
           i == given.size() || (i < exposed.size() && x_fastest(exposed[i]) < x_fastest(given[i]));
       if (missing) refuse(direction, exposed[i], "is missing: the x faces make it part of the boundary");
-      refuse(direction, given[i], "is no boundary by the x faces");
+      refuse(direction, given[i], "is not on the boundary of the object between the x faces");
     }
   }
   return octree;

@@ -31,11 +31,11 @@ struct CuberilleFaces {
   std::size_t face_count() const;
 };
 
-/// All exposed faces, those of cavities included. Cost: voxel_boundary(), and sorting its faces; 32 bytes per
-/// face.
+/// All exposed faces of an object, those of cavities included. Cost: voxel_boundary() and a sort of its
+/// faces. Memory: 32 bytes per face.
 CuberilleFaces cuberille_faces(const Octree& octree);
-/// The object that the faces bound. Throws std::invalid_argument that names a face outside the universe, out
-/// of order, or in contradiction to the others.
+/// The object that the faces bound. Throws std::invalid_argument with the first face that lies outside the
+/// universe, is out of order, or contradicts the other faces.
 Octree octree_of(const CuberilleFaces& faces);
 
 /// One line per direction: `x+ (1,2,0), (1,3,0), ...`.

@@ -25,7 +25,7 @@ void check_room(int depth) {
   if (depth > ExplicitOctree::max_depth)
     throw TooLarge("an explicit octree of depth " + std::to_string(depth) + " takes 8^" +
                    std::to_string(depth) + " entries: at most depth " +
-                   std::to_string(ExplicitOctree::max_depth) + " is supported, use treecode instead");
+                   std::to_string(ExplicitOctree::max_depth) + " is supported; use a treecode instead");
 }
 
 void fill(const LogicalNode& node, int level, std::size_t entry, std::vector<std::string>& levels) {
@@ -35,8 +35,8 @@ void fill(const LogicalNode& node, int level, std::size_t entry, std::vector<std
   for (int k = 0; k < 8; ++k) fill(node.child(k), level + 1, 8 * entry + static_cast<std::size_t>(k), levels);
 }
 
-// Reads and writes entries in preorder, which is ascending within each level; next_ holds each level's next
-// entry.
+// Reads and writes entries in preorder, in which the entries of each level ascend. next_ stores each level's
+// next entry.
 class ExplicitSource {
  public:
   explicit ExplicitSource(const ExplicitOctree& explicit_levels)
@@ -60,7 +60,7 @@ class ExplicitSource {
   void close(bool homogeneous) const {
     if (homogeneous)
       refuse(open_.size() - 1, open_.back(),
-             "it and its seven siblings are alike: their parent is not Partial");
+             "it and its seven siblings have the same status, so their parent cannot be Partial");
   }
   // After the last Partial node's children every entry must be absent.
   void expect_end() {
@@ -79,7 +79,7 @@ class ExplicitSource {
 
   const std::vector<std::string>& levels_;
   std::vector<std::size_t> next_;
-  std::vector<std::size_t> open_;  ///< entries of the last open node and its ancestors
+  std::vector<std::size_t> open_;  ///< entries of the node that was opened last and of its ancestors
 };
 
 }  // namespace
@@ -131,7 +131,7 @@ ExplicitOctree parse_explicit_octree(const Universe& universe, std::string_view 
     const std::size_t count = cursor.position() - start;
     if (count != entry_count(level))
       cursor.refuse("level " + std::to_string(level) + " takes " + std::to_string(entry_count(level)) +
-                    " of E, F, P and '.', here are " + std::to_string(count));
+                    " characters E, F, P or '.' instead of " + std::to_string(count));
     result.levels.emplace_back(text.substr(start, count));
   }
   cursor.expect_end();

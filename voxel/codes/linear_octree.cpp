@@ -19,14 +19,15 @@ void append(const LogicalNode& node, const OctalCode& code, std::vector<OctalCod
   for (int k = 0; k < 8; ++k) append(node.child(k), code.child(k), full);
 }
 
-// Walks the codes and the nodes in preorder side by side.
+// Returns the statuses of nodes in preorder. The next code of the list is compared with each node.
 class LinearSource {
  public:
   explicit LinearSource(const LinearOctree& linear) : codes_(linear.full) { path_.push_back(OctalCode()); }
 
   Status open(int level) {
     while (path_.back().level() > level) path_.pop_back();
-    // The node is the first child of a Partial node, or the next sibling of the node before it.
+    // In preorder a node is the first child of a Partial node, or the next sibling of the node that was read
+    // before it on its level.
     if (path_.back().level() == level && level > 0)
       path_.back() = OctalCode(level, path_.back().digits() + 1);
     else if (level > 0)
@@ -50,7 +51,7 @@ class LinearSource {
 
  private:
   const std::vector<OctalCode>& codes_;
-  std::vector<OctalCode> path_;  ///< the last open node and its ancestors
+  std::vector<OctalCode> path_;  ///< the node that was opened last and its ancestors
   std::size_t next_ = 0;
 };
 
@@ -118,7 +119,7 @@ bool contains(const LinearOctree& linear, const glm::ivec3& voxel) {
          glm::all(glm::lessThan(voxel, glm::ivec3(linear.universe.side()))));
   const int depth = linear.universe.depth;
   const OctalCode code = octal_code_of(voxel, depth, depth);
-  // If a Full node holds the voxel, it is the last one whose code is not after the voxel's.
+  // Only the last Full node whose code does not come after the voxel's code can contain the voxel.
   const auto after = std::upper_bound(linear.full.begin(), linear.full.end(), code);
   return after != linear.full.begin() && code.ancestor(std::prev(after)->level()) == *std::prev(after);
 }

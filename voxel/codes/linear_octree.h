@@ -18,13 +18,14 @@ struct LinearOctree {
   std::vector<OctalCode> full;
 };
 
-/// Cost: one walk; 16 bytes per Full node.
+/// The codes of an octree's Full nodes. Cost: one walk through the octree. Memory: 16 bytes per Full node.
 LinearOctree linear_octree(const Octree& octree);
-/// Throws std::invalid_argument that names a code that is too deep for the universe, does not follow its
-/// predecessor in order, lies inside its predecessor, or is the last of eight codes that form one Full node.
+/// The object of a list of codes. Throws std::invalid_argument with the code that is too deep for the
+/// universe, does not follow its predecessor in order, lies inside its predecessor, or is the last of eight
+/// codes that form one Full node.
 Octree octree_of(const LinearOctree& linear);
 
-/// For example `17, 2, 34, 61, 62, 65`; `root` for a full universe.
+/// The codes as text, for example `17, 2, 34, 61, 62, 65`; `root` for a full universe.
 std::string text(const LinearOctree& linear);
 /// The inverse of text(). Throws std::invalid_argument with the position of the wrong character; octree_of()
 /// checks the codes. Memory: in proportion to the text.

@@ -14,18 +14,18 @@ namespace octotomy::voxel {
 /// without voxels are empty lists, the thesis's null pointers. A row's voxel x is bit x % 64 of its word
 /// x / 64; bits beyond the universe are zero.
 struct MarginalIndex {
-  using Row = std::vector<std::uint64_t>;  ///< empty, or ceil(side / 64) words
-  using Slice = std::vector<Row>;          ///< empty, or one row for each voxel of the universe's side
+  using Row = std::vector<std::uint64_t>;  ///< empty if no voxel is set, else ceil(side / 64) words
+  using Slice = std::vector<Row>;          ///< empty if no voxel is set, else one row for each y
 
   Universe universe;
-  std::vector<Slice> slices;  ///< one for each voxel of the universe's side
+  std::vector<Slice> slices;  ///< one slice for each z of the universe
 };
 
-/// Cost: the non-empty slices, side^2 / 8 bytes each. Memory: 24 bytes per slice, 24 per row of a non-empty
-/// slice, one bit per voxel of a non-empty row.
+/// The marginal index of an octree. Cost: reads the slices that are not empty, side^2 / 8 bytes each. Memory:
+/// 24 bytes per slice, 24 per row of a non-empty slice, one bit per voxel of a non-empty row.
 MarginalIndex marginal_index(const Octree& octree);
-/// Throws std::invalid_argument that names the slice or row which has a wrong length, bits beyond the
-/// universe, or no voxel without being an empty list.
+/// The object of an index. Throws std::invalid_argument with the slice or row that has a wrong length, bits
+/// beyond the universe, or no voxel although it is not an empty list.
 Octree octree_of(const MarginalIndex& index);
 /// Whether a voxel is in the object. Precondition: the voxel is in the universe.
 bool contains(const MarginalIndex& index, const glm::ivec3& voxel);

@@ -8,8 +8,8 @@
 #include "voxel/tree/level_tally.h"
 #include "voxel/tree/logical_build.h"
 
-// The masks are found in one walk that carries, with each node, its six face neighbours of the same size. A
-// homogeneous node stands for its virtual children, so a neighbour of the same size always exists.
+// The masks are computed in one walk that passes with each node its six face neighbours of the same size. A
+// homogeneous node also represents its missing children, so a neighbour of the same size always exists.
 
 namespace octotomy::voxel {
 namespace {
@@ -23,7 +23,7 @@ bool is_forward(int direction) {
   return direction % 2 == 0;
 }
 
-/// Whether all voxels of the node's layer at a face are in the object.
+/// Whether all voxels in the node's layer at the given face are in the object.
 bool is_layer_full(const LogicalNode& node, int axis, bool at_high_face) {
   if (node.status() != Status::Partial) return node.status() == Status::Full;
   for (int k = 0; k < 8; ++k)
@@ -82,7 +82,7 @@ char letter_of(Status status) {
   return status == Status::Partial ? 'P' : status == Status::Full ? 'F' : 'E';
 }
 
-/// Returns the number of the node behind the subtree.
+/// Appends a subtree's text. Returns the number of the first node after the subtree.
 std::size_t append_text(const std::vector<MaskedNode>& nodes, std::size_t number, std::string& text) {
   const MaskedNode& node = nodes[number];
   text += letter_of(node.status);
@@ -96,7 +96,7 @@ std::size_t append_text(const std::vector<MaskedNode>& nodes, std::size_t number
   return next;
 }
 
-/// Reads nodes, and keeps the position of each in the text.
+/// Reads nodes from a text and records each node's position in the text.
 class MaskedReader {
  public:
   MaskedReader(int depth, std::string_view text) : depth_(depth), cursor_("masked octree", text) {}
@@ -135,7 +135,7 @@ class MaskedReader {
   int digit() {
     const std::size_t at = hex_digits.find(cursor_.peek());
     if (cursor_.at_end() || at == std::string_view::npos)
-      cursor_.refuse_unexpected("a digit of its faces, 0 to f");
+      cursor_.refuse_unexpected("a hexadecimal digit of its covered faces, 0 to f");
     cursor_.advance();
     return static_cast<int>(at);
   }
@@ -229,7 +229,8 @@ MaskedOctree parse_masked_octree(const Universe& universe, std::string_view text
     if (masked.nodes[i].covered != right.nodes[i].covered)
       reader.refuse_at(positions[i], std::string("the covered faces of this node are ") +
                                          hex_digits[right.nodes[i].covered >> 4] +
-                                         hex_digits[right.nodes[i].covered & 15] + " by the nodes beside it");
+                                         hex_digits[right.nodes[i].covered & 15] +
+                                         " according to the neighbouring nodes");
   }
   return masked;
 }
@@ -271,7 +272,8 @@ std::uint32_t neighbour_mask(Direction face) {
   const int number = static_cast<int>(face);
   const auto axis = static_cast<std::size_t>(axis_of(number));
   const int outward = is_forward(number) ? 1 : -1;
-  // The four face neighbours beside the face, and the four edge neighbours in front of them.
+  // The four face neighbours around the voxel in the face's plane, and the four edge neighbours one layer in
+  // front of these.
   std::uint32_t mask = 0;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const int length = std::abs(steps[i][0]) + std::abs(steps[i][1]) + std::abs(steps[i][2]);

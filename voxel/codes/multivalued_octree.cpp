@@ -16,7 +16,7 @@ class MultivaluedWalk {
 
   void walk(const std::vector<LogicalNode>& at) {
     // The first object that is not Empty here decides the node: if it is Full, all voxels have its number; if
-    // it is Partial, some voxels have its number and others have not, so the node is not homogeneous.
+    // it is Partial, only some voxels have its number, so the node is not homogeneous.
     const auto first = std::find_if(at.begin(), at.end(),
                                     [](const LogicalNode& node) { return node.status() != Status::Empty; });
     if (first == at.end()) return nodes_.push_back(0);

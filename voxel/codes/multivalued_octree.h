@@ -10,8 +10,8 @@
 
 namespace octotomy::voxel {
 
-/// Several objects in one octree (thesis 3.2.1, 3.3): each voxel has the number of its object, 0 for none. A
-/// node is homogeneous if all its voxels have one number.
+/// Several objects in one octree (thesis 3.2.1, 3.3): each voxel stores the number of its object, or 0 if it
+/// is in none. A node is homogeneous if all its voxels have one number.
 struct MultivaluedOctree {
   static constexpr std::uint8_t partial = 255;  ///< marks a node whose eight children follow
 
@@ -23,8 +23,9 @@ struct MultivaluedOctree {
 /// them. Throws std::invalid_argument if there are no objects or more than 254, or if their universes differ.
 /// Cost: a walk of all objects together.
 MultivaluedOctree multivalued_octree(const std::vector<Octree>& objects);
-/// The voxels with the given number. Throws std::invalid_argument that names a node that is missing or
-/// surplus, a voxel that is Partial, or a Partial node whose eight children have the same number.
+/// The object that consists of the voxels with the given number. Throws std::invalid_argument that names a
+/// node that is missing or surplus, a voxel that is Partial, or a Partial node whose eight children have the
+/// same number.
 Octree object_of(const MultivaluedOctree& tree, int number);
 
 /// Numbers separated by spaces, and P(...) for Partial nodes: `P(0 0 1 2 0 0 P(1 1 0 0 0 0 0 0) 0)`.

@@ -44,7 +44,7 @@ class OctalCode {
   int level_ = 0;
 };
 
-/// The code of the node at a level that contains a voxel (equation 3.6), in a universe of the given depth.
+/// The code of the node that contains a voxel on a level (equation 3.6), in a universe of the given depth.
 /// Preconditions: the voxel is in the universe, the level is in 0..depth.
 OctalCode octal_code_of(const glm::ivec3& voxel, int depth, int level);
 /// The node's voxel with the smallest indices.

@@ -7,7 +7,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// The columns of one direction.
+/// The columns of voxels parallel to one direction.
 class Columns {
  public:
   Columns(const Universe& universe, Direction from)
@@ -77,7 +77,8 @@ Projection projection(const CuberilleFaces& faces, Direction from) {
 Projection projection(const BinaryArray& array, Direction from) {
   Columns columns(array.universe, from);
   const int side = columns.side();
-  // Sorted by descending depth along the view's axis; the order along the other axes does not matter.
+  // Sorts back to front, by descending depth along the view's axis. The order along the other axes does not
+  // matter.
   const auto at = [&](int axis, int i) {
     return axis == columns.axis() && !columns.from_high() ? side - 1 - i : i;
   };
@@ -102,7 +103,7 @@ Projection projection(const RunLength& code, Direction from) {
     columns.paint(
         {static_cast<int>(i % side), static_cast<int>(i / side % side), static_cast<int>(i / side / side)});
   };
-  // Indices ascend with every coordinate, so the list itself, or its reverse, is sorted back to front.
+  // A voxel's index grows with each of its coordinates, so the list or its reverse is sorted back to front.
   const auto draw = [&](const Run& run) {
     columns.read();
     for (std::uint64_t i = 0; i <= run.last - run.first; ++i)
@@ -125,7 +126,7 @@ Projection projection(const SegmentIndex& index, Direction from) {
   };
   for (int across = 0; across < side; ++across) {
     if (columns.axis() == 0) {
-      // Along the direction of the segments, only the nearest segment of each row is visible.
+      // If the view is along the segments, only the nearest segment of each row is visible.
       for (int y = 0; y < side; ++y) {
         const SegmentIndex::Row* row = row_of(y, across);
         if (row == nullptr) continue;

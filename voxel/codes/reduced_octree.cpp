@@ -29,7 +29,8 @@ bool becomes_full(const LogicalNode& node, const Reduction& reduction) {
   return full > 8.0 * reduction.share;
 }
 
-/// The statuses of the lower levels in preorder. LogicalBuild condenses the nodes that became homogeneous.
+/// Passes the statuses of the reduced octree's nodes in preorder. LogicalBuild condenses nodes that became
+/// homogeneous.
 class ReducedSource {
  public:
   ReducedSource(const Octree& octree, int levels, const Reduction& reduction) {
@@ -63,8 +64,8 @@ Octree reduced(const Octree& octree, int levels, const Reduction& reduction) {
                                 std::to_string(octree.universe().depth) + " levels leave fewer than two");
   if (!(reduction.share >= 0.0 && reduction.share <= 1.0))
     throw std::invalid_argument("reduced octree: the share must lie in 0..1");
-  // Along each axis the first large voxel's centre lies beyond the first small voxel's centre by half of the
-  // difference of their edges.
+  // Both universes share their low corner. Along each axis the first large voxel's centre therefore lies
+  // behind the first small voxel's centre, by half the difference of their edges.
   const double edge = 1 << levels;
   const glm::dvec4 first = universe.lps_from_voxel * glm::dvec4(glm::dvec3(0.5 * (edge - 1.0)), 1.0);
   for (int axis = 0; axis < 3; ++axis) universe.lps_from_voxel[axis] *= edge;

@@ -5,7 +5,7 @@
 
 namespace octotomy::voxel {
 
-/// How a Partial node becomes one voxel (thesis 3.3.2, after Srihari).
+/// The rule that makes a Partial node one Full or Empty voxel (thesis 3.3.2, after Srihari).
 struct Reduction {
   /// The parts of the node that are counted. Children: its eight children, each first reduced by the same
   /// rule. Voxels: all its voxels.
@@ -14,9 +14,9 @@ struct Reduction {
   double share = 0.5;  ///< the new voxel is Full if more than this share of the parts is Full; 0..1
 };
 
-/// The octree at a lower resolution: its universe has `levels` levels fewer and voxels 2^levels times as
-/// large. Throws std::invalid_argument if fewer than two levels remain or the share is not in 0..1. Cost: one
-/// walk.
+/// The octree at a lower resolution. Its universe has `levels` fewer levels, and its voxels' edges are
+/// 2^levels times as long. Throws std::invalid_argument if fewer than two levels remain or the share is not
+/// in 0..1. Cost: one walk through the octree.
 Octree reduced(const Octree& octree, int levels, const Reduction& reduction = {});
 
 }  // namespace octotomy::voxel

@@ -16,10 +16,10 @@
 namespace octotomy::voxel {
 
 // The common part of codes that store an object as slices of rows (marginal_index.h, segment_index.h). An
-// `Index` has a universe, and a slice for each voxel of its side. A slice has this number of rows, or no row
-// if it is empty; a row without voxels is an empty list, the thesis's null pointer.
+// `Index` has a universe, and a slice for each voxel of its side. A slice has one row for each voxel of the
+// side, or no rows if it has no voxels. A row without voxels is an empty list, the thesis's null pointer.
 
-/// Throws std::invalid_argument that names the code, the place and the reason.
+/// Throws std::invalid_argument with the code's name, the slice and the reason.
 [[noreturn]] inline void refuse_slice(const char* code, std::size_t slice, const std::string& why) {
   throw InvalidInput(std::string(code) + ", slice " + std::to_string(slice) + why);
 }
@@ -28,8 +28,8 @@ namespace octotomy::voxel {
   refuse_slice(code, slice, ", row " + std::to_string(row) + why);
 }
 
-/// Throws std::invalid_argument if the number of slices or rows is not the universe's, or if all rows of a
-/// slice are empty. `check_row(row, z, y)` checks the rows themselves.
+/// Throws std::invalid_argument if the number of slices, or of a slice's rows, is not the universe's side, or
+/// if all rows of a slice are empty. `check_row(row, z, y)` checks the rows themselves.
 template <typename Index, typename CheckRow>
 void check_slices(const char* code, const Index& index, const CheckRow& check_row) {
   check_depth(index.universe.depth);
@@ -49,7 +49,7 @@ void check_slices(const char* code, const Index& index, const CheckRow& check_ro
   }
 }
 
-/// One line per slice: its number and text_of(row) for each row, Null if the row or the slice is empty.
+/// One line per slice: its number, then text_of(row) for each row, with Null for an empty row or slice.
 template <typename Index, typename TextOf>
 std::string text_of_slices(const Index& index, const TextOf& text_of) {
   std::string result;

@@ -70,7 +70,7 @@ Octree octree_of(const RunLength& code) {
                 static_cast<int>(last % side));
         first = last + 1;
       }
-      if (run->last >= end) break;  // continues in the next slice
+      if (run->last >= end) break;  // the run continues in the next slice
     }
     return any;
   });

@@ -10,8 +10,8 @@
 
 namespace octotomy::voxel {
 
-/// Voxels first..last, both included, counted x fastest, then y, then z. A run may continue across the end of
-/// a row or slice.
+/// A run of voxels: the indices first..last, both included, counted x fastest, then y, then z. A run may
+/// continue across the end of a row or slice.
 struct Run {
   std::uint64_t first = 0;
   std::uint64_t last = 0;
@@ -24,13 +24,15 @@ struct RunLength {
   std::vector<Run> runs;
 };
 
-/// Cost: the non-empty slices, side^2 / 8 bytes each; 16 bytes per run.
+/// The runs of an octree. Cost: reads the slices that are not empty, side^2 / 8 bytes each. Memory: 16 bytes
+/// per run.
 RunLength run_length(const Octree& octree);
-/// Throws std::invalid_argument that names the run which ends before it begins, leaves the universe, or
-/// begins less than two voxels after its predecessor's end. Memory: 17 slices and the octree.
+/// The object of a list of runs. Throws std::invalid_argument with the run that ends before it begins, leaves
+/// the universe, or begins less than two voxels after its predecessor's end. Memory: 17 slices and the
+/// octree.
 Octree octree_of(const RunLength& code);
 
-/// For example `8:9 12:13 23:26 28:29 41:41 44:44 57:57`.
+/// The runs as `first:last`, for example `8:9 12:13 23:26 28:29 41:41 44:44 57:57`.
 std::string text(const RunLength& code);
 /// The inverse of text(). Throws std::invalid_argument with the position of the wrong character; octree_of()
 /// checks the runs. Memory: in proportion to the text.

@@ -10,29 +10,29 @@
 
 namespace octotomy::voxel {
 
-/// Voxels first..last of a row, both included.
+/// A segment of a row: its voxels first..last, both included.
 struct Segment {
   std::uint16_t first = 0;
   std::uint16_t last = 0;
   bool operator==(const Segment&) const = default;
 };
 
-/// Segment-indexed code (thesis 3.2.4, after Tuy and Reynolds): a row's runs as segments, indexed by slice
-/// and row. Slices and rows without voxels are empty lists, the thesis's null pointers.
+/// Segment-indexed code (thesis 3.2.4, after Tuy and Reynolds): the runs of each row, called segments,
+/// indexed by slice and row. Slices and rows without voxels are empty lists, the thesis's null pointers.
 struct SegmentIndex {
   using Row = std::vector<Segment>;
-  using Slice = std::vector<Row>;  ///< empty, or one row for each voxel of the universe's side
+  using Slice = std::vector<Row>;  ///< empty if no voxel is set, else one row for each y
 
   Universe universe;
-  std::vector<Slice> slices;  ///< one for each voxel of the universe's side
+  std::vector<Slice> slices;  ///< one slice for each z of the universe
 };
 
-/// Cost: the non-empty slices, side^2 / 8 bytes each. Memory: 24 bytes per slice, 24 per row of a non-empty
-/// slice, 4 per segment.
+/// The segments of an octree. Cost: reads the slices that are not empty, side^2 / 8 bytes each. Memory: 24
+/// bytes per slice, 24 per row of a non-empty slice, 4 per segment.
 SegmentIndex segment_index(const Octree& octree);
-/// Throws std::invalid_argument that names the slice or row which has a wrong length or only empty rows, or
-/// the segment which ends before it begins, leaves the row, or begins less than two voxels after its
-/// predecessor's end.
+/// The object of an index. Throws std::invalid_argument with the slice that has a wrong number of rows or
+/// only empty rows, or with the segment that ends before it begins, leaves the row, or begins less than two
+/// voxels after its predecessor's end.
 Octree octree_of(const SegmentIndex& index);
 /// Whether a voxel is in the object. Precondition: the voxel is in the universe.
 bool contains(const SegmentIndex& index, const glm::ivec3& voxel);

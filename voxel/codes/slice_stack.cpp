@@ -37,7 +37,8 @@ std::optional<double> SliceStack::first_at_least(int x, int y, double threshold,
   double z = from_z, value = *sample(x, y, z);
   if (value >= threshold) return z;
   const bool rises = to_z > from_z;
-  // Samples are linear between slices, so each piece is decided by its ends.
+  // Between neighbouring slices the samples are linear, so the samples at both ends determine the first
+  // crossing there.
   while (z != to_z) {
     const double slice = rises ? std::floor(z) + 1.0 : std::ceil(z) - 1.0;
     const double next = rises ? std::min(slice, to_z) : std::max(slice, to_z);

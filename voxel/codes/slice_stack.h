@@ -13,17 +13,18 @@ namespace octotomy::voxel {
 /// samples.
 class SliceStack {
  public:
-  /// Throws std::invalid_argument if the scene has other samples than int16, or no slice.
+  /// Throws std::invalid_argument if the scene's samples are not int16, or it has no slice.
   explicit SliceStack(std::shared_ptr<const Scene> scene);
 
   const Scene& scene() const { return *scene_; }
-  /// The sample of column x, y at a height between slices, linear along z. Outside the scan, no value.
+  /// The sample of column x, y at the height z in slices, interpolated linearly between slices. None outside
+  /// the scan.
   std::optional<double> sample(int x, int y, double z) const;
-  /// Looks along a column from `from_z` towards `to_z`: the height of the first crossing of the threshold
-  /// from below, or `from_z` if the sample there is not below it; none if all samples are below. Both heights
-  /// lie in the stack.
+  /// Searches a column from `from_z` to `to_z` for the first height at which the sample is at least the
+  /// threshold. None if all samples are below the threshold. Precondition: both heights lie in the stack.
   std::optional<double> first_at_least(int x, int y, double threshold, double from_z, double to_z) const;
-  /// Bytes of the stored slices and, for comparison, of `slice_count` interpolated slices.
+  /// Bytes of the stored slices. For comparison, bytes_interpolated() returns the bytes of `slice_count`
+  /// interpolated slices.
   std::uint64_t bytes() const;
   std::uint64_t bytes_interpolated(int slice_count) const;
 

@@ -36,7 +36,7 @@ class Tracker {
     return is_inside(face.voxel) && !is_inside(face.voxel + step(face.direction));
   }
 
-  /// The next face of the circuit about an axis, counter-clockwise as seen from its positive end.
+  /// The next face on the circuit around an axis, counter-clockwise as seen from the axis's positive end.
   SurfaceFace successor(const SurfaceFace& face, int axis) const {
     const glm::ivec3 n = step(face.direction);
     glm::ivec3 about(0);
@@ -72,7 +72,7 @@ std::tuple<int, int, int> x_fastest(const glm::ivec3& voxel) {
   return {voxel.z, voxel.y, voxel.x};
 }
 
-/// The distance of a point from a face, a square of edge 1.
+/// The distance of a point from a face, which is a square with edges of length 1; in voxels.
 double distance_to(const SurfaceFace& face, const glm::dvec3& p) {
   const glm::ivec3 n = step(face.direction);
   const glm::dvec3 middle = glm::dvec3(face.voxel) + 0.5 * glm::dvec3(n);
@@ -111,12 +111,12 @@ std::optional<SurfaceFace> nearest_face(const Octree& octree, const glm::dvec3& 
 TrackedSurface track_surface(const Octree& octree, const SurfaceFace& seed, Joined joined) {
   const Tracker tracker(octree, joined);
   if (!tracker.is_boundary(seed))
-    throw InvalidInput("a surface is tracked from a face of the boundary: voxel " +
+    throw InvalidInput("the tracking of a surface must begin at a face of the boundary: voxel " +
                        std::to_string(seed.voxel.x) + " " + std::to_string(seed.voxel.y) + " " +
                        std::to_string(seed.voxel.z) + " has none in that direction");
   TrackedSurface made{{octree.universe(), {}}, 0};
   std::vector<SurfaceFace> waiting{seed};
-  // The number of times that each face of the front will still be reached.
+  // For each face of the front, the number of times that it will still be reached.
   std::unordered_map<std::uint64_t, int> front{{tracker.key(seed), 2}};
   while (!waiting.empty()) {
     const SurfaceFace face = waiting.back();

@@ -9,8 +9,8 @@
 namespace octotomy::voxel {
 namespace {
 
-/// The names of DICOM's character sets in iconv. Each key is the common end of a set's names with and without
-/// code extensions: "ISO_IR 100" and "ISO 2022 IR 100".
+/// The names of DICOM's character sets in iconv. A set has two names, without and with code extensions, such
+/// as "ISO_IR 100" and "ISO 2022 IR 100"; each key is the end that both share.
 constexpr std::array<std::pair<std::string_view, const char*>, 18> encodings{{
     {"IR 6", "ASCII"},
     {"IR 100", "ISO-8859-1"},
@@ -40,8 +40,8 @@ void erase_all(std::string& text, std::string_view part) {
 
 bool is_ascii(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](char letter) {
-    return static_cast<unsigned char>(letter) < 0x80 && letter != '\x1b';  // an escape switches to another
-                                                                           // set
+    // An escape sequence switches to another set.
+    return static_cast<unsigned char>(letter) < 0x80 && letter != '\x1b';
   });
 }
 

@@ -50,7 +50,7 @@ void DicomDigest::add(const void* bytes, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     high_ = (high_ ^ byte[i]) * prime;
     low_ = (low_ ^ byte[i]) * prime;
-    low_ ^= low_ >> 29;  // makes the second sum differ from the first
+    low_ ^= low_ >> 29;  // makes this sum differ from the other one
   }
 }
 

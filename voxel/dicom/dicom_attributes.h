@@ -15,16 +15,16 @@
 
 namespace octotomy::voxel {
 
-/// A number as a decimal string, with as many digits as fit into 16 characters.
+/// A number as DICOM's decimal string (VR DS), with all digits that fit into its 16 characters.
 std::string dicom_decimal(double number);
 std::string dicom_decimals(const glm::dvec3& p);
 
-/// Throws std::invalid_argument, which names the option `name`, if its text is longer than the 64 characters
-/// of DICOM's LO or contains a backslash, which separates values.
+/// Throws std::invalid_argument with the option's name `name` if the text is longer than the 64 characters of
+/// DICOM's LO or contains a backslash, which separates values.
 void check_dicom_text(const std::string& text, const char* name);
 
-/// A 128-bit digest of content: two FNV-1a sums with different start values. Equal content produces equal
-/// unique identifiers. Not cryptographically secure.
+/// A 128-bit digest of content: two FNV-1a hash sums with different start values. Equal content produces
+/// equal unique identifiers. Not cryptographically secure.
 class DicomDigest {
  public:
   void add(const void* bytes, std::size_t count);
@@ -32,7 +32,7 @@ class DicomDigest {
 
   /// An identifier of the form 2.25.<UUID as an integer>, a UUID of version 8 (RFC 9562).
   std::string uid() const;
-  /// The identifier of the content together with a further text.
+  /// The identifier of the content followed by a further text.
   std::string uid(const std::string& text) const;
 
  private:
@@ -40,8 +40,9 @@ class DicomDigest {
   std::uint64_t low_ = 0x84222325cbf29ce4;
 };
 
-/// Attributes in ascending order, written little-endian, sequences and items with their lengths (DICOM PS3.5,
-/// 7.1 and 7.5). With explicit VR, or with implicit VR, which is needed for texts of more than 64 KB.
+/// A data set whose attributes are written in ascending order, little-endian, with explicit or implicit VR;
+/// sequences and items with their lengths (DICOM PS3.5, 7.1 and 7.5). Texts of more than 64 KB require
+/// implicit VR.
 class DicomAttributes {
  public:
   enum class Coding { ExplicitVr, ImplicitVr };
@@ -49,7 +50,8 @@ class DicomAttributes {
   Coding coding() const { return coding_; }
 
   /// Replaces an attribute's value. Pads an odd length with a space, or with zero for UI and OB.
-  /// Precondition: at most 2^32 - 2 bytes; with explicit VR at most 65534 for VRs other than OB, OW and SQ.
+  /// Precondition: the value has at most 2^32 - 2 bytes; with explicit VR at most 65534 for VRs other than
+  /// OB, OW and SQ.
   void put(DicomTag tag, const char* vr, std::string value);
   void put_short(DicomTag tag, std::uint16_t number);                ///< US
   void put_longs(DicomTag tag, std::vector<std::uint32_t> numbers);  ///< UL
@@ -74,9 +76,9 @@ class DicomAttributes {
 /// One item of a code sequence, such as SNOMED's 85756007 "Tissue" (PS3.3, 8.8).
 DicomAttributes dicom_code(const char* value, const char* scheme, const char* meaning);
 
-/// Writes a file of one instance (PS3.10, 7.1); its class and identifier are the attributes (0008,0016) and
-/// (0008,0018), and the attributes' coding determines its transfer syntax. Error messages refer to the file
-/// as `name`. Throws Error (Resource).
+/// Writes a DICOM file with one object (PS3.10, 7.1). Precondition: the attributes contain its class
+/// (0008,0016) and identifier (0008,0018). Their coding determines the file's transfer syntax. Error messages
+/// refer to the file as `name`. Throws Error (Resource).
 void write_dicom_file(const std::filesystem::path& path, const std::filesystem::path& name,
                       const DicomAttributes& attributes);
 

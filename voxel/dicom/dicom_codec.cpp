@@ -31,8 +31,8 @@ class CodecProcess {
       throw Error(ErrorCode::Resource,
                   "compressed DICOM cannot be read: no socket: " + std::string(std::strerror(errno)));
     socket_ = sockets[0];
-    // The slowest codec needs a second for the largest slice. After a minute without an answer it counts as
-    // hung.
+    // The slowest codec takes a second for the largest slice. A process without an answer after a minute
+    // counts as hung.
     const timeval limit{60, 0};
     setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
     try {
@@ -73,7 +73,7 @@ class CodecProcess {
     return sent;
   }
 
-  /// The process's facts as text; empty if it does not answer.
+  /// The facts that the process reports, as text; empty if it does not answer.
   std::string facts() const {
     constexpr std::uint64_t most_bytes = 4096;
     const FrameHead head{};
@@ -100,7 +100,7 @@ class CodecProcess {
   pid_t process_ = -1;
 };
 
-/// The calling thread's process; none before its first use and after a crash.
+/// The calling thread's decoding process; null before the first request and after a crash.
 std::unique_ptr<CodecProcess>& process_of_thread() {
   thread_local std::unique_ptr<CodecProcess> process;
   return process;
@@ -114,7 +114,7 @@ std::optional<std::string> decompress(const CompressedFrame& frame) {
   if (!process) process = std::make_unique<CodecProcess>();
   std::string pixels;
   if (!process->send_request(frame) || !process->receive_answer(frame, pixels)) {
-    process.reset();  // the next frame starts a new one
+    process.reset();  // the next frame starts a new process
     return std::nullopt;
   }
   if (pixels.empty()) return std::nullopt;

@@ -9,7 +9,7 @@
 
 namespace octotomy::voxel {
 
-/// Compressed pixels of one grey DICOM frame, and the format of the pixels once decompressed.
+/// Compressed pixels of one grey DICOM frame, and the format that they have after decompression.
 struct CompressedFrame {
   std::string transfer_syntax;
   unsigned columns = 0;
@@ -21,20 +21,21 @@ struct CompressedFrame {
   std::vector<std::string_view> fragments;
 };
 
-/// Decompresses RLE, JPEG, JPEG-LS and JPEG 2000 with GDCM to little-endian pixels of BitsAllocated bits.
-/// None if the pixels are damaged or have another transfer syntax. Each thread starts a process of its own,
-/// octotomy_dicom_codec: GDCM and its codecs crash on some damaged pixels, and loading GDCM would add 30 ms
-/// to every start of the program. Throws Error (Resource) if that process cannot be started.
+/// Decompresses RLE, JPEG, JPEG-LS and JPEG 2000 with GDCM. Returns little-endian pixels of `allocated_bits`
+/// bits. None if the pixels are damaged or have another transfer syntax. The decompression runs in a separate
+/// process per thread, octotomy_dicom_codec, because GDCM and its codecs crash on some damaged pixels, and
+/// loading GDCM would delay every start of the program by 30 ms. Throws Error (Resource) if that process
+/// cannot be started.
 std::optional<std::string> decompress(const CompressedFrame& frame);
 
 /// Facts that the decompressing process reports about itself.
 struct CodecFacts {
-  bool is_confined = false;  ///< whether all of confine() is in force there
+  bool is_confined = false;  ///< whether every protection of confine() is in force in that process
   std::vector<std::pair<std::string, std::string>> libraries = {};  ///< names and loaded versions
 };
 
-/// Requests the facts from the calling thread's process. Throws Error (Resource) if it cannot be started or
-/// does not answer.
+/// Requests these facts from the calling thread's decompressing process. Throws Error (Resource) if the
+/// process cannot be started or does not answer.
 CodecFacts codec_facts();
 
 }  // namespace octotomy::voxel

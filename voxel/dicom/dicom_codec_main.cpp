@@ -24,13 +24,13 @@ namespace {
 
 using octotomy::voxel::FrameHead;
 
-/// Limits memory, because a damaged frame can request any amount of it, and prevents a core file after a
-/// crash.
+/// Limits the process's memory, because decoding a damaged frame may request any amount, and prevents core
+/// files.
 void set_limits() {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
 #ifndef OCTOTOMY_SANITIZED  // a sanitizer reserves terabytes of address space
-  // The largest accepted frame has 4096 x 4096 pixels of four bytes; codecs hold a few copies of it.
+  // The largest accepted frame has 4096 x 4096 pixels of four bytes; codecs make a few copies of it.
   const rlimit memory{std::size_t{4} << 30, std::size_t{4} << 30};
   setrlimit(RLIMIT_AS, &memory);
 #endif
@@ -38,8 +38,7 @@ void set_limits() {
 
 gdcm::Image image_of(const FrameHead& head, const std::string& syntax,
                      const std::vector<std::string>& parts) {
-  auto* fragments = new gdcm::SequenceOfFragments;  // reference-counted; `pixels` takes over the first
-                                                    // reference
+  auto* fragments = new gdcm::SequenceOfFragments;  // reference-counted; `pixels` owns the first reference
   for (const std::string& part : parts) {
     gdcm::Fragment fragment;
     fragment.SetByteValue(part.data(), static_cast<std::uint32_t>(part.size()));
@@ -74,8 +73,8 @@ std::string decompress(const FrameHead& head, const std::string& syntax,
   }
 }
 
-/// The version of a codec library, by its function that returns it; empty if GDCM does not link the library.
-/// Debian's GDCM links OpenJPEG and CharLS; other builds of GDCM contain copies.
+/// The version of a codec library, returned by the library's own function; empty if GDCM does not link the
+/// library. Debian's GDCM links OpenJPEG and CharLS; other builds of GDCM contain copies.
 std::string version_by(const char* function) {
   using Version = const char* (*)();
   const auto version = reinterpret_cast<Version>(dlsym(RTLD_DEFAULT, function));
@@ -123,8 +122,8 @@ int main(int count, char** arguments) {
   if (count != 2 || setenv("TMPDIR", arguments[1], 1) != 0) return 1;
   bool is_confined = false;
 #ifndef OCTOTOMY_SANITIZED  // a sanitizer traces the process
-  // If the system lacks seccomp or Landlock, only the limits above and the separate address space protect the
-  // user.
+  // On systems without seccomp or Landlock, the user is protected only by the limits above and by the
+  // separate address space.
   is_confined = octotomy::voxel::confine(arguments[1]);
 #endif
   while (answer_next(is_confined)) {

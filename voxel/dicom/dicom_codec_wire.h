@@ -9,13 +9,13 @@
 #include <sys/socket.h>
 #include <sys/types.h>
 
-// The messages between decompress() and its process over a socket. A request is a FrameHead, the transfer
-// syntax, and for each fragment its length as std::uint64_t and its bytes. The answer is the length of the
-// pixels as std::uint64_t, zero on failure, and the pixels. A head without columns requests the process's own
-// facts. The answer is the length of a text and the text: "confined" or "not confined", then for each library
-// a line of its name, a space and its version. The only argument of the process is an empty folder for its
-// temporary files. The program removes this folder, or the process does if the program has ended. Both ends
-// are built together, so the format has no version.
+// The messages between decompress() and the decompressing process over a socket. A request is a FrameHead,
+// the transfer syntax, and for each fragment its length as std::uint64_t and its bytes. The answer is the
+// length of the pixels as std::uint64_t, zero on failure, and the pixels. A head with zero columns requests
+// facts about the process. The answer is then the length of a text and the text: "confined" or "not
+// confined", then for each library a line of its name, a space and its version. The only argument of the
+// process is an empty folder for its temporary files. The program removes this folder, or the process does if
+// the program has ended. Both ends are built together, so the format has no version.
 
 namespace octotomy::voxel {
 
@@ -30,7 +30,8 @@ struct FrameHead {
   std::uint32_t fragment_count = 0;
 };
 
-/// Returns false if the connection is closed or the socket's time limit has passed.
+/// Sends or receives all bytes. Returns false if the connection is closed or the socket's time limit has
+/// passed.
 inline bool send_all(int socket, const void* bytes, std::size_t count) {
   for (const auto* at = static_cast<const char*>(bytes); count > 0;) {
     const ssize_t sent = send(socket, at, count, MSG_NOSIGNAL);

@@ -30,14 +30,15 @@ bool has_prefix(std::string_view bytes) {
   return bytes.size() >= 132 && bytes.substr(128, 4) == "DICM";
 }
 
-/// Whether the first attribute states its value representation. If the two capital letters were read as an
-/// implicit length, the first value would take at least 16 kilobytes, more than any first attribute.
+/// Whether the first attribute states its value representation, two capital letters. With implicit VR the
+/// same bytes belong to a length, which would then be more than 16 kilobytes; no first attribute is that
+/// long.
 bool spells_vr(std::string_view bytes) {
   const auto is_capital = [&](std::size_t i) { return bytes[i] >= 'A' && bytes[i] <= 'Z'; };
   return bytes.size() >= 8 && is_capital(4) && is_capital(5);
 }
 
-/// Value representations whose length has four bytes.
+/// Whether the length of values with this representation takes four bytes instead of two.
 bool is_wide(std::string_view vr) {
   constexpr std::array<std::string_view, 13> wide = {"OB", "OD", "OF", "OL", "OV", "OW", "SQ",
                                                      "SV", "UC", "UN", "UR", "UT", "UV"};
@@ -46,8 +47,8 @@ bool is_wide(std::string_view vr) {
   return false;
 }
 
-/// Whether a transfer syntax is one of DICOM's. All are explicit and little-endian except those that
-/// leave_meta() lists. Old files state none.
+/// Whether a transfer syntax is absent, as in old files, or one of DICOM's. All of DICOM's are explicit and
+/// little-endian except those that leave_meta() lists.
 bool is_readable_syntax(std::string_view syntax) {
   return syntax.empty() || syntax.starts_with("1.2.840.10008.1.2");
 }
@@ -101,16 +102,17 @@ void DicomFile::require(std::size_t length, DicomTag tag) const {
   if (length <= left()) return;
   if (length <= file_bytes_ - at_) throw NeedsMore{};
   if (!is_readable_syntax(transfer_syntax_))
-    throw Error(ErrorCode::Input, "is in the transfer syntax " + transfer_syntax_ +
-                                      ", which is not known here: convert it, for example by gdcmconv --raw");
+    throw Error(ErrorCode::Input,
+                "is in the transfer syntax " + transfer_syntax_ +
+                    ", which octotomy cannot read: convert it, for example by gdcmconv --raw");
   std::array<char, 112> text{};
   std::snprintf(text.data(), text.size(),
-                "cut short or damaged: attribute (%04x,%04x) claims %zu bytes of %zu left", tag >> 16,
+                "cut short or damaged: attribute (%04x,%04x) claims %zu bytes, %zu are left", tag >> 16,
                 tag & 0xffffu, length, file_bytes_ - at_);
   throw Error(ErrorCode::Input, text.data());
 }
 
-/// Throws NeedsMore if the remaining bytes, too short for an attribute, end before the file does.
+/// Called if fewer bytes are left than an attribute takes. Throws NeedsMore if the file has more bytes.
 void DicomFile::require_more() const {
   if (bytes_.size() < file_bytes_) throw NeedsMore{};
 }
@@ -132,7 +134,7 @@ DicomFile::Head DicomFile::take_head() {
   Head head;
   head.tag = (u16(at_) << 16) | u16(at_ + 2);
   const std::string_view vr = bytes_.substr(at_ + 4, 2);
-  const bool is_mark = head.tag >> 16 == 0xfffe;  // items and their ends have no value representation
+  const bool is_mark = head.tag >> 16 == 0xfffe;  // items and end marks have no value representation
   if (!explicit_ || is_mark) {
     head.length = u32(at_ + 4);
     at_ += 8;
@@ -180,12 +182,12 @@ void DicomFile::take_fragments() {
 }
 
 void DicomFile::walk() {
-  // The open sequences and items of undefined length, and the coding outside each.
+  // For each open sequence or item of undefined length, the coding of the data set around it.
   struct Coding {
     bool explicit_vr, big_endian;
   };
   std::vector<Coding> outside;
-  DicomTag open_tag = 0;       // of the outermost open sequence
+  DicomTag open_tag = 0;       // tag of the outermost open sequence
   std::size_t open_start = 0;  // where its items begin
   bool in_meta = !is_item_ && (at_ > 0 || (left() >= 8 && u16(at_) == 2));
   while (left() >= 8) {
@@ -214,7 +216,7 @@ void DicomFile::walk() {
       }
       outside.push_back({explicit_, big_endian_});
       // PS3.5, 6.2.2: sequences of unknown representation are implicit and little-endian inside. Some writers
-      // keep the file's byte order.
+      // use the file's byte order instead.
       if (head.is_unknown) {
         explicit_ = false;
         big_endian_ = big_endian_ && !begins_little_endian_item(bytes_.substr(at_));
@@ -238,7 +240,7 @@ std::vector<DicomFile> DicomFile::items(DicomTag sequence) const {
   const auto value = values_.find(sequence);
   if (value == values_.end()) return found;
   const bool explicit_vr = explicit_ && !implicit_inside_.contains(sequence);
-  // An item's head is the same with implicit and explicit VRs.
+  // An item's head is coded alike with implicit and with explicit VR.
   DicomFile marks(std::string_view(), explicit_vr, big_endian_);
   marks.bytes_ = value->second;
   marks.big_endian_ = big_endian_ && !begins_little_endian_item(value->second);
@@ -252,7 +254,7 @@ std::vector<DicomFile> DicomFile::items(DicomTag sequence) const {
     const std::size_t length = head.is_open() ? marks.left() : head.length;
     found.push_back(DicomFile(marks.bytes_.substr(marks.at_, length), explicit_vr, marks.big_endian_));
     marks.at_ += head.is_open() ? found.back().at_ : length;
-    // An item without a character set of its own uses that of the data set around it (PS3.5, 6.1.1).
+    // An item that states no character set uses the one of the data set around it (PS3.5, 6.1.1).
     if (character_set != values_.end()) found.back().values_.insert(*character_set);
   }
   return found;
@@ -362,7 +364,7 @@ std::optional<std::vector<std::vector<DicomExtent>>> DicomFile::frame_fragments(
   if (fragments.empty()) return std::nullopt;
   const std::vector<std::uint64_t>& offsets = frame_offsets_;
   if (offsets.size() == frames) {
-    // Offsets count from the first fragment's item, eight bytes before its value.
+    // Offsets count from the head of the first fragment's item, eight bytes before the fragment's value.
     std::size_t frame = 0;
     for (const DicomExtent& fragment : fragments) {
       const std::size_t offset = fragment.at - fragments.front().at;

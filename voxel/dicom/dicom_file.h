@@ -13,10 +13,10 @@ namespace octotomy::voxel {
 
 /// Group and element of a DICOM attribute as one number: (0028,0010) is 0x00280010.
 using DicomTag = std::uint32_t;
-/// Specific Character Set: the character set of a file's texts.
+/// Specific Character Set (0008,0005): the character set of a file's texts.
 constexpr DicomTag character_set_tag = 0x00080005;
 
-/// A range of bytes in a file.
+/// A range of `length` bytes in a file, from offset `at` on.
 struct DicomExtent {
   std::size_t at = 0;
   std::size_t length = 0;
@@ -31,17 +31,17 @@ class DicomFile {
   struct Deflated {
     std::size_t at = 0;
   };
-  /// Thrown if the given bytes are only the beginning of a file and end within its attributes.
+  /// Thrown if the given bytes are only the beginning of a file and end within an attribute that is needed.
   struct NeedsMore {};
 
-  /// Whether a file's first 132 bytes are DICOM's: the prefix, or in older files an attribute of group 2
-  /// or 8.
+  /// Whether a file begins as DICOM files do: with the prefix after 128 bytes, or, as in older files, with an
+  /// attribute of group 2 or 8.
   static bool begins(std::string_view head);
 
-  /// `bytes` must outlive the object. They are the whole file of `file_bytes`, or its beginning up to the
-  /// pixels or beyond. Throws Deflated for deflated attributes unless `inflated` is set, which means that
-  /// they have been inflated. Throws NeedsMore. Throws Error (Input) with the reason and without a path, if
-  /// an attribute ends beyond the file.
+  /// `bytes` are a whole file, or its beginning up to the pixels or beyond; they must outlive the object.
+  /// `file_bytes` is the file's size. Throws Deflated if the attributes are deflated; the caller inflates
+  /// them and sets `inflated`. Throws NeedsMore if `bytes` is too short. Throws Error (Input) with the reason
+  /// and without a path, if an attribute ends beyond the file.
   DicomFile(std::string_view bytes, std::size_t file_bytes, bool inflated = false);
 
   /// The text as stored, in the file's character set, without padding; empty if the attribute is absent.
@@ -52,42 +52,42 @@ class DicomFile {
   /// question marks.
   std::string readable_text(DicomTag tag) const;
   std::optional<std::uint16_t> unsigned_short(DicomTag tag) const;
-  /// All values of an attribute of two-byte numbers; empty if it is absent.
+  /// All values of an attribute with two-byte numbers; empty if the attribute is absent.
   std::vector<std::uint16_t> unsigned_shorts(DicomTag tag) const;
   /// The number of bytes in an attribute's value; none if the attribute is absent.
   std::optional<std::size_t> length(DicomTag tag) const;
-  /// The numbers of a decimal string; none if the attribute is absent or one value is not a finite number. A
+  /// The numbers of a decimal string; none if the attribute is absent or any value is not a finite number. A
   /// comma is read as a decimal point, because some writers format numbers in the user's language.
   std::optional<std::vector<double>> decimals(DicomTag tag) const;
   std::optional<double> decimal(DicomTag tag) const;
-  /// The items of a sequence, with their own attributes and the character set around them; empty if the
+  /// The items of a sequence, each with its attributes and the character set that applies to it; empty if the
   /// sequence is absent. The file's bytes must outlive the returned attributes. Throws Error (Input) if an
   /// item is damaged.
   std::vector<DicomFile> items(DicomTag sequence) const;
 
-  /// Whether a decimal string has a comma where the point belongs.
+  /// Whether a decimal string has a comma in place of a decimal point.
   bool has_decimal_comma(DicomTag tag) const;
-  /// The number of an attribute that takes four bytes, VR UL.
+  /// The value of an attribute with VR UL, an unsigned four-byte number; none if the attribute is absent.
   std::optional<std::uint32_t> unsigned_long(DicomTag tag) const;
-  /// An attribute's number of eight bytes, VR FD.
+  /// The value of an attribute with VR FD, an eight-byte float; none if the attribute is absent.
   std::optional<double> float_double(DicomTag tag) const;
   bool big_endian() const { return big_endian_; }
   const std::string& transfer_syntax() const { return transfer_syntax_; }
   /// Whether the attributes' value representations are explicit although the transfer syntax states implicit
   /// ones, or the reverse. The attributes are read as they are coded.
   bool contradicts_syntax() const { return contradicts_syntax_; }
-  /// Uncompressed pixel data; none if the file has none or compressed ones.
+  /// The position of uncompressed pixel data; none if there are no pixels or they are compressed.
   std::optional<DicomExtent> raw_pixels() const { return raw_pixels_; }
-  /// Whether uncompressed pixels are declared as words of two bytes, VR OW.
+  /// Whether the header declares uncompressed pixels as two-byte words, VR OW.
   bool has_words_of_pixels() const { return has_words_of_pixels_; }
-  /// Fragments of compressed pixels without the offset table; none if the pixels are raw.
+  /// The fragments of compressed pixels, without the offset table; none if the pixels are not compressed.
   const std::optional<std::vector<DicomExtent>>& fragments() const { return fragments_; }
-  /// The offset table, basic or extended: where each frame begins, counted from the first fragment's item;
-  /// empty if absent.
+  /// The offset table, basic or extended: the start of each frame in bytes, counted from the first fragment's
+  /// item; empty if the file has no table.
   const std::vector<std::uint64_t>& frame_offsets() const { return frame_offsets_; }
-  /// The fragments of each frame of a file with `frames` frames: one per frame, else divided by the offset
-  /// table, else by the start-of-image markers. None if none of these fits. Precondition: fragments() has a
-  /// value.
+  /// The fragments of each frame of a file with `frames` frames: one fragment per frame if the counts agree,
+  /// else divided by the offset table, else by the start-of-image markers. None if no division yields
+  /// `frames` frames. Precondition: fragments() has a value.
   std::optional<std::vector<std::vector<DicomExtent>>> frame_fragments(std::size_t frames) const;
   /// Whether a fragment begins a frame of JPEG, JPEG-LS or JPEG 2000, which start with a start-of-image
   /// marker.
@@ -104,7 +104,7 @@ class DicomFile {
     bool is_open() const { return length == 0xffffffffu; }
   };
 
-  /// The attributes of an item, up to its end mark or the end of the bytes.
+  /// Reads the attributes of an item, up to the item's end mark or the end of the bytes.
   DicomFile(std::string_view bytes, bool explicit_vr, bool big_endian);
 
   void walk();
@@ -135,8 +135,9 @@ class DicomFile {
   std::vector<std::uint64_t> frame_offsets_;
 };
 
-/// The bytes of a whole DICOM file with deflated attributes inflated, for DicomFile's `inflated`. Throws as
-/// DicomFile does, and Error (Input) without a path, if the deflated bytes are damaged.
+/// Inflates the deflated attributes of a whole DICOM file. The result can be passed to DicomFile with
+/// `inflated` set. Throws as DicomFile does, and Error (Input) without a path, if the deflated bytes are
+/// damaged.
 std::string whole_dicom(std::string bytes);
 
 }  // namespace octotomy::voxel

@@ -11,8 +11,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Whether an entry is a regular file or a broken link. Broken links count so that they are reported as
-/// unreadable.
+/// Whether an entry is a regular file or a broken link. Broken links are included so that they are reported
+/// as unreadable.
 bool is_file(const fs::directory_entry& entry) {
   std::error_code ignored;
   return entry.is_regular_file(ignored) || (entry.is_symlink(ignored) && !entry.exists(ignored));

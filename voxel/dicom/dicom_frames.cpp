@@ -20,7 +20,7 @@ struct NamedDistance {
 };
 
 /// For a nuclear medicine image, the number of each frame in a frame vector, counted from 1 (DICOM PS3.3,
-/// C.8.4.8). None unless the file has exactly one for each frame.
+/// C.8.4.8). None unless the vector has exactly one number for each frame.
 std::optional<std::vector<std::uint16_t>> numbers_of_frames(const DicomFile& file, DicomTag vector,
                                                             std::size_t frames) {
   std::vector<std::uint16_t> numbers = file.unsigned_shorts(vector);
@@ -58,7 +58,7 @@ std::optional<NoSlice> not_reconstructed(const DicomFile& file, std::size_t fram
     if (kind == projection)
       return NoSlice{
           "a nuclear medicine image of the kind " + kind +
-              ", whose frames are projections instead of slices: export the reconstruction (RECON TOMO)",
+              ", whose frames are projections and not slices: export the reconstruction (RECON TOMO)",
           NoSlice::Kind::Unusable};
   if (numbers_of_frames(file, slice_vector_tag, frames)) return std::nullopt;
   return NoSlice{
@@ -113,7 +113,10 @@ std::optional<NoSlice> place_frames(const DicomFile& file, std::vector<DicomSlic
   }
   const DicomSlice& first = slices.front();
   const double scale = glm::length(glm::cross(first.along_row, first.along_column));
-  if (!(scale > 0.0)) return NoSlice{"a multi-frame image without directions", NoSlice::Kind::Unusable};
+  if (!(scale > 0.0))
+    return NoSlice{
+        "a multi-frame image without the directions of its rows and columns; export it as single frames",
+        NoSlice::Kind::Unusable};
   const glm::dvec3 normal = glm::cross(first.along_row, first.along_column) / scale;
   std::vector<double> offsets_mm;
   std::string how;

@@ -15,8 +15,8 @@ bool is_raw_syntax(const std::string& syntax) {
          syntax == "1.2.840.10008.1.2.2";
 }
 
-/// The number of images that begin among the fragments, by the offset table and by their markers. An RLE
-/// frame is one fragment.
+/// The number of images that begin in the fragments: the larger one of the counts by the offset table and by
+/// start-of-image markers. With RLE each fragment is an image.
 std::size_t images_begun(const DicomFile& file) {
   const std::vector<DicomExtent>& fragments = *file.fragments();
   if (file.transfer_syntax() == "1.2.840.10008.1.2.5") return fragments.size();
@@ -42,7 +42,7 @@ std::vector<DicomExtent> cut_out(const std::vector<DicomExtent>& pieces, std::si
   return cut;
 }
 
-/// The reason if this program cannot decode the pixels' transfer syntax.
+/// The reason why this program cannot decode the pixels' transfer syntax; none if it can.
 std::optional<NoSlice> unknown_syntax(const DicomFile& file, const DicomPixels& pixels) {
   const std::string& syntax = pixels.transfer_syntax;
   constexpr std::array<std::string_view, 9> codecs = {
@@ -51,7 +51,7 @@ std::optional<NoSlice> unknown_syntax(const DicomFile& file, const DicomPixels& 
       "1.2.840.10008.1.2.4.90", "1.2.840.10008.1.2.4.91", "1.2.840.10008.1.2.5"};
   if (is_raw_syntax(syntax) || std::find(codecs.begin(), codecs.end(), syntax) != codecs.end())
     return std::nullopt;
-  // If raw pixels have the transfer syntax of a compression, a tool decompressed them without changing the
+  // Raw pixels with the transfer syntax of a compression: a tool has decompressed them but not changed the
   // syntax.
   if (!pixels.is_compressed && file.raw_pixels() && syntax.starts_with("1.2.840.10008.1.2"))
     return std::nullopt;
@@ -60,8 +60,8 @@ std::optional<NoSlice> unknown_syntax(const DicomFile& file, const DicomPixels& 
                  NoSlice::Kind::Unusable};
 }
 
-/// Records that there are pixel data for more images than the header states. One surplus byte is allowed: an
-/// odd number of bytes is padded.
+/// Records pixel data beyond those of the images that the header states. One surplus byte is allowed, because
+/// writers pad an odd number of bytes.
 void note_excess(std::size_t held, std::size_t needed, std::vector<DicomSlice>& slices) {
   const std::size_t excess = held - needed * slices.size();
   if (excess <= 1) return;
@@ -69,7 +69,7 @@ void note_excess(std::size_t held, std::size_t needed, std::vector<DicomSlice>& 
   slices.front().excess_pixels =
       more > 0
           ? print("pixels of %zu images, of which the header counts %zu", more + slices.size(), slices.size())
-          : print("%zu bytes of pixels more than Rows, Columns and BitsAllocated take", excess);
+          : print("%zu more bytes of pixels than Rows, Columns and BitsAllocated require", excess);
 }
 
 }  // namespace
@@ -92,7 +92,8 @@ DicomPixels pixels_of(const DicomFile& file) {
   pixels.transfer_syntax = file.transfer_syntax();
   pixels.allocated = file.unsigned_short(0x00280100).value_or(16);
   const auto stored = file.unsigned_short(0x00280101), high = file.unsigned_short(0x00280102);
-  // If BitsStored or HighBit is absent, it follows from the other one, because values end at the lowest bit.
+  // If one of BitsStored and HighBit is absent, it is computed from the other one, because values then begin
+  // at bit 0.
   pixels.stored = stored ? *stored : high ? *high + 1u : pixels.allocated;
   pixels.high = high ? *high : pixels.stored - 1;
   const auto representation = file.unsigned_short(0x00280103);
@@ -101,7 +102,7 @@ DicomPixels pixels_of(const DicomFile& file) {
   for (DicomTag group = 0x60000000; group < 0x60200000; group += 0x00020000)
     pixels.holds_overlay = pixels.holds_overlay || (file.unsigned_short(group + 0x0102).value_or(0) != 0 &&
                                                     !file.length(group + 0x3000));
-  // In an uncompressed transfer syntax, fragments are pieces of raw pixels.
+  // If the transfer syntax is uncompressed, the fragments are pieces of raw pixels.
   pixels.is_compressed = file.fragments().has_value() && !is_raw_syntax(pixels.transfer_syntax);
   pixels.is_big_endian = file.big_endian() && !pixels.is_compressed;
   pixels.are_bytes_swapped = pixels.is_big_endian && pixels.allocated == 8 && file.has_words_of_pixels();
@@ -146,9 +147,10 @@ std::optional<NoSlice> take_pixels(const DicomFile& file, std::vector<DicomSlice
     const bool is_odd = slices.front().size_px.x * slices.front().size_px.y % 2 != 0;
     const bool swaps = slices.front().pixels.are_bytes_swapped;
     if (frames > 1 && is_odd && (slices.front().pixels.allocated == 12 || swaps))
-      return NoSlice{"packed frames that begin within a byte or a word", NoSlice::Kind::Unusable};
-    // In a swapped file with an odd number of bytes, the last word holds a byte of padding before the last
-    // pixel.
+      return NoSlice{"packed frames that do not begin at whole bytes or words; export them as single frames",
+                     NoSlice::Kind::Unusable};
+    // In a file with swapped bytes and an odd number of pixels, the last word contains a byte of padding
+    // before the last pixel.
     const std::size_t taken = std::min(held, needed + (swaps && is_odd ? 1 : 0));
     for (std::size_t i = 0; i < frames; ++i) slices[i].pixels.parts = cut_out(pieces, i * needed, taken);
     return std::nullopt;

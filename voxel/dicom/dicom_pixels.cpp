@@ -19,7 +19,7 @@ namespace octotomy::voxel {
 
 namespace {
 
-/// An open file, read at offsets.
+/// Reads an open file at given offsets.
 class PlacedReader {
  public:
   explicit PlacedReader(const DicomSlice& slice)
@@ -46,7 +46,7 @@ class PlacedReader {
   int file_;
 };
 
-/// Reads the parts of a slice's pixels as they are stored.
+/// Reads the parts of a slice's pixels, without decompressing them.
 std::vector<std::string> stored_parts(const DicomSlice& slice) {
   std::vector<std::string> parts;
   if (slice.pixels.is_deflated) {
@@ -101,7 +101,7 @@ std::string unpacked(std::string packed, std::size_t count, bool big_endian) {
   return words;
 }
 
-/// Decompressed pixels, little-endian, in the bits allocated.
+/// A slice's pixels after decompression: little-endian, each with BitsAllocated bits.
 std::string decompressed(const DicomSlice& slice, const std::vector<std::string>& parts) {
   const DicomPixels& pixels = slice.pixels;
   CompressedFrame frame{pixels.transfer_syntax,
@@ -116,11 +116,11 @@ std::string decompressed(const DicomSlice& slice, const std::vector<std::string>
   if (!decoded)
     refuse(slice.path,
            "pixels in transfer syntax " + pixels.transfer_syntax +
-               " cannot be decompressed: the file is damaged, or decompress it with another tool");
+               " cannot be decompressed: the file may be damaged; try to decompress it with another tool");
   return std::move(*decoded);
 }
 
-/// The value in the stored bits of a pixel's word.
+/// The number in the stored bits of a pixel's word, signed if the pixels are.
 double value_of(std::uint32_t word, const DicomPixels& pixels) {
   const std::uint32_t mask = pixels.stored == 32 ? 0xffffffffu : (1u << pixels.stored) - 1;
   word = (word >> (pixels.high + 1 - pixels.stored)) & mask;
@@ -129,7 +129,7 @@ double value_of(std::uint32_t word, const DicomPixels& pixels) {
                                                 : static_cast<double>(word);
 }
 
-/// Whether a pixel's word has bits set outside the stored ones that are not copies of its sign.
+/// Whether a pixel's word has bits set outside its stored bits, other than copies of its sign.
 bool has_foreign_bits(std::uint32_t word, const DicomPixels& pixels) {
   const unsigned low = pixels.high + 1 - pixels.stored;
   const std::uint32_t mask = (pixels.stored == 32 ? 0xffffffffu : (1u << pixels.stored) - 1) << low;
@@ -142,7 +142,8 @@ bool has_foreign_bits(std::uint32_t word, const DicomPixels& pixels) {
 }
 
 /// The usual CT: 16 bits, little-endian, slope 1, an integer intercept. Rescales the stored words in place.
-/// Uses integers so that the compiler vectorises. Values at or below the mark of padding do not fit.
+/// Uses integers so that the compiler vectorises. With a padding mark, values at or below the mark do not
+/// fit.
 DecodedSlice rescale_shorts(const DicomSlice& slice, int intercept, std::span<std::int16_t> samples,
                             std::optional<std::int16_t> padding_mark) {
   const DicomPixels& pixels = slice.pixels;
@@ -160,8 +161,8 @@ DecodedSlice rescale_shorts(const DicomSlice& slice, int intercept, std::span<st
     for (std::int16_t& sample : samples) {
       const auto word = static_cast<Word>(sample);
       const int stored = static_cast<Word>(static_cast<Word>(word << shift) >> drop);
-      // Bits outside the stored ones are plain if all are zero, or if the bits above the stored ones are
-      // copies of the sign.
+      // Bits outside the stored bits are harmless if all are zero, or if they are copies of the sign above
+      // the stored bits.
       const bool is_plain = (static_cast<std::uint16_t>(sample) & outside) == 0;
       foreign += !is_plain && static_cast<Word>(stored << (drop - shift)) != word;
       const int value = stored + intercept;
@@ -198,7 +199,7 @@ bool is_usual(const DicomSlice& slice) {
          intercept == std::trunc(intercept) && std::abs(intercept) < 1e6;
 }
 
-/// The value of a stored number after Modality LUT or rescale.
+/// The value that a stored number has after Modality LUT or rescale.
 double meant(double stored, const DicomSlice& slice) {
   if (!slice.lut) return slope_of(slice) * stored + slice.intercept.value_or(0.0);
   const double last = static_cast<double>(slice.lut->values.size() - 1);

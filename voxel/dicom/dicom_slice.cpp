@@ -66,8 +66,8 @@ class Attributes {
     if (tag == 0x00209128)  // VR UL
       return word() ? std::to_string(*word()) : std::string();
     const std::string found = text(tag);
-    // VR FL is a binary float, which some writers store as a decimal string. The bytes of a float, such as
-    // those of 0, are not digits.
+    // VR FL is a binary float, which some writers store as a decimal string. The bytes of a binary float,
+    // such as 0, are not digits, so both can be distinguished.
     if ((tag == 0x00209241 || tag == 0x00209245) && word() &&
         (found.empty() || found.find_first_not_of("0123456789.+- ") != std::string::npos))
       return print("%g", static_cast<double>(std::bit_cast<float>(*word())));
@@ -107,7 +107,7 @@ bool is_rescale_finite(const DicomSlice& slice) {
 struct NamedTag {
   DicomTag tag;
   const char* name;
-  bool is_needed;  ///< without this value an image has no position or no samples
+  bool is_needed;  ///< without this value the position or the samples of an image are unknown
 };
 constexpr std::array<NamedTag, 10> decimal_tags{{{0x00200032, "ImagePositionPatient", true},
                                                  {0x00200037, "ImageOrientationPatient", true},
@@ -120,14 +120,14 @@ constexpr std::array<NamedTag, 10> decimal_tags{{{0x00200032, "ImagePositionPati
                                                  {0x00181120, "GantryDetectorTilt", false},
                                                  {0x3004000c, "GridFrameOffsetVector", true}}};
 
-/// The reason if an attribute exists but holds no numbers. Treating it as absent would change positions or
-/// values.
+/// The reason if a needed attribute exists but contains no numbers. Such an attribute is not treated as
+/// absent, because that would change positions or values.
 std::optional<NoSlice> unreadable_number(const Attributes& attributes) {
   for (const NamedTag& named : decimal_tags) {
     const std::string text = attributes.text(named.tag);
     if (named.is_needed && !text.empty() && !attributes.decimals(named.tag))
       return NoSlice{std::string("an image whose ") + named.name + " '" + text.substr(0, 60) +
-                         "' cannot be read as a number; correct the attribute",
+                         "' is not a number; correct the attribute",
                      NoSlice::Kind::Unusable};
   }
   return std::nullopt;
@@ -141,7 +141,7 @@ std::string decimal_commas_of(const Attributes& attributes) {
   return names;
 }
 
-/// Fills the slice's geometry. Returns the reason if the file has none.
+/// Sets the slice's geometry. Returns the reason if the header states none or an impossible one.
 std::optional<NoSlice> take_geometry(const Attributes& attributes, std::size_t frame_count,
                                      DicomSlice& slice) {
   constexpr auto unusable = NoSlice::Kind::Unusable;
@@ -186,21 +186,21 @@ std::optional<NoSlice> take_geometry(const Attributes& attributes, std::size_t f
     }
   if (spacing && spacing->size() != 2)
     return NoSlice{"an image whose PixelSpacing has " + std::to_string(spacing->size()) +
-                       " values: it needs two, the distance of rows and that of columns",
+                       " values instead of two, the distances between rows and between columns",
                    unusable};
   if (!spacing)
     return NoSlice{"an image without PixelSpacing: add it, or read the pixels by --raw with --spacing",
                    unusable};
   if (!are_within(*spacing, 1e-6, 1e6))  // outside the range of any scanner or microscope
     return NoSlice{"an image whose PixelSpacing is not 1e-6 to 1e6 mm", unusable};
-  if (!are_within(*position, -1e9, 1e9))  // up to here doubles resolve 1e-7 mm
+  if (!are_within(*position, -1e9, 1e9))  // up to this distance doubles resolve 1e-7 mm
     return NoSlice{"an image whose ImagePositionPatient is beyond 1e9 mm", unusable};
   if (!are_within(*orientation, -1.1, 1.1))  // the same tolerance as for the directions of a stack
     return NoSlice{"an image whose ImageOrientationPatient is not two unit vectors", unusable};
   slice.first_mm = {(*position)[0], (*position)[1], (*position)[2]};
   slice.along_row = {(*orientation)[0], (*orientation)[1], (*orientation)[2]};
   slice.along_column = {(*orientation)[3], (*orientation)[4], (*orientation)[5]};
-  slice.spacing_mm = {(*spacing)[1], (*spacing)[0]};  // the tag holds the distance between rows first
+  slice.spacing_mm = {(*spacing)[1], (*spacing)[0]};  // the attribute states the distance between rows first
   slice.thickness_mm = attributes.decimal(0x00180050);
   slice.spacing_tag_mm = attributes.decimal(0x00180088);
   slice.tilt_deg = attributes.decimal(0x00181120);
@@ -221,14 +221,15 @@ std::optional<DicomPadding> padding_of(const DicomFile& file, const DicomPixels&
   return DicomPadding{std::min(*value, limit), std::max(*value, limit)};
 }
 
-/// Fills the slice's Modality LUT if the file has one. Returns the reason if it is damaged.
+/// Sets the slice's Modality LUT if the file has one. Returns the reason if the table is damaged.
 std::optional<NoSlice> take_lut(const DicomFile& file, DicomSlice& slice) {
   const std::vector<DicomFile> items = file.items(0x00283000);
   if (items.empty()) return std::nullopt;
   const std::vector<std::uint16_t> descriptor = items.front().unsigned_shorts(0x00283002);
   const std::size_t held = items.front().length(0x00283006).value_or(0);
-  const NoSlice damaged{"an image whose Modality LUT does not hold the entries that its descriptor counts",
-                        NoSlice::Kind::Unusable};
+  const NoSlice damaged{
+      "an image whose Modality LUT has not the number of entries that its descriptor states",
+      NoSlice::Kind::Unusable};
   if (descriptor.size() != 3) return damaged;
   const std::size_t count = descriptor[0] == 0 ? 65536 : descriptor[0];
   auto lut = std::make_shared<ModalityLut>();
@@ -252,7 +253,8 @@ std::optional<NoSlice> take_lut(const DicomFile& file, DicomSlice& slice) {
   return std::nullopt;
 }
 
-/// The real-world mappings of the frame; if it has none, those shared by all frames, else those of the file.
+/// The real-world mappings of the frame; if the frame has none, the mappings shared by all frames; if there
+/// are none either, the mappings of the file.
 std::vector<RealWorldMapping> real_world_of(const DicomFile& file, const DicomFile* own,
                                             const DicomFile* shared, bool is_signed) {
   std::vector<RealWorldMapping> found;
@@ -276,12 +278,13 @@ std::vector<RealWorldMapping> real_world_of(const DicomFile& file, const DicomFi
   return found;
 }
 
-/// A count of two bytes; 0 if the attribute is absent.
+/// The value of an unsigned two-byte attribute; 0 if the attribute is absent.
 int stated_short(const DicomFile& file, DicomTag tag) {
   return file.unsigned_short(tag).value_or(0);
 }
 
-/// The header's statements that contradict a plain measurement of a person.
+/// Statements in the header that cast doubt on the pixels as measurements of a person; empty if there are
+/// none.
 std::string doubts_of(const DicomFile& file) {
   std::string doubts;
   const auto add = [&](const std::string& doubt) { doubts += (doubts.empty() ? "" : "; ") + doubt; };
@@ -295,10 +298,10 @@ std::string doubts_of(const DicomFile& file) {
   for (const char* kind : {"MIP", "MAX_IP", "MIN_IP", "MINIP", "PROJECTION IMAGE"})
     if (kinds.find("\\" + std::string(kind) + "\\") != std::string::npos)
       add(std::string("ImageType or FrameType ") + kind +
-          ": a projection through several slices, which shows bone thicker than it is");
+          ": a projection through several slices, in which bone appears too thick");
   if (const std::string name = file.text(0x00100010), set = file.text(character_set_tag);
       !utf8_of(set, name) && std::any_of(name.begin(), name.end(), [](char c) { return (c & 0x80) != 0; }))
-    add("SpecificCharacterSet '" + set + "' does not fit the patient's name, whose letters are shown as ?");
+    add("SpecificCharacterSet '" + set + "' cannot represent the patient's name: its letters are shown as ?");
   if (file.text(0x00280301) == "YES") add("BurnedInAnnotation YES: letters in the pixels look like bone");
   if (file.text(0x20500020) == "INVERSE")
     add("PresentationLUTShape INVERSE: the stored values may be inverted");
@@ -313,7 +316,8 @@ bool is_ct_class(const std::string& class_uid) {
          class_uid == "1.2.840.10008.5.1.4.1.1.2.2";
 }
 
-/// The part of the header that all frames of a file share.
+/// Reads the part of the header that all frames of a file share. Returns the reason if the file contains no
+/// slice.
 std::variant<DicomSlice, NoSlice> common_of(const DicomFile& file, const std::filesystem::path& path) {
   if (file.text(0x00020002) == "1.2.840.10008.1.3.10")
     return NoSlice{"a DICOM directory", NoSlice::Kind::Stray, true};
@@ -331,9 +335,9 @@ std::variant<DicomSlice, NoSlice> common_of(const DicomFile& file, const std::fi
   if (file.unsigned_short(0x00280002).value_or(1) != 1) return NoSlice{"a colour image", unusable};
   const std::string photometric = file.readable_text(0x00280004);
   if (!photometric.empty() && !photometric.starts_with("MONOCHROME"))
-    return NoSlice{"pixels in " + photometric + ", which are not measurements", unusable};
+    return NoSlice{"pixels in " + photometric + ", whose values are not measurements", unusable};
   if (file.text(0x00080008).find("MOSAIC") != std::string::npos)
-    return NoSlice{"a mosaic, which shows many slices in one picture; export them as single slices",
+    return NoSlice{"a mosaic, which shows many slices in one picture; export the slices as single images",
                    unusable};
   slice.pixels = pixels_of(file);
   if (!is_sound(slice.pixels))
@@ -352,7 +356,7 @@ std::variant<DicomSlice, NoSlice> common_of(const DicomFile& file, const std::fi
   slice.doubts = doubts_of(file);
   if (file.contradicts_syntax())
     slice.assumed_coding =
-        "value representations as they appear in the attributes, which contradict the transfer syntax";
+        "the value representations in the attributes, although they contradict the transfer syntax";
   if (!file.unsigned_short(0x00280101))
     slice.assumed_coding += print("%s%u bits, as BitsStored is absent",
                                   slice.assumed_coding.empty() ? "" : "; ", slice.pixels.stored);
@@ -378,7 +382,7 @@ std::variant<DicomSlice, NoSlice> common_of(const DicomFile& file, const std::fi
   return slice;
 }
 
-/// Fills the part of the header that may differ between frames. Returns the reason if geometry is missing.
+/// Sets the fields that may differ between frames. Returns the reason if the header of the frame is unusable.
 std::optional<NoSlice> take_frame(const DicomFile& file, const Attributes& attributes,
                                   std::size_t frame_count, DicomSlice& slice) {
   if (auto flaw = take_geometry(attributes, frame_count, slice)) return flaw;
@@ -389,7 +393,7 @@ std::optional<NoSlice> take_frame(const DicomFile& file, const Attributes& attri
   slice.slope = attributes.decimal(0x00281053);
   // PET and nuclear medicine have a separate attribute for their unit (PS3.3, C.8.9.1).
   if (slice.rescale_type.empty()) slice.rescale_type = file.text(0x00541001);
-  // A dose has separate attributes for its scaling and its unit (GY or RELATIVE).
+  // A dose has special attributes for its scaling and for its unit (GY or RELATIVE).
   if (const auto scaling = file.decimal(0x3004000e); scaling && !slice.slope && !slice.intercept) {
     slice.slope = scaling;
     slice.intercept = 0.0;
@@ -409,7 +413,8 @@ std::variant<std::vector<DicomSlice>, NoSlice> slices_of(const DicomFile& file,
   std::variant<DicomSlice, NoSlice> common = common_of(file, path);
   if (NoSlice* flaw = std::get_if<NoSlice>(&common)) return std::move(*flaw);
   const double claimed = std::max(file.decimal(0x00280008).value_or(1.0), 1.0);
-  // A damaged frame count is bounded by the number of items, each of which takes at least eight bytes.
+  // NumberOfFrames may be damaged. Items bound the number of frames, because each item takes at least eight
+  // bytes of the file.
   const std::vector<DicomFile> own = file.items(frame_groups_tag);
   const std::vector<DicomFile> shared = file.items(shared_groups_tag);
   if (!own.empty() && static_cast<double>(own.size()) != claimed)
@@ -420,8 +425,9 @@ std::variant<std::vector<DicomSlice>, NoSlice> slices_of(const DicomFile& file,
   const std::size_t frames = own.empty() ? static_cast<std::size_t>(std::min(claimed, 1e6)) : own.size();
   const DicomSlice& first = std::get<DicomSlice>(common);
   if (own.empty() && frames > 1 && frames > most_frames(file, first))
-    return NoSlice{print("cut short: the header counts %.0f frames, the pixels are fewer", claimed),
-                   NoSlice::Kind::Damaged};
+    return NoSlice{
+        print("cut short: the header counts %.0f frames, but the file has pixels of fewer", claimed),
+        NoSlice::Kind::Damaged};
   const bool is_nuclear_medicine = own.empty() && is_nuclear(first.class_uid);
   if (is_nuclear_medicine && frames > 1)
     if (auto flaw = not_reconstructed(file, frames)) return std::move(*flaw);
@@ -455,7 +461,7 @@ std::variant<std::vector<DicomSlice>, NoSlice> slices_of(const DicomFile& file,
   return slices;
 }
 
-/// The slices of a file; if it has none, the reason and the file's series.
+/// The slices of a file. If it has none, the reason, with the UID of the file's series.
 std::variant<std::vector<DicomSlice>, NoSlice> slices_or_reason(const DicomFile& file,
                                                                 const std::filesystem::path& path) {
   auto found = slices_of(file, path);
@@ -463,7 +469,8 @@ std::variant<std::vector<DicomSlice>, NoSlice> slices_or_reason(const DicomFile&
   return found;
 }
 
-/// The slices of a file that begins with `bytes`; reads the whole file if these end within the attributes.
+/// The slices of a file. `bytes` is the file's beginning; if it ends within the attributes, the whole file is
+/// read.
 std::variant<std::vector<DicomSlice>, NoSlice> slices_of(std::string bytes, std::size_t file_bytes,
                                                          const std::filesystem::path& path) {
   try {
@@ -500,14 +507,14 @@ std::string inflated(const std::string& bytes, std::size_t at) {
 }
 
 std::variant<std::vector<DicomSlice>, NoSlice> read_dicom_slices(const std::filesystem::path& path) {
-  // Attributes take some kilobytes; the pixels after them are not needed yet.
+  // A header takes some kilobytes. The pixels after it are not needed yet.
   constexpr std::size_t most_attributes = std::size_t{1} << 15;
   std::string bytes;
   try {
     bytes = beginning_of(path, most_attributes);
   } catch (const Error& error) {
     std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) return NoSlice{"a link to no file"};
+    if (!std::filesystem::exists(path, ignored)) return NoSlice{"a broken link"};
     return NoSlice{error.what(), NoSlice::Kind::Damaged};
   }
   if (!DicomFile::begins(bytes)) return NoSlice{"not DICOM"};
@@ -527,7 +534,7 @@ std::variant<std::vector<DicomSlice>, NoSlice> read_dicom_slices(const std::file
   } catch (const DicomFile::NeedsMore&) {
     return NoSlice{"changed while it was read"};
   } catch (const Error& error) {
-    // Without DICOM's prefix, a file that cannot be parsed may be of any kind.
+    // A file that cannot be parsed and lacks DICOM's prefix may be of any kind, so it counts as stray.
     const bool has_prefix = bytes.size() >= 132 && bytes.compare(128, 4, "DICM") == 0;
     return NoSlice{error.what(), has_prefix ? NoSlice::Kind::Damaged : NoSlice::Kind::Stray};
   }

@@ -23,15 +23,15 @@ struct DicomPixels {
   std::string transfer_syntax;
   std::vector<DicomExtent> parts;  ///< one part for raw pixels; the fragments of compressed ones
   bool is_compressed = false;
-  bool is_deflated = false;  ///< parts are then offsets in the inflated file
+  bool is_deflated = false;  ///< the file is deflated; `parts` then are offsets in the inflated file
   bool is_big_endian = false;
-  bool are_bytes_swapped = false;  ///< one-byte pixels stored in pairs as big-endian words
+  bool are_bytes_swapped = false;  ///< one-byte pixels are stored in pairs as big-endian words
   unsigned allocated = 16;
   unsigned stored = 16;
   unsigned high = 15;
   bool is_signed = false;
   bool states_sign = true;     ///< else PixelRepresentation is absent
-  bool holds_overlay = false;  ///< bits outside the stored ones hold an overlay (until DICOM 2004)
+  bool holds_overlay = false;  ///< bits outside the stored bits contain an overlay (until DICOM 2004)
 };
 
 /// The range of stored values that are not measurements, both ends included (DICOM PS3.3, C.7.5.1.1.2).
@@ -40,8 +40,8 @@ struct DicomPadding {
   double high = 0.0;
 };
 
-/// A Modality LUT (DICOM PS3.3, C.11.1): stored value `first` + i is mapped to values[i]. The first and the
-/// last entry apply to all stored values below and above.
+/// A Modality LUT (DICOM PS3.3, C.11.1): stored value `first` + i is mapped to values[i]. The first entry
+/// also applies to all lower stored values, the last entry to all higher ones.
 struct ModalityLut {
   double first = 0.0;
   std::vector<std::uint16_t> values;
@@ -51,24 +51,23 @@ struct ModalityLut {
 /// A Real World Value Mapping (DICOM PS3.3, C.7.6.16.2.11), which exists in addition to the rescale.
 struct RealWorldMapping {
   std::optional<double> slope, intercept;  ///< none if the mapping is a table
-  std::optional<double> first, last;       ///< stored values for which the mapping is stated
+  std::optional<double> first, last;       ///< least and largest stored value to which the mapping applies
   std::string unit;                        ///< as coded, in UCUM: "[hnsf'U]"
 };
 
-/// One file's part of an image that is stored in several files (DICOM PS3.3, C.7.6.16.1).
+/// The part of a multi-frame image in one of several files (DICOM PS3.3, C.7.6.16.1).
 struct Concatenation {
-  std::string uid;  ///< empty: the image is in one file
-  int number = 0;   ///< of this part, from 1 on
-  int total = 0;    ///< 0: the header does not state it
+  std::string uid;  ///< identifier that all parts share; empty: the image is in one file
+  int number = 0;   ///< number of this part, counted from 1
+  int total = 0;    ///< number of parts; 0: not stated
 };
 
 /// The part of a grey DICOM image's header that a volume needs. The image is a file's only frame, or one of
 /// its frames. LPS, millimetres.
 struct DicomSlice {
   std::filesystem::path path;
-  std::string
-      name;  ///< to show to users: the path below the scan's folder, with the frame's number if the file has
-             ///< several
+  /// To show to users: the path below the scan's folder, with the frame's number if the file has several.
+  std::string name;
   int frame = 0;
   DicomPixels pixels;
   std::string class_uid;  ///< SOP class, (0008,0016)
@@ -80,32 +79,33 @@ struct DicomSlice {
   std::string rescale_type;
   int series_number = 0;
   int instance_number = 0;
-  glm::ivec2 size_px{0};              ///< columns, rows
-  glm::dvec2 spacing_mm{0.0};         ///< between columns, between rows
-  glm::dvec3 along_row{1, 0, 0};      ///< from column to column, as in the file
-  glm::dvec3 along_column{0, 1, 0};   ///< from row to row
-  glm::dvec3 first_mm{0.0};           ///< centre of the first pixel
-  std::string assumed_spacing;        ///< the attribute used instead of PixelSpacing, to show to users
-  bool position_of_acr_nema = false;  ///< from the ACR-NEMA attributes of 1988, because DICOM's are absent
-  bool inverted = false;              ///< MONOCHROME1
-  bool is_localizer = false;          ///< by ImageType
+  glm::ivec2 size_px{0};             ///< number of columns and of rows
+  glm::dvec2 spacing_mm{0.0};        ///< distance between columns, and between rows
+  glm::dvec3 along_row{1, 0, 0};     ///< direction from column to column, as in the file
+  glm::dvec3 along_column{0, 1, 0};  ///< direction from row to row, as in the file
+  glm::dvec3 first_mm{0.0};          ///< centre of the first pixel, LPS
+  std::string assumed_spacing;       ///< the attribute used instead of PixelSpacing, to show to users
+  /// The position is that of the ACR-NEMA attributes of 1988, because DICOM's are absent.
+  bool position_of_acr_nema = false;
+  bool inverted = false;      ///< MONOCHROME1
+  bool is_localizer = false;  ///< whether ImageType states a scout view
   std::optional<double> slope;
   std::optional<double> intercept;
   std::shared_ptr<const ModalityLut> lut;  ///< applied instead of slope and intercept
   std::optional<DicomPadding> padding;
-  std::string decimal_commas;  ///< attributes whose numbers have a decimal comma, to show to users
+  std::string decimal_commas;  ///< names of attributes whose numbers have a decimal comma, to show to users
   std::vector<RealWorldMapping> real_world;  ///< not applied
   std::optional<double> location_mm;         ///< SliceLocation, whose origin is not stated
   std::string patient_orientation;           ///< PatientOrientation: "L\\P"
-  std::string assumed_coding;          ///< how the file's coding differs from the header's statement, to show
-                                       ///< to users
-  std::string doubts;                  ///< statements in the header that the image is not a measurement, to
-                                       ///< show to users
-  std::string assumed_modality;        ///< the modality in the header if the image's class contradicts it
-  std::string assumed_place;           ///< how a frame without a position of its own was placed, to show to
-                                       ///< users
-  std::string excess_pixels;           ///< pixel data beyond the images that the header counts, to show to
-                                       ///< users
+  /// How the file's coding differs from the header's statement, to show to users.
+  std::string assumed_coding;
+  /// Statements in the header that cast doubt on the image as a measurement, to show to users.
+  std::string doubts;
+  std::string assumed_modality;  ///< the modality in the header if the image's class contradicts it
+  /// How the position of a frame was computed if the frame states none, to show to users.
+  std::string assumed_place;
+  /// Description of pixel data beyond the images that the header states, to show to users.
+  std::string excess_pixels;
   std::optional<double> aspect_ratio;  ///< PixelAspectRatio: height divided by width
   std::optional<int> stated_images;    ///< ImagesInAcquisition, or NumberOfSlices
   Concatenation concatenation;
@@ -116,24 +116,24 @@ struct DicomSlice {
   DicomTraitValues traits;
 };
 
-/// A file without a slice, and the reason.
+/// A file without a slice, and the reason why it has none.
 struct NoSlice {
-  /// Stray: not an image, so no part of a scan is lost. Unusable: an image that cannot be part of a volume.
-  /// Damaged: an image whose file is truncated or corrupt.
+  /// Stray: the file contains no image, so no part of a scan is lost. Unusable: an image that cannot be part
+  /// of a volume. Damaged: an image whose file is truncated or corrupt.
   enum class Kind { Stray, Unusable, Damaged };
 
   std::string reason;
   Kind kind = Kind::Stray;
   bool is_directory = false;    ///< a DICOMDIR, which lists the images beside it
-  std::string series_uid = {};  ///< of the file, if the file states one
+  std::string series_uid = {};  ///< series of the file; empty if the file states none
 };
 
-/// Reads the header of a file and checks that its attributes and pixels end within it. Returns one slice, or
-/// one for each frame of an enhanced CT or MR. Never throws on a file's contents. Memory: the file's
-/// attributes, or the whole file if the file is deflated. Numbers with a decimal comma are read. An image is
-/// unusable if it has a position beyond 1e9 mm, a spacing outside 1e-6 to 1e6 mm, a direction longer than a
-/// unit vector, rescaled values beyond single precision, a number that cannot be read, or a transfer syntax
-/// that this program cannot decode.
+/// Reads the header of a file and checks that its attributes and pixels end within it. Returns one slice for
+/// each frame of the file. Never throws on a file's contents. Memory: the file's attributes, or the whole
+/// file if it is deflated. Numbers with a decimal comma are read. An image is unusable if it has a position
+/// beyond 1e9 mm, a spacing outside 1e-6 to 1e6 mm, directions that are not two unit vectors, rescaled values
+/// beyond single precision, a number that cannot be read, or a transfer syntax that this program cannot
+/// decode.
 std::variant<std::vector<DicomSlice>, NoSlice> read_dicom_slices(const std::filesystem::path& path);
 
 /// The number of bytes in a frame's uncompressed pixels.
@@ -142,7 +142,8 @@ std::size_t frame_bytes(const DicomSlice& slice);
 /// The first `count` bytes of a file, or all of them. Throws Error (Input) if they cannot be read.
 std::string beginning_of(const std::filesystem::path& path, std::size_t count);
 
-/// The file with its bytes from `at` on inflated. Throws Error (Input) if they are damaged.
+/// The file's bytes before `at`, followed by the inflated bytes from `at` on. Throws Error (Input) if these
+/// are damaged.
 std::string inflated(const std::string& bytes, std::size_t at);
 
 }  // namespace octotomy::voxel

@@ -14,8 +14,8 @@ namespace octotomy::voxel {
 
 namespace {
 
-/// Files state positions to a hundredth of a millimetre or better. Images closer than this are at one
-/// position.
+/// Files state positions to a hundredth of a millimetre or better. Images closer than this count as being at
+/// one position.
 constexpr double same_place_mm() {
   return 0.01;
 }
@@ -27,13 +27,13 @@ constexpr double same_pixel_px() {
   return 0.5;
 }
 
-/// Rounding to three decimals changes directions by at most this. A larger angle is real, however small the
-/// image.
+/// Rounding to three decimals changes directions by at most this angle in radians. A larger angle between
+/// images is real, even if it moves the pixels of a small image by less than half a pixel.
 constexpr double cosine_tolerance() {
   return 2e-3;
 }
 
-/// Pairs of different images at one position, in the order of their heights.
+/// Pairs of different images at one position, sorted by their heights along the normal.
 std::vector<std::pair<std::size_t, std::size_t>> rivals_of(const std::vector<DicomSlice>& slices) {
   if (slices.empty()) return {};
   const glm::dvec3 normal = glm::cross(slices.front().along_row, slices.front().along_column);
@@ -51,7 +51,8 @@ std::vector<std::pair<std::size_t, std::size_t>> rivals_of(const std::vector<Dic
   return rivals;
 }
 
-/// The attribute in which most of the pairs of rivals differ, if at least half of the pairs do.
+/// The attribute in which the largest number of pairs of rivals differ; none if this is less than half of the
+/// pairs.
 std::optional<std::size_t> parting_trait(const std::vector<DicomSlice>& slices,
                                          const std::vector<std::pair<std::size_t, std::size_t>>& rivals) {
   std::size_t most = 0;
@@ -77,16 +78,17 @@ std::size_t time_trait() {
   return trait;
 }
 
-/// Splits images if nearly every position has several: into the first image of each position, the second, and
-/// so on. The order is by time, or by number if the times are equal. Does not split if neither differs.
+/// If nearly every position has several images, splits them into the first images of all positions, the
+/// second ones, and so on. Images at a position are ordered by time, or by number if their times are equal.
+/// If neither differs, the images are not split.
 std::vector<std::vector<DicomSlice>> parted_by_order(std::vector<DicomSlice> slices) {
   const glm::dvec3 normal = glm::cross(slices.front().along_row, slices.front().along_column);
   const std::size_t time = time_trait();
   std::stable_sort(slices.begin(), slices.end(), [&](const DicomSlice& a, const DicomSlice& b) {
     return glm::dot(a.first_mm, normal) < glm::dot(b.first_mm, normal);
   });
-  std::vector<std::pair<std::size_t, std::size_t>> places;  // for each place, its first image and one past
-                                                            // its last
+  // For each position, the index of its first image and one past that of its last.
+  std::vector<std::pair<std::size_t, std::size_t>> places;
   for (std::size_t i = 0; i < slices.size(); ++i)
     if (i > 0 && glm::dot(slices[i].first_mm - slices[i - 1].first_mm, normal) < same_place_mm())
       places.back().second = i + 1;
@@ -155,8 +157,8 @@ const char* plane_of(const DicomSlice& slice) {
                                                       : "sagittal";
 }
 
-/// Describes how the parts differ. Leaves out identities, because a report may leave the hospital. Linear
-/// cost: what all parts share is computed once.
+/// Describes how the parts differ. Leaves out identities, because a report may leave the hospital. The cost
+/// is linear in the number of parts, because values that all parts share are computed once.
 class Words {
  public:
   explicit Words(const std::vector<std::vector<DicomSlice>>& parts) {
@@ -169,7 +171,8 @@ class Words {
       plane_differs_ |= std::string(plane_of(slice)) != plane_of(first);
       size_differs_ |= slice.size_px != first.size_px;
     }
-    // A spacing differs most from the least or from the largest spacing.
+    // A part's spacing differs from that of some other part exactly if it differs from the least or the
+    // largest one.
     for (int axis = 0; axis < 2; ++axis) {
       const auto [least, largest] =
           std::minmax_element(parts.begin(), parts.end(), [&](const auto& a, const auto& b) {
@@ -248,7 +251,8 @@ std::vector<std::vector<DicomSlice>> grouped(
 
 bool same_grid(const DicomSlice& a, const DicomSlice& b) {
   const glm::dvec2 shift_px = glm::abs(a.spacing_mm / b.spacing_mm - 1.0) * glm::dvec2(a.size_px);
-  // Rounding of decimals changes a spacing by less than a hundredth, however small the image.
+  // Rounding of decimals changes a spacing by less than a hundredth of it, even if the image has so few
+  // pixels that a larger difference moves none of them by half a pixel.
   return a.size_px == b.size_px && glm::all(glm::lessThanEqual(shift_px, glm::dvec2(same_pixel_px()))) &&
          glm::all(glm::lessThan(glm::abs(a.spacing_mm - b.spacing_mm), 1e-2 * a.spacing_mm));
 }

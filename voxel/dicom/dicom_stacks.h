@@ -15,17 +15,18 @@ struct DicomSubseries {
   std::string words;  ///< how they differ from the other images of the series: "kernel H60s, acquisition 2"
 };
 
-/// Whether two images have the same size and spacing: no pixel is shifted by more than half a pixel.
+/// Whether two images have the same size, and spacings whose difference shifts no pixel by more than half a
+/// pixel.
 bool same_grid(const DicomSlice& a, const DicomSlice& b);
-/// The number of pixels by which the farthest corner of an image moves if its rows and columns have the given
-/// directions.
+/// The distance in pixels by which the farthest corner of an image moves if its rows and columns are turned
+/// to the given directions.
 double turned_px(const DicomSlice& slice, const glm::dvec3& along_row, const glm::dvec3& along_column);
 /// Whether two images lie in parallel planes with parallel rows, up to a rotation that moves no pixel by more
 /// than half a pixel.
 bool same_orientation(const DicomSlice& a, const DicomSlice& b);
 
-/// Puts each image, in order, into the first group whose first image is alike, or into a new group. Cost:
-/// number of images times number of groups.
+/// Adds each image, in order, to the first group whose first image satisfies `alike` with it, or to a new
+/// group. Cost: number of images times number of groups.
 std::vector<std::vector<DicomSlice>> grouped(
     std::vector<DicomSlice> slices, const std::function<bool(const DicomSlice&, const DicomSlice&)>& alike);
 
@@ -36,7 +37,7 @@ std::vector<std::vector<DicomSlice>> grouped(
 /// stay together. Scout views are left out unless there are no other images.
 std::vector<DicomSubseries> subseries_of(const std::vector<DicomSlice>& series, bool join = false);
 
-/// Splits images of one size and orientation at one position, as subseries_of() does.
+/// Splits images that have one size, orientation and position, by the same attributes as subseries_of().
 std::vector<DicomSubseries> parted_at_one_place(std::vector<DicomSlice> slices);
 
 }  // namespace octotomy::voxel

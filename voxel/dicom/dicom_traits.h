@@ -10,15 +10,15 @@ namespace octotomy::voxel {
 
 /// How an attribute separates the images of one series.
 enum class TraitRole {
-  Identity,    ///< images that differ never belong together: the commonest value is kept
-  Origin,      ///< images that differ belong together only if the caller requests a join
+  Identity,    ///< images that differ are never joined; only images with the commonest value are used
+  Origin,      ///< images that differ are joined only if the caller requests it
   Stack,       ///< splits images at one position into stacks
-  Order,       ///< splits images at one position by their order, if nothing else does
-  Uniformity,  ///< images that differ stay together; the audit lists the minority
+  Order,       ///< orders the images at one position; splits them if no other attribute does
+  Uniformity,  ///< images that differ remain together; the audit lists the images with rarer values
 };
 
-/// A DICOM attribute that is equal in all images of a stack. Its value comes from the first of `tags` that a
-/// file has.
+/// A DICOM attribute by which the images of a series are compared. Its value is that of the first of `tags`
+/// that a file contains.
 struct DicomTrait {
   const char* check;  ///< name of its line in the audit
   const char* words;  ///< its name in messages

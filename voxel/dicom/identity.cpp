@@ -9,7 +9,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// A person's name in a form for comparison: lower case, without empty components at the end.
+/// A person's name for comparison: lower case, without empty components at its end.
 std::string plain_name(const std::string& name) {
   std::string plain = lower_case(trimmed(name));
   plain.resize(plain.find_last_not_of("^= ") + 1);

@@ -14,12 +14,12 @@ class DicomFile;
 Identity identity_of(const DicomFile& file);
 
 /// The result of comparing two identities. Patients are compared by identifier, or by name if one side has no
-/// identifier. The issuer of equal identifiers, birth date and sex are compared if both sides state them.
-/// Studies and frames of reference differ if the two sides have no UID in common.
+/// identifier. Birth date, sex, and the issuers of equal identifiers are compared if both sides state them.
+/// Studies differ if the two sides have no study UID in common, and so do frames of reference.
 struct IdentityComparison {
   std::vector<std::string> differing;  ///< "patient 'A17' and 'B23'", the first side's value first
-  std::vector<std::string> unstated;   ///< "patient", "study" or "frame of reference", if one side states
-                                       ///< none
+  /// "patient", "study" or "frame of reference", if one side states none.
+  std::vector<std::string> unstated;
 };
 IdentityComparison compared(const Identity& a, const Identity& b);
 

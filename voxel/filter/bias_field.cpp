@@ -41,24 +41,25 @@ constexpr int order = 3;  // of the spline
 }
 
 void check_options(const Scene& scene, const BiasFieldOptions& options) {
-  check_values(scene, "a label map has no field to correct");
+  check_values(scene, "a label map has no magnetic field to correct: choose an MR scan");
   if (scene.meaning == Meaning::Hounsfield)
-    refuse("a CT in Hounsfield units has no magnetic field to correct: give an MR scan");
+    refuse("a CT in Hounsfield units has no magnetic field to correct: choose an MR scan");
   if (options.threshold && (!(*options.threshold >= 0.0) || !std::isfinite(*options.threshold)))
     refuse("the threshold must be at least 0, because the field multiplies samples, not " +
            std::to_string(*options.threshold));
   if (!(options.knots_mm > 0.0) || !std::isfinite(options.knots_mm))
-    refuse("the distance of knots must be above 0 mm, not " + std::to_string(options.knots_mm));
+    refuse("the distance between knots must be above 0 mm, not " + std::to_string(options.knots_mm));
   if (options.levels < 1 || options.levels > 6)
-    refuse("a field is fitted in 1 to 6 levels, not " + std::to_string(options.levels));
+    refuse("the number of levels of the fit must be from 1 to 6, not " + std::to_string(options.levels));
   if (options.iterations < 1 || options.iterations > 1000)
-    refuse("a level takes 1 to 1000 iterations, not " + std::to_string(options.iterations));
+    refuse("the number of iterations in a level must be from 1 to 1000, not " +
+           std::to_string(options.iterations));
   if (!(options.noise > 0.0) || !std::isfinite(options.noise))
     refuse("the noise of the filter must be above 0, not " + std::to_string(options.noise));
 }
 
-// N4's own filters have ITK's default number of threads, and the fit's sums depend on that number. During
-// the lifetime of this object the default is 1. Filters of other threads set their own number.
+// N4's inner filters use ITK's default number of threads, on which the fit's sums depend. While this object
+// exists, the default is 1. Other filters of this program set their number of threads explicitly.
 class OneThread {
  public:
   OneThread() : lock_(mutex()), before_(itk::MultiThreaderBase::GetGlobalDefaultNumberOfThreads()) {
@@ -77,8 +78,7 @@ class OneThread {
   itk::ThreadIdType before_;
 };
 
-// The logarithm of the field as a uniform cubic B-spline. Positions are indices of the thinned scan's
-// samples.
+// The logarithm of the field as a uniform cubic B-spline. Positions are in samples of the thinned scan.
 class Spline {
  public:
   Spline(const N4::BiasFieldControlPointLatticeType& lattice, const glm::ivec3& dims) {
@@ -125,7 +125,7 @@ class Spline {
   std::vector<double> points_;
 };
 
-// A regular selection of the scan's samples, with marks for those that determine the field.
+// A regular grid selected from the scan's samples, with marks for the samples that determine the field.
 struct Thinned {
   Lattice lattice;
   FloatSamples values;
@@ -156,10 +156,9 @@ Thinned thinned(const Scene& scene, const glm::ivec3& every, const glm::ivec3& f
       },
       scene.samples);
   if (thin.count < 100)
-    throw Error(ErrorCode::Geometry, "only " + std::to_string(thin.count) +
-                                         " of the samples that are fitted are above the threshold of " +
-                                         rounded(threshold) +
-                                         ": choose a lower one, or a scan with more samples above 0");
+    throw Error(ErrorCode::Geometry,
+                "only " + std::to_string(thin.count) + " of the thinned samples are above the threshold of " +
+                    rounded(threshold) + ": choose a lower threshold, or a scan with more samples above 0");
   return thin;
 }
 
@@ -216,8 +215,8 @@ BiasCorrection correct_bias_field(const Scene& scene, const BiasFieldOptions& op
   BiasCorrection made;
   made.threshold =
       options.threshold ? *options.threshold : std::max(0.0, otsu_thresholds(histogram(scene), 2).front());
-  // Four samples between the finest knots determine the spline; beyond 8 mm thin tissues would be missed.
-  // A small scan keeps 16 along each axis.
+  // The thinned scan has four samples between the finest knots, which determine the spline. Its spacing is at
+  // most 8 mm, because a wider one misses thin tissues. A small scan keeps 16 samples along each axis.
   const double apart_mm = std::min(8.0, options.knots_mm / std::ldexp(4.0, options.levels - 1));
   const glm::ivec3 dims = scene.lattice.dims;
   glm::ivec3 every(1);

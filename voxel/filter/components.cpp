@@ -10,8 +10,8 @@
 #include "voxel/tree/slice_build.h"
 
 // Source: run-based labelling by He, Chao and Suzuki 2008, in three dimensions. The units are runs of voxels
-// along x. A run joins the runs of earlier rows, in its slice and the slice before, that overlap it in x or
-// come within the neighbourhood's gap.
+// along x. A run is joined to the runs of earlier rows, in its slice and in the slice before, that overlap it
+// in x or are separated from it by at most the neighbourhood's gap.
 
 namespace octotomy::voxel {
 namespace {
@@ -25,7 +25,7 @@ struct Run {
 struct Runs {
   int side = 0;
   std::vector<Run> runs;
-  std::vector<std::size_t> row_start;  ///< one entry more than there are rows
+  std::vector<std::size_t> row_start;  ///< index of each row's first run; a last entry is the number of runs
 
   std::size_t begin(int y, int z) const { return row_start[index(y, z)]; }
   std::size_t end(int y, int z) const { return row_start[index(y, z) + 1]; }
@@ -59,7 +59,7 @@ class DisjointSets {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  // The smaller number stays the root, so a component's number is that of its first run.
+  // The smaller number remains the root, so a component has the number of its first run.
   void join(std::uint32_t a, std::uint32_t b) {
     assert(a < parent_.size() && b < parent_.size());
     a = find(a);
@@ -71,7 +71,7 @@ class DisjointSets {
   std::vector<std::uint32_t> parent_;
 };
 
-// Joins the runs of a row with the runs of an earlier row that come within `gap` voxels along x.
+// Joins the runs of a row with the runs of an earlier row whose ends are at most `gap` voxels away along x.
 void join_rows(const Runs& runs, const glm::ivec2& row, const glm::ivec2& earlier, int gap,
                DisjointSets& sets) {
   assert(gap >= 0 && gap <= 1);
@@ -87,7 +87,8 @@ void join_rows(const Runs& runs, const glm::ivec2& row, const glm::ivec2& earlie
   }
 }
 
-// The component of each run, by the number of its first run, and the voxel counts under the same numbers.
+// For each run the component's number, which is that of its first run, and under these numbers the
+// components' voxel counts.
 struct Parts {
   Runs runs;
   std::vector<std::uint32_t> part;
@@ -98,7 +99,8 @@ Parts parts_of(const Octree& octree, Neighbours neighbours) {
   Parts parts{runs_of(octree), {}, {}};
   const Runs& runs = parts.runs;
   DisjointSets sets(runs.runs.size());
-  // Differences in x at which runs still join, for rows that share a face and for rows that share an edge.
+  // The largest differences in x at which runs are joined, for rows that share a face and for rows that share
+  // an edge.
   const int across_face = neighbours == Neighbours::Faces ? 0 : 1;
   const int across_edge = neighbours == Neighbours::Corners ? 1 : 0;
   for (int z = 0; z < runs.side; ++z)

@@ -13,7 +13,7 @@
 namespace octotomy::voxel {
 namespace {
 
-// A scene without samples whose first sample lies at index `first_voxel` of another scene.
+// A copy of a scene without samples. Its index 0 lies at index `first_voxel` of the other scene.
 Scene empty_part(const Scene& scene, const glm::ivec3& dims, const glm::dvec3& first_voxel) {
   Lattice lattice{dims, scene.lattice.lps_from_voxel};
   lattice.lps_from_voxel[3] = glm::dvec4(scene.lattice.lps_mm(first_voxel), 1.0);
@@ -27,7 +27,7 @@ std::string text_of(const glm::ivec3& v) {
 }  // namespace
 
 VoxelRange range_within(const Lattice& lattice, const Box& box) {
-  // A tolerance, in voxels, far above rounding: a centre on the box's face counts as inside.
+  // A tolerance in voxels, far above rounding errors, so that a centre on the box's face counts as inside.
   constexpr double rounding = 1e-3;
   VoxelRange range{glm::ivec3(0), lattice.dims - 1};
   glm::dvec3 low(INFINITY), high(-INFINITY);
@@ -70,9 +70,9 @@ Scene crop(const Scene& scene, const VoxelRange& range) {
 Scene average_down(const Scene& scene, const glm::ivec3& factor, const Progress& progress) {
   check(scene);
   if (glm::any(glm::lessThan(factor, glm::ivec3(1))))
-    throw InvalidInput("averaging takes 1 or more samples along each axis, not " + text_of(factor));
+    throw InvalidInput("averaging requires 1 or more samples along each axis, not " + text_of(factor));
   if (scene.meaning == Meaning::Label)
-    throw InvalidInput("labels have no mean: a label map cannot be averaged down");
+    throw InvalidInput("labels have no mean, so a label map cannot be averaged down");
   const glm::ivec3 from = scene.lattice.dims;
   const glm::ivec3 dims = (from + factor - 1) / factor;
   Scene result = empty_part(scene, dims, 0.5 * glm::dvec3(factor - 1));

@@ -23,7 +23,8 @@
 namespace octotomy::voxel {
 namespace {
 
-/// A force, its moment over a length, and the size of reactions.
+/// A wrench and a bound: the force (3 components), the moment divided by a length (3), and the sum of the
+/// reactions' sizes.
 using Wrench = std::array<double, 7>;
 
 double product(const Wrench& a, const Wrench& b) {
@@ -33,11 +34,11 @@ void add(Wrench& to, double factor, const Wrench& what) {
   for (std::size_t k = 0; k < to.size(); ++k) to[k] += factor * what[k];
 }
 
-/// A wrench in the cone is told from one beside it by this share of its length.
+/// A wrench counts as being in the cone if its distance from the cone is at most this share of its length.
 constexpr double held_share = 1e-7;
 
-/// The factors with which some columns come nearest to a goal, by orthogonal columns. Precondition:
-/// independent ones.
+/// The factors with which the sum of the columns is nearest to a goal, by Gram-Schmidt orthogonalisation.
+/// Precondition: the columns are linearly independent.
 std::vector<double> least_squares(const std::vector<const Wrench*>& columns, const Wrench& goal) {
   const std::size_t count = columns.size();
   std::vector<Wrench> square(count);
@@ -67,7 +68,7 @@ std::vector<double> least_squares(const std::vector<const Wrench*>& columns, con
   return factors;
 }
 
-/// What is left of a wrench after the nearest point of a cone is taken away; zero if the cone holds it.
+/// The wrench minus the cone's point nearest to it; zero if the wrench is in the cone.
 Wrench beyond_cone(const std::vector<Wrench>& cone, const Wrench& goal) {
   const double size = std::sqrt(product(goal, goal));
   std::vector<std::size_t> used;
@@ -108,7 +109,7 @@ Wrench beyond_cone(const std::vector<Wrench>& cone, const Wrench& goal) {
   return product(rest, rest) <= held_share * held_share * size * size ? Wrench{} : rest;
 }
 
-/// The contacts' wrenches about a point, moments over a length.
+/// The cone of wrenches with which the contacts can react. Moments are about a point and divided by a length.
 struct Held {
   std::vector<Wrench> cone;
   glm::dvec3 about_mm{0.0};
@@ -128,7 +129,7 @@ struct Held {
       for (double& value : made) value /= size;
       cone.push_back(made);
     }
-    cone.push_back({0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0});  // what is left of the limit
+    cone.push_back({0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0});  // the unused part of the limit on reactions
   }
 
   Wrench wrench(const glm::dvec3& p_mm, const glm::dvec3& force, double size) const {
@@ -136,9 +137,9 @@ struct Held {
     return {force.x, force.y, force.z, moment.x, moment.y, moment.z, size};
   }
 
-  /// None if a push is held; else a vector with which it, and all other pushes that are not held for the same
-  /// reason, has a positive product: the velocity of the pushed point in a motion that contacts resist too
-  /// little, less what they resist.
+  /// None if the contacts hold a push. Otherwise a vector that separates this push from those that are held:
+  /// pushes with a positive scalar product with the vector are not held. It is the velocity of the pushed
+  /// point in a motion that the contacts do not resist enough, reduced by their resistance.
   std::optional<glm::dvec3> gives_way(const glm::dvec3& p_mm, const glm::dvec3& push,
                                       const glm::dvec3& nominal) const {
     const Wrench rest = beyond_cone(cone, wrench(p_mm, -push, most_reaction * glm::dot(push, nominal)));
@@ -162,7 +163,8 @@ struct Held {
             gives_way(p_mm, std::cos(found) * push + std::sin(found) * side, push);
         if (!way) break;
         const double least = std::asin(std::clamp(-glm::dot(push, *way) / glm::length(*way), 0.0, 1.0));
-        // Rounding must not stop the search.
+        // The angle is reduced in every round, even if rounding would leave it unchanged, so that the search
+        // ends.
         found = std::min(least, found * (1.0 - 1e-6));
         if (found < 1e-7) found = 0.0;
       }
@@ -171,7 +173,7 @@ struct Held {
   }
 };
 
-/// The points that lie farthest in one of many directions, each once.
+/// The indices of the points that lie farthest in at least one of about 160 directions.
 std::vector<std::size_t> outermost(const std::vector<glm::dvec3>& points_mm) {
   std::set<std::size_t> found;
   constexpr int rings = 10;
@@ -195,8 +197,9 @@ std::vector<std::size_t> outermost(const std::vector<glm::dvec3>& points_mm) {
 
 Docking docking(const std::vector<DockingContact>& contacts, const glm::dvec3& push,
                 const std::vector<glm::dvec3>& points_mm, const Progress& progress) {
-  if (contacts.empty()) throw InvalidInput("nothing holds a part without contacts");
-  if (points_mm.empty()) throw InvalidInput("the push needs a point");
+  if (contacts.empty())
+    throw InvalidInput("a part without contacts is not held: move the part to its place on the object");
+  if (points_mm.empty()) throw InvalidInput("docking needs at least one point at which the part is pushed");
   if (!(std::abs(glm::length(push) - 1.0) < 1e-9))
     throw std::invalid_argument("the push must be a unit vector");
   progress.at(0.0);

@@ -21,7 +21,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// Points of a unit sphere, evenly spread along a spiral.
+/// Directions spread evenly over the unit sphere, along a spiral.
 std::vector<glm::dvec3> spread_directions(int count) {
   std::vector<glm::dvec3> found;
   const double golden = glm::pi<double>() * (3.0 - std::sqrt(5.0));
@@ -32,10 +32,10 @@ std::vector<glm::dvec3> spread_directions(int count) {
   return found;
 }
 
-/// Crossings of a solid's surface with edges between voxels' centres, and first normals.
+/// Where a solid's surface crosses edges between neighbouring voxels' centres, with estimates of its normals.
 class Crossings {
  public:
-  /// Of the voxels within a box of LPS.
+  /// Examines only voxels within the box, LPS.
   Crossings(const PlacedSolid& of, const Box& near)
       : lattice_(of.octree.universe().lattice()), contains_(of.octree.universe(), of.solid) {
     const glm::dvec3 spacing_mm = lattice_.spacing_mm();
@@ -45,7 +45,7 @@ class Crossings {
     for (const VoxelFace& face : voxel_boundary(part)) {
       glm::ivec3 beyond = face.voxel;
       beyond[face.axis] += face.side;
-      // A face of the box, or of the universe, is none of the surface.
+      // Faces that only the box or the universe cuts are not part of the solid's surface.
       if (beyond[face.axis] < 0 || beyond[face.axis] >= side || of.octree.contains(beyond)) continue;
       faces_.push_back(face);
     }
@@ -65,7 +65,7 @@ class Crossings {
     return lattice_.lps_mm(glm::dvec3(face.voxel) + 0.5 * (in + out) * step);
   }
 
-  /// The outward normal to some degrees; zero where all around is alike.
+  /// The outward normal, accurate to some degrees; zero if all surroundings are inside or all are outside.
   glm::dvec3 first_normal(const glm::dvec3& p_mm) const {
     static const std::vector<glm::dvec3> directions = spread_directions(120);
     glm::dvec3 sum(0.0);
@@ -81,8 +81,8 @@ class Crossings {
   std::vector<VoxelFace> faces_;
 };
 
-/// The normal of the plane that lies best among points near `middle`, turned as little as the points allow
-/// from a first normal: where they lie on a line, about it only.
+/// The normal of the plane fitted to points, near the normal `first`. If the points lie on a line, they do
+/// not fix the plane; then `first` is only turned until it is perpendicular to the line.
 glm::dvec3 plane_normal(const std::vector<glm::dvec3>& points, const glm::dvec3& first) {
   glm::dvec3 middle(0.0);
   for (const glm::dvec3& p : points) middle += p / static_cast<double>(points.size());
@@ -111,7 +111,7 @@ void fit_planes(std::vector<DockingContact>& contacts, double within_mm) {
   for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i].normal = normals[i];
 }
 
-/// The box about a solid's voxels, LPS. Precondition: not empty.
+/// The box around a solid's voxels and a margin, LPS. Precondition: the octree is not empty.
 Box box_about(const Octree& octree, double margin_mm) {
   const VoxelRange range = range_of(octree);
   const Lattice lattice = octree.universe().lattice();

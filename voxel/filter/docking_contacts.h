@@ -10,35 +10,37 @@
 
 namespace octotomy::voxel {
 
-/// A solid by its voxels, which decide on which side a centre lies, and by an expression that places its
-/// surface between centres.
+/// A solid in two forms. The octree determines which voxels' centres are inside; the expression determines
+/// where the surface lies between centres.
 struct PlacedSolid {
   const Octree& octree;
   const Expression& solid;
 };
 
-/// A place where an object bears a part.
+/// A point at which an object supports a part.
 struct DockingContact {
-  glm::dvec3 p_mm{0.0};    ///< on the object's surface, LPS
-  glm::dvec3 normal{0.0};  ///< unit, out of the object: the direction in which it pushes the part
+  glm::dvec3 p_mm{0.0};  ///< on the object's surface, LPS
+  /// Unit vector out of the object: the direction in which the object pushes the part.
+  glm::dvec3 normal{0.0};
 };
 
 struct DockingContactsOptions {
   double within_mm = 0.4;  ///< the largest gap that counts as contact; above 0
-  /// Normals are of planes through contacts within this distance, but at least two voxels, on one smooth face.
+  /// A contact's normal is that of a plane fitted to the contacts on the same smooth face within this
+  /// distance, or within two voxel edges if these are longer.
   double smooth_mm = 2.0;
   Progress progress = {};
 };
 
-/// Where objects lie against a part: where an edge between voxels' centres crosses an object's surface, and
-/// the part begins within a distance along the surface's normal. Throws std::invalid_argument if the distance
-/// is not above 0; Stopped. Parallel; the same bits on any number of threads. Cost: some hundred questions of
-/// membership for each face of the objects' voxels near the part.
+/// The contacts of objects with a part. A contact is a point where an edge between voxels' centres crosses an
+/// object's surface, if the part begins within the distance `within_mm` along the surface's normal. Throws
+/// std::invalid_argument if the distance is not above 0; Stopped. Parallel; the same bits on any number of
+/// threads. Cost: some hundred membership queries for each face of the objects' voxels near the part.
 std::vector<DockingContact> docking_contacts(const PlacedSolid& part, const std::vector<PlacedSolid>& objects,
                                              const DockingContactsOptions& options);
 
-/// Places where the part's surface crosses edges between voxels' centres and its outward normal is within 60
-/// degrees of the opposite of a push, a unit vector: where a finger can push.
+/// Points at which a finger can push a part in the direction `push`, a unit vector, LPS: where the part's
+/// surface crosses edges between voxels' centres, and its outward normal is within 60 degrees of -push.
 std::vector<glm::dvec3> pushed_surface(const PlacedSolid& part, const glm::dvec3& push);
 
 }  // namespace octotomy::voxel

@@ -14,7 +14,7 @@
 namespace octotomy::voxel {
 namespace {
 
-// Samples by index; beyond the scene the border samples repeat.
+// Reads samples by index. Beyond the scene, the border samples repeat.
 template <typename Held>
 class Field {
  public:
@@ -30,8 +30,9 @@ class Field {
   glm::ivec3 dims_;
 };
 
-// The derivative along each index axis. The weights are 1 for a neighbour across a face, 1 / sqrt 2 across an
-// edge, 1 / sqrt 3 at a corner; a field that rises by 1 per voxel sums to 2 (1 + 4 / sqrt 2 + 4 / sqrt 3).
+// Zucker and Hummel's derivative along each index axis. The weights are 1 for a neighbour across a face, 1 /
+// sqrt 2 across an edge, 1 / sqrt 3 at a corner. The sum is divided by 2 (1 + 4 / sqrt 2 + 4 / sqrt 3), which
+// is its value for a field that rises by 1 per voxel.
 template <typename Held>
 glm::dvec3 index_gradient(const Field<Held>& field, int x, int y, int z) {
   const double of_edge = std::sqrt(0.5);
@@ -78,7 +79,7 @@ glm::dmat3 mm_from_index_gradient(const Lattice& lattice) {
   return glm::transpose(glm::inverse(glm::dmat3(lattice.lps_from_voxel)));
 }
 
-// A float scene on the same lattice with value(x, y, z) at every index.
+// A float scene on the lattice of `scene`, with the sample value(x, y, z) at every index.
 template <typename Value>
 Scene made_of(const Scene& scene, const Progress& progress, const Value& value) {
   const glm::ivec3 dims = scene.lattice.dims;
@@ -116,7 +117,7 @@ Scene marr_hildreth(const Scene& scene, double sigma_mm, const Progress& progres
   const glm::dvec3 spacing_mm = scene.lattice.spacing_mm();
   const glm::dmat3 axes(scene.lattice.lps_from_voxel);
   for (int axis = 0; axis < 3; ++axis)
-    // A shear of 2^-20 moves no sample of a 4096-voxel row by a hundredth of a voxel.
+    // A shear below 2^-20 moves every sample of a row of 4096 voxels by less than a hundredth of a voxel.
     if (std::abs(glm::dot(axes[axis], axes[(axis + 1) % 3])) >
         0x1p-20 * spacing_mm[axis] * spacing_mm[(axis + 1) % 3])
       throw InvalidInput("a Laplacian needs perpendicular axes: resample the sheared scan first");
@@ -172,7 +173,7 @@ Scene prewitt(const Scene& scene, const Progress& progress) {
 Scene difference_of_gaussians(const Scene& scene, double sigma_mm, double ratio, const Progress& progress) {
   check_values(scene, "an edge operator cannot take a label map");
   if (!(ratio > 1.0) || !std::isfinite(ratio))
-    throw InvalidInput("the wider Gaussian must be wider: the ratio of the sigmas must be above 1, not " +
+    throw InvalidInput("the ratio of the wider Gaussian's sigma to the narrower one's must be above 1, not " +
                        std::to_string(ratio));
   if (scene.padding)
     return on_measured(

@@ -1,7 +1,7 @@
 // Steps:
 // 1 Estimate the table's inclination to the lattice: the slope at which edges of a coarse copy line up best.
 // 2 Compute the median of each column along the table, over all slices and then over shorter windows.
-// 3 A column is extruded where its samples are material and stay near the medians of its neighbourhood.
+// 3 A column counts as extruded if its samples are material and remain near the medians of its neighbourhood.
 // 4 Join extruded columns to parts; a part that is compact, narrow, enclosed, or thick without air around it
 //   belongs to the body.
 // 5 Follow each part beyond its window, slice by slice, while most of its samples still agree, and mark them.
@@ -20,21 +20,23 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr double above_air = 50.0;        ///< HU; above the noise of air, below the lightest foam
-constexpr double least_width_mm = 40.0;   ///< narrower parts are straps, tubes or arms
-constexpr double limb_mm = 10.0;          ///< radius of discs that fit into a child's arm
-constexpr double limb_edge_mm = 2.5;      ///< width of a limb's blurred edge
-constexpr double least_length = 2.5;      ///< of a board or couch, as a multiple of its thickness; a head has
-                                          ///< 1.6, an arm 1.3
-constexpr double fringe_mm = 8.0;         ///< a body's outline beyond the discs that fit into it
-constexpr double least_window_mm = 60.0;  ///< a head's outline changes within less
+/// HU above the level of air: more than the noise of air, less than the lightest foam.
+constexpr double above_air = 50.0;
+constexpr double least_width_mm = 40.0;  ///< narrower parts are straps, tubes or arms
+constexpr double limb_mm = 10.0;         ///< radius of discs that fit into a child's arm
+constexpr double limb_edge_mm = 2.5;     ///< width of the blurred edge of a limb
+/// Least length of a board or couch, as a multiple of its thickness; a head has 1.6, an arm 1.3.
+constexpr double least_length = 2.5;
+/// Largest distance of a body's outline from the discs that fit into the body.
+constexpr double fringe_mm = 8.0;
+constexpr double least_window_mm = 60.0;  ///< a head's outline changes within a shorter length
 constexpr int slices_per_median = 48;
-constexpr double lies_off_mm = 0.75;  ///< largest deviation of a part from its columns
-constexpr double calm_mm = 4.0;       ///< samples are averaged over this length along the table, against
-                                      ///< noise
+constexpr double lies_off_mm = 0.75;  ///< largest distance by which a part deviates sideways from its columns
+/// Samples are averaged over this length along the table, to reduce noise.
+constexpr double calm_mm = 4.0;
 constexpr double steepest = 0.45;
 
-/// Samples by side, back and along, in any order of the lattice's axes.
+/// Reads samples by the indices side, back and along, for any order of the lattice's axes.
 struct View {
   const Int16Samples* samples;
   std::array<int, 3> size;            ///< side, back, along
@@ -71,7 +73,7 @@ View view_of(const Scene& scene, const Int16Samples& samples) {
   return view;
 }
 
-/// Edges across one axis of a coarse copy, and the slope along which they line up.
+/// Edges across one axis in a coarse copy of the scan, and the slope at which most of them line up.
 class Slope {
  public:
   Slope(const View& view, const ExtrusionOptions& options) : view_(view) {
@@ -88,8 +90,8 @@ class Slope {
     });
   }
 
-  /// The slope of the edges across `axis` (0: side, 1: back), in mm per mm. Zero unless another slope is
-  /// clearly better.
+  /// The slope, in mm per mm, at which edges across `axis` (0: side, 1: back) line up best. Zero unless
+  /// another slope is clearly better.
   double along(std::size_t axis) const {
     if (coarse_.empty()) return 0.0;
     const double cell = view_.mm[axis] * factor_[axis];
@@ -128,8 +130,8 @@ class Slope {
     return static_cast<float>(sum / (factor_[0] * factor_[1] * factor_[2]));
   }
 
-  /// Averages the edges along each line that shifts by `cells` from end to end, and sums the cubes of the
-  /// means.
+  /// A measure of how well edges line up at a slope. Averages the edges along each line that shifts by
+  /// `cells` cells between both ends of the scan, and sums the cubes of the means.
   double score(std::size_t axis, double cells) const {
     const int width = size_[axis], others = size_[1 - axis], slices = size_[2];
     double total = 0.0;
@@ -171,13 +173,13 @@ struct Window {
 
 /// Statistics of a column's samples over a window.
 struct Column {
-  float median = 0.0F, spread = 0.0F;   ///< median, and median distance from it
+  float median = 0.0F, spread = 0.0F;   ///< median, and median distance of the samples from the median
   float material = 0.0F, solid = 0.0F;  ///< shares of the samples
 };
 
 /// Extruded columns that touch each other.
 struct Part {
-  std::vector<glm::ivec2> columns;  ///< side, back, at the middle slice
+  std::vector<glm::ivec2> columns;  ///< side and back indices at the middle slice
 };
 
 class Finder {
@@ -208,7 +210,7 @@ class Finder {
   }
 
  private:
-  /// The position of a column in a slice; it may lie outside.
+  /// The position of a column in a slice, which may lie outside the slice.
   glm::ivec2 place(const glm::ivec2& column, int along) const {
     return column + shifts_[static_cast<std::size_t>(along)];
   }
@@ -221,13 +223,13 @@ class Finder {
     });
     const DistanceMap depth = distances([&](std::size_t i) { return !is_solid(i); });
     without_compact(lasting, depth);
-    // A slab thicker than thick_mm is a couch only if air surrounds nearly all of it.
+    // A slab thicker than thick_mm counts as a couch only if air borders nearly all of its outline.
     take(lasting, depth, 0.8, window);
     without_thick(lasting, depth);
     take(lasting, depth, 0.4, window);
   }
 
-  /// Marks the supports among the lasting columns and removes their columns from `lasting`.
+  /// Marks the supports among the columns in `lasting` and removes them from `lasting`.
   void take(std::vector<std::uint8_t>& lasting, const DistanceMap& depth, double least_free,
             const Window& window) {
     for (const Part& part : parts_of(lasting)) {
@@ -262,8 +264,8 @@ class Finder {
     return glm::dvec2(high - low + 1) * glm::dvec2(view_.mm[0], view_.mm[1]);
   }
 
-  /// Removes the columns of discs of limb_mm if these discs together are little longer than wide, as in a
-  /// head, a neck or an arm, which may lie on a couch.
+  /// Removes the columns of discs of limb_mm if the discs of a part together are hardly longer than wide:
+  /// they may be a head, a neck or an arm on a couch.
   void without_compact(std::vector<std::uint8_t>& lasting, const DistanceMap& depth) const {
     std::vector<std::uint8_t> inner(lasting.size(), 0), compact(lasting.size(), 0);
     for (int y = 0; y < view_.size[1]; ++y)
@@ -279,7 +281,7 @@ class Finder {
   }
 
   /// Fills columns_ for a window from at most slices_per_median evenly spaced slices, without marked samples.
-  /// A column of which more than a fifth is marked stays empty.
+  /// A column with more than a fifth of its samples marked remains empty.
   void gather(const Window& window) {
     columns_.assign(view_.columns(), {});
     const int length = window.end - window.first, used = std::min(length, slices_per_median);
@@ -311,7 +313,7 @@ class Finder {
     });
   }
 
-  /// Computes a column's statistics. Reorders the samples.
+  /// Computes a column's statistics. Overwrites the samples.
   Column column_of(std::int16_t* samples, int count) const {
     Column column;
     for (int i = 0; i < count; ++i) {
@@ -349,7 +351,7 @@ class Finder {
     return {low - noise, high + noise};
   }
 
-  /// A column's sample in a slice, averaged along the table.
+  /// A column's mean sample over the slices near `along`.
   float calm_sample(const glm::ivec2& column, int along) const {
     float sum = 0.0F, count = 0.0F;
     for (int k = std::max(0, along - calm_); k <= std::min(view_.size[2] - 1, along + calm_); ++k) {
@@ -377,7 +379,7 @@ class Finder {
     return 20 * agree >= 17 * all;
   }
 
-  /// Squared distances in mm^2 to the columns for which `chosen` returns true.
+  /// For each column the squared distance in mm^2 to the nearest column for which `chosen` returns true.
   template <typename Chosen>
   DistanceMap distances(const Chosen& chosen) const {
     DistanceMap map{{glm::ivec3(0), glm::ivec3(view_.size[0] - 1, view_.size[1] - 1, 0)}, {}};
@@ -390,7 +392,7 @@ class Finder {
     return map;
   }
 
-  /// Removes the columns of solid discs wider than thick_mm, with the fringe around them.
+  /// Removes from `lasting` the columns of solid discs wider than thick_mm and the fringe around them.
   void without_thick(std::vector<std::uint8_t>& lasting, const DistanceMap& depth) const {
     const double radius = 0.5 * options_.thick_mm, reach = radius + fringe_mm;
     const auto centre = [&](std::size_t i) {
@@ -422,15 +424,16 @@ class Finder {
     return parts;
   }
 
-  /// Whether a part is wide and at least a share `least_free` of its neighbours is free of solid samples.
+  /// Whether a part is wide and at least the share `least_free` of the columns around it has no solid
+  /// samples.
   bool is_support(const Part& part, const std::vector<std::uint8_t>& lasting, double least_free) const {
     int free = 0, border = 0;
     for (const glm::ivec2& p : part.columns) {
       for (const glm::ivec2& step : {glm::ivec2(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
         const glm::ivec2 beside = p + step;
         if (view_.holds(beside) && lasting[view_.column(beside.x, beside.y)] != 0) continue;
-        // Tests the column two steps away, because the blurred edge of a part is solid on some slices. Such
-        // edges also occur within parts, as between a cradle and its foam.
+        // Examines the column two steps away, because the adjacent column is the part's blurred edge, which
+        // is solid on some slices. Such edges also occur within a part, between a cradle and the foam in it.
         const glm::ivec2 next = beside + step;
         if (view_.holds(next) && lasting[view_.column(next.x, next.y)] != 0) continue;
         ++border;
@@ -440,7 +443,8 @@ class Finder {
     return glm::length(size_mm(part)) >= least_width_mm && free >= least_free * border;
   }
 
-  /// Marks a part's samples in its window, and beyond it as long as they still belong to the part.
+  /// Marks a part's samples in its window, and slice by slice beyond the window while they belong to the
+  /// part.
   void mark(const Part& part, const Window& window) {
     std::vector<std::pair<float, float>> wide, narrow;
     for (const glm::ivec2& p : part.columns) {
@@ -477,7 +481,8 @@ class Finder {
     ++found_.parts;
   }
 
-  /// Unmarks samples that differ from their column where a solid sample outside the part touches them.
+  /// Unmarks the samples in `unsure`, which differ from their column, if a solid sample outside the part
+  /// touches them.
   void unmark_at_contact(const Part& part, int along, const std::vector<std::size_t>& unsure) {
     std::vector<std::size_t> taken;
     for (const std::size_t i : unsure) {
@@ -499,7 +504,7 @@ class Finder {
   Extrusion& found_;
   glm::vec2 lies_off_{1.0F};        ///< in columns
   std::vector<glm::ivec2> shifts_;  ///< shift of the columns in each slice
-  int calm_ = 0;                    ///< number of slices averaged before and behind
+  int calm_ = 0;                    ///< number of slices on either side that are averaged with a slice
   std::vector<Column> columns_;
 };
 
@@ -543,7 +548,7 @@ double air_level(const Scene& scene, const Int16Samples& samples) {
               high = std::max(high, sample);
             }
         const double mean = sum / (block.x * block.y * block.z);
-        // A block of a single value is padding, unless a block is one sample.
+        // A block of a single value counts as padding, unless the block is one sample.
         if ((low == high && block != glm::ivec3(1) && low <= -1024) || mean < -1100.0 || mean >= -850.0)
           continue;
         ++counts[static_cast<std::size_t>((mean + 1100.0) / 5.0)];
@@ -556,7 +561,7 @@ Extrusion extrusion_of(const Scene& scene, const ExtrusionOptions& options) {
   check(scene);
   if (!(options.thick_mm > 0.0)) throw InvalidInput("a board's thickness must be above 0 mm");
   const auto* samples = std::get_if<Int16Samples>(&scene.samples);
-  if (samples == nullptr) throw InvalidInput(scene.source + ": supports are found only in int16 samples");
+  if (samples == nullptr) throw InvalidInput(scene.source + ": supports can be found only in int16 samples");
   const View view = view_of(scene, *samples);
   Extrusion found;
   found.marks.assign(samples->size(), 0);

@@ -15,16 +15,17 @@ struct PatientAxes {
 };
 PatientAxes patient_axes(const Lattice& lattice);
 
-/// The level of air in HU, accurate to 2.5: the most frequent mean, from -1100 to -850, of blocks of six
-/// millimetres, on which noise has little effect; -1000 if there is none. Blocks of a single value of -1024
-/// or less are padding.
+/// The level of air in HU, accurate to 2.5 HU. Computes the means of blocks of six millimetres, which noise
+/// hardly changes, and returns the most frequent mean from -1100 to -850; -1000 if no mean is in this range.
+/// Blocks of a single value of -1024 or less are padding.
 double air_level(const Scene& scene, const Int16Samples& samples);
 
 struct ExtrusionOptions {
   double threshold = -300.0;  ///< samples of at least this value are solid
   double air = -1000.0;       ///< samples up to 50 above this value are air
-  /// Above 0: parts that contain a wider disc of solid samples across the table belong to the body. A slab
-  /// may be twice as thick if air borders four fifths of its outline.
+  /// The largest thickness of a support, above 0. A part belongs to the body if its cross-section contains a
+  /// disc of solid samples wider than this. A slab may be twice as thick if air borders four fifths of its
+  /// outline.
   double thick_mm = 40.0;
   Progress progress{};
 };
@@ -37,13 +38,13 @@ struct Extrusion {
   double solid_mm3 = 0.0;  ///< volume of marked samples at or above the threshold
 };
 
-/// Finds parts whose samples keep their values over at least 60 mm, or a third of the scan, along the
-/// lattice's axis nearest to the table's. The parts may be inclined to that axis by up to 24 degrees. A part
-/// is at least 40 mm wide, at most thick_mm thick where it is solid, and borders air along two fifths of its
-/// outline; the core of a body does not. A part thicker than 20 mm must also be 2.5 times as long as thick,
-/// which a head, a neck or a limb is not. A part that the patient's tissue covers ends where its samples
-/// change. Throws std::invalid_argument if samples are not int16; Stopped. Same bits on any thread count.
-/// Cost: linear; memory: one byte per sample.
+/// Finds parts whose samples have nearly constant values over at least 60 mm, or a third of the scan, along
+/// the lattice's axis nearest to the table's. The parts may be inclined to that axis by up to 24 degrees. A
+/// part is at least 40 mm wide, at most thick_mm thick where it is solid, and borders air along two fifths of
+/// its outline, unlike the core of a body. A part thicker than 20 mm must also be 2.5 times as long as thick,
+/// unlike a head, a neck or a limb. A part that the patient's tissue covers ends where its samples change.
+/// Throws std::invalid_argument if samples are not int16; Stopped. Same bits on any thread count. Cost:
+/// linear; memory: one byte per sample.
 Extrusion extrusion_of(const Scene& scene, const ExtrusionOptions& options);
 
 }  // namespace octotomy::voxel

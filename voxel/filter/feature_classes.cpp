@@ -18,7 +18,7 @@ namespace {
 
 constexpr int bins = 256;
 
-/// A bin that holds samples: its scaled features, and their number.
+/// A bin that contains samples: its scaled features, and the number of its samples.
 struct Bin {
   glm::dvec2 place{0.0};
   double weight = 0.0;
@@ -41,7 +41,8 @@ std::vector<Cluster> clusters_of(const std::vector<Bin>& all, std::size_t count)
     if (cluster.weight > 0.0) cluster.mean /= cluster.weight;
   for (const Bin& bin : all) {
     const glm::dvec2 off = bin.place - clusters[bin.cluster].mean;
-    clusters[bin.cluster].variance += bin.weight * off * off;  // weighted: the sum, not its mean
+    // If `weighted` is set, the variance is the sum of squares instead of their mean.
+    clusters[bin.cluster].variance += bin.weight * off * off;
   }
   return clusters;
 }
@@ -75,7 +76,7 @@ void settle(std::vector<Bin>& all, std::size_t count, const Progress& progress) 
   }
 }
 
-/// Splits the cluster of greatest variance, across the feature in which it varies most.
+/// Splits the cluster with the greatest variance at its middle, along the feature in which it varies most.
 void split(std::vector<Bin>& all, std::size_t count) {
   const std::vector<Cluster> clusters = clusters_of(all, count);
   std::size_t widest = 0;
@@ -89,12 +90,12 @@ void split(std::vector<Bin>& all, std::size_t count) {
     if (bin.cluster == widest && bin.place[feature] > cluster.mean[feature]) bin.cluster = count;
 }
 
-/// Number of a value's bin.
+/// The number of the bin that contains a value.
 int bin_of(double value, const Histogram& along) {
   return static_cast<int>(std::floor(std::clamp((value - along.low) / along.width(), 0.0, bins - 1.0) + 0.5));
 }
 
-/// The number of samples in each pair of bins; the density's bin runs fastest, then the gradient's.
+/// The number of samples in each pair of bins, the density's bin fastest, then the gradient's.
 std::vector<std::uint64_t> joint_histogram(const Scene& scene, const Scene& gradient,
                                            const Histogram& densities, const Histogram& gradients) {
   std::vector<std::uint64_t> counts(static_cast<std::size_t>(bins) * bins, 0);
@@ -162,7 +163,7 @@ Scene gradient_length(const Scene& scene, const Progress& progress) {
 
 FeatureClasses feature_classes(const Scene& scene, int classes, const Progress& progress) {
   if (classes < 2 || classes > 8)
-    throw InvalidInput("samples are clustered into 2 to 8 classes, not " + std::to_string(classes));
+    throw InvalidInput("the number of classes must be from 2 to 8, not " + std::to_string(classes));
   const Scene gradient = gradient_length(scene, part_of(progress, 0.0, 0.5));
   const Histogram densities = histogram(scene, bins), gradients = histogram(gradient, bins);
   const std::vector<std::uint64_t> counts = joint_histogram(scene, gradient, densities, gradients);
@@ -189,7 +190,7 @@ FeatureClasses feature_classes(const Scene& scene, int classes, const Progress& 
   for (const Cluster& cluster : clusters_of(all, wanted)) {
     if (!(cluster.weight > 0.0))
       throw Error(ErrorCode::Geometry, "the samples have fewer than " + std::to_string(classes) +
-                                           " clusters of density and gradient: ask for fewer classes");
+                                           " clusters of density and gradient: choose fewer classes");
     made.centres.push_back(
         {cluster.mean.x * scale.x, cluster.mean.y * scale.y, cluster.weight / whole.weight});
   }

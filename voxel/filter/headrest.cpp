@@ -1,5 +1,5 @@
-// Separates the patient from supports, keeps the supports' samples as a grey octree and overwrites them with
-// air.
+// Separates the patient from supports, stores the supports' samples in a grey octree and overwrites them in
+// the scan with air.
 #include "voxel/filter/headrest.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ void for_each_voxel(const Octree& octree, const Visit& visit) {
   });
 }
 
-// A value that no sample in the octree has.
+// A value that no sample in the octree has, for the background.
 std::int16_t unused_value(const Octree& octree, const Lattice& lattice, const Int16Samples& samples) {
   std::vector<bool> used(65536, false);
   for_each_voxel(octree, [&](const glm::ivec3& p) {
@@ -37,7 +37,7 @@ std::int16_t unused_value(const Octree& octree, const Lattice& lattice, const In
   const auto unused = std::find(used.begin(), used.end(), false);
   if (unused == used.end())
     throw Error(ErrorCode::Geometry,
-                "the samples beside the patient take all 65536 values, so that none is left for the "
+                "the samples beside the patient have all 65536 values, so that none remains for the "
                 "background: raise the threshold");
   return static_cast<std::int16_t>(unused - used.begin() - 32768);
 }
@@ -119,7 +119,7 @@ std::uint64_t restore(Scene& scene, const GreyOctree& removed) {
   const Lattice& lattice = scene.lattice;
   const Universe expected = universe_on(lattice);
   const Universe& universe = removed.universe();
-  // Four points fix an affine map: the origin and the ends of the axes.
+  // Four points determine an affine map: the origin and one point on each axis.
   double away = 0.0;
   for (int corner = 0; corner < 4; ++corner) {
     glm::dvec3 p(0.0);
@@ -129,7 +129,7 @@ std::uint64_t restore(Scene& scene, const GreyOctree& removed) {
   }
   if (universe.depth != expected.depth || !(away <= 1e-3))
     throw InvalidInput("the removed voxels are not of " + scene.source +
-                       ": they belong to another scan, or this one was resampled since");
+                       ": they belong to another scan, or this scan was resampled after the removal");
   std::uint64_t count = 0;
   for (int z = 0; z < lattice.dims.z; ++z)
     for (int y = 0; y < lattice.dims.y; ++y)

@@ -18,27 +18,28 @@ struct HeadrestOptions {
 
 struct HeadrestRemoval {
   Scene scene;
-  /// The removed samples, on a universe of the scene's own voxels (universe_on()), with a background that no
-  /// removed sample equals. restore() undoes the removal with them.
+  /// The removed samples, from which restore() undoes the removal. The octree's voxels are those of the scene
+  /// (universe_on()). No removed sample equals the octree's background.
   GreyOctree removed;
-  Octree solid;              ///< the removed voxels of at least the threshold
+  Octree solid;              ///< the removed voxels with samples of at least the threshold
   std::uint64_t parts = 0;   ///< number of parts of `solid`, joined by faces
-  std::uint64_t voxels = 0;  ///< all removed voxels, rim and foam included
+  std::uint64_t voxels = 0;  ///< number of all removed voxels, rim and foam included
   double solid_mm3 = 0.0;
-  double foam_mm3 = 0.0;     ///< removed below the threshold: foam, cloth, blurred edges
-  double bone_mm3 = 0.0;     ///< removed from dense_hu on: metal, carbon, dense plastic
+  double foam_mm3 = 0.0;  ///< removed volume with samples below the threshold: foam, cloth, blurred edges
+  /// Removed volume with samples of at least dense_hu: metal, carbon, dense plastic.
+  double bone_mm3 = 0.0;
   double middle_y_mm = 0.0;  ///< the patient's coronal middle, LPS; nothing in front of it is removed
   double front_mm3 = 0.0, behind_mm3 = 0.0, extruded_front_mm3 = 0.0;  ///< as in PatientParts
 };
-/// Overwrites with air the samples that patient_parts() classes as supports: none in front of the patient's
-/// coronal middle, and none that the patient's skin or bone encloses. Throws as patient_parts();
-/// std::runtime_error if nothing is solid. Same bits on any thread count. Memory: the result, and that of
-/// patient_parts().
+/// Overwrites with air the samples that patient_parts() classes as supports. Samples in front of the
+/// patient's coronal middle, or enclosed by skin or bone, are never overwritten. Throws as patient_parts()
+/// does; std::runtime_error if no sample is solid. Same bits on any thread count. Memory: the result and the
+/// memory of patient_parts().
 HeadrestRemoval remove_headrest(Scene scene, const HeadrestOptions& options = {});
 
 /// Restores the samples that remove_headrest() removed and returns their number. Throws std::invalid_argument
-/// if the removed voxels are not on the scene's lattice, to a thousandth of a voxel, or its samples are not
-/// int16.
+/// if the removed voxels are not on the scene's lattice, to a thousandth of a voxel, or the scene's samples
+/// are not int16.
 std::uint64_t restore(Scene& scene, const GreyOctree& removed);
 
 }  // namespace octotomy::voxel

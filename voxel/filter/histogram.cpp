@@ -15,8 +15,8 @@
 namespace octotomy::voxel {
 namespace {
 
-// About a million samples at equal steps, in ascending order; all samples if there are fewer. Without
-// padding, unless there is nothing else.
+// About a million samples at equal steps, in ascending order; all samples if there are fewer. Padding is left
+// out unless all samples are padding.
 template <typename Sample>
 std::vector<Sample> sorted(const Samples<Sample>& samples, std::optional<double> padding) {
   constexpr std::size_t enough = 1'000'000;
@@ -30,7 +30,7 @@ std::vector<Sample> sorted(const Samples<Sample>& samples, std::optional<double>
   return some;
 }
 
-// The count of each possible sample value, without padding unless there is nothing else.
+// The number of samples with each possible value. Padding is left out unless all samples are padding.
 std::vector<std::uint64_t> counts_of_values(const Int16Samples& samples, std::optional<double> padding) {
   std::vector<std::uint64_t> counts(65536, 0);
   for (const std::int16_t sample : samples) ++counts[static_cast<std::size_t>(sample + 32768)];
@@ -75,7 +75,7 @@ Histogram histogram(const Scene& scene, int bins) {
   if (!(shown.low < shown.high)) shown = range(scene);
   if (!(shown.low < shown.high))
     throw Error(ErrorCode::Geometry,
-                "all samples of this scan are " + rounded(shown.low) + ": choose another scan");
+                "all samples of this scan have the value " + rounded(shown.low) + ": choose another scan");
   Histogram result{shown.low, shown.high, std::vector<std::uint64_t>(static_cast<std::size_t>(bins), 0)};
   const double scale = (bins - 1) / (shown.high - shown.low);
   std::visit(

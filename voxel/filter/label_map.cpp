@@ -16,8 +16,8 @@
 namespace octotomy::voxel {
 namespace {
 
-// The nearest sample. A position half-way between two samples, up to the rounding of a few products of
-// coordinates, takes the upper one on every machine.
+// The index of the nearest sample. Half-way between two samples it is the upper one on every machine: the
+// tolerance covers the rounding of the coordinates.
 glm::ivec3 nearest(const glm::dvec3& p_voxel) {
   constexpr double rounding = 0x1p-20;
   return {glm::floor(p_voxel + 0.5 + rounding)};
@@ -43,7 +43,8 @@ Octree chosen_samples(const Lattice& lattice, const Octree& own, const Octree& b
   if (made == base) return own;
   const glm::ivec3 dims = lattice.dims;
   const glm::dmat4 voxel_from_index = glm::inverse(made.universe().lps_from_voxel) * lattice.lps_from_voxel;
-  // Whether a voxel around the sample is in `made` and, with `only_added`, not in the base.
+  // Whether one of the up to eight voxels around the sample is in `made` and, with `only_added`, not in the
+  // base.
   const auto is_near = [&](const glm::dvec3& p_voxel, bool only_added) {
     constexpr double rounding = 0x1p-20;  // a sample this near a voxel's centre counts as lying there
     const glm::ivec3 low(glm::floor(p_voxel + rounding)), high(glm::ceil(p_voxel - rounding));
@@ -73,7 +74,8 @@ Octree chosen_samples(const Lattice& lattice, const Octree& own, const Octree& b
 
 LabelMap label_map(const Lattice& lattice, std::span<const Octree> objects, const Progress& progress) {
   if (objects.size() > 32767)
-    throw InvalidInput("a label map holds at most 32767 objects, not " + std::to_string(objects.size()));
+    throw InvalidInput("a label map can contain at most 32767 objects, not " +
+                       std::to_string(objects.size()));
   LabelMap map;
   map.scene.lattice = lattice;
   map.scene.meaning = Meaning::Label;
@@ -118,7 +120,7 @@ std::vector<Label> labels(const Scene& scene) {
   std::visit(
       [&](const auto& samples) {
         auto last = found.end();
-        double last_value = std::numeric_limits<double>::quiet_NaN();  // most samples repeat the one before
+        double last_value = std::numeric_limits<double>::quiet_NaN();  // most samples equal the one before
         for (const auto sample : samples) {
           const auto value = static_cast<double>(sample);
           if (value == last_value) {
@@ -131,7 +133,7 @@ std::vector<Label> labels(const Scene& scene) {
             throw InvalidInput(scene.source + ": holds " + std::to_string(value) +
                                ", which is no label: labels are whole numbers from 0 to " +
                                std::to_string(most_label) +
-                               (value > most_label ? ": give its labels smaller numbers" : ""));
+                               (value > most_label ? ": renumber the labels" : ""));
           if (last == found.end() || last->first != *number)
             last = found.emplace(*number, Label{*number}).first;
           last_value = value;

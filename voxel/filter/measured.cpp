@@ -13,7 +13,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// One slice's samples, with the padding among them.
+/// The samples of one slice, and which of them are padding.
 template <typename Sample>
 class Slice {
  public:
@@ -48,8 +48,8 @@ class Slice {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   }
 
-  /// For each sample, the column of the nearest measured sample in its row; of two equally near, the lower
-  /// one.
+  /// For each sample, the column of the nearest measured sample in its row; of two equally near ones, the
+  /// lower column.
   std::vector<int> nearest_in_rows() const {
     std::vector<int> nearest(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), none);
     for (int y = 0; y < height_; ++y) {
@@ -68,7 +68,8 @@ class Slice {
     return nearest;
   }
 
-  /// The index of the nearest measured sample. Searches rows by distance until no row can be nearer.
+  /// The index of the nearest measured sample. Searches the rows in the order of their distances, until no
+  /// further row can contain a nearer sample.
   std::size_t nearest_to(int x, int y, const std::vector<int>& in_rows) const {
     double least_mm = std::numeric_limits<double>::infinity();
     std::size_t found = index(x, y);
@@ -118,8 +119,8 @@ void fill(Samples<Sample>& samples, const Lattice& lattice, double padding) {
   });
 }
 
-/// A padding value below all samples: the old padding if it is below them. For int16 there may be no value
-/// below the least sample, but means and medians stay above the old padding.
+/// A padding value below all samples: the old padding if it is below all of them. For int16 there may be no
+/// value below the least sample, but means and medians of samples always exceed the old padding.
 template <typename Sample>
 Sample mark_below(const Samples<Sample>& made, double padding) {
   const auto least = static_cast<double>(*std::min_element(made.begin(), made.end()));

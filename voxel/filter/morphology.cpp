@@ -24,8 +24,9 @@ void check_radius(double radius_mm) {
     throw InvalidInput("a radius must be at least 0 mm and finite, not " + std::to_string(radius_mm));
 }
 
-// The limit on squared distances. It includes voxels on the ball's surface although their squares may be
-// rounded up by two units in the last place of a float.
+// The largest squared distance within the ball, in mm^2. It is raised so that it includes voxels on the
+// ball's surface although their squared distances may be rounded up by two units in the last place of a
+// float.
 double limit_mm2(double radius_mm) {
   assert(radius_mm >= 0.0);
   return radius_mm * radius_mm * (1.0 + 4.0 * static_cast<double>(std::numeric_limits<float>::epsilon()));
@@ -35,7 +36,7 @@ double limit_mm2(double radius_mm) {
 int reach_voxels(const Universe& universe, double radius_mm) {
   const glm::dvec3 spacing_mm = universe.lattice().spacing_mm();
   const double reach = radius_mm / std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
-  // A radius of two universes covers every voxel.
+  // A radius of two universes' sides already covers every voxel.
   return static_cast<int>(std::ceil(std::min(reach, 2.0 * universe.side())));
 }
 
@@ -70,15 +71,15 @@ Octree open(const Octree& octree, double radius_mm) {
 Octree close(const Octree& octree, double radius_mm) {
   check_radius(radius_mm);
   const double limit = limit_mm2(radius_mm);
-  // The dilation may leave the universe, so its map covers the dilation and a shell around it. The shell's
-  // voxels are the nearest of all voxels beyond.
+  // The dilation may leave the universe, so its map covers the dilation and a shell around it. No voxel
+  // beyond the shell is nearer to the dilation than the shell's voxels.
   const VoxelRange range = grown(range_of(octree), reach_voxels(octree.universe(), radius_mm) + 1);
   const glm::dvec3 dims(range.dims());
   const double bytes = dims.x * dims.y * dims.z * sizeof(float);
   if (bytes > static_cast<double>(free_memory()))
     throw Error(ErrorCode::Resource, "closing by " + rounded(radius_mm) + " mm takes " +
                                          rounded(bytes / 1e9) +
-                                         " GB of memory: take a smaller radius or larger voxels");
+                                         " GB of memory: choose a smaller radius or larger voxels");
   DistanceMap map = distance_map(octree, range);
   for (float& square_mm2 : map.square_mm2)
     square_mm2 = static_cast<double>(square_mm2) > limit ? 0.0F : std::numeric_limits<float>::infinity();

@@ -29,11 +29,12 @@
 namespace octotomy::voxel {
 namespace {
 
-/// The largest sample, in steps, for places far from the offset surface: more than ten voxels' diagonals.
+/// The largest sample, in steps. Places deeper than this, which is more than ten voxels' diagonals, have this
+/// sample.
 constexpr double most_steps = 30000.0;
 
-/// Finds the nearest of many points in a k-d tree. A node is a range of the list. The point in the middle of
-/// the range divides it across the longest side of the points' box.
+/// Finds the nearest of many points by a k-d tree. A node is a range of the list of points. It is divided at
+/// the point in the middle of the range, across the longest side of the points' box.
 class NearestPoint {
  public:
   explicit NearestPoint(std::vector<glm::dvec3> points)
@@ -93,7 +94,8 @@ class NearestPoint {
   }
 
   std::vector<glm::dvec3> points_;
-  std::vector<std::uint8_t> axes_;  ///< axis across which a node is divided, by the index of its middle point
+  /// For each node the axis across which it is divided, stored at the index of its middle point.
+  std::vector<std::uint8_t> axes_;
 };
 
 /// The depth of voxels' centres below the offset surface.
@@ -112,9 +114,9 @@ class Depths {
 
   double step_mm() const { return step_mm_; }
 
-  /// The depth for all voxels of a block if no cell about one of them can hold a crossing of the offset
-  /// surface: the depth in the middle exceeds its change within the block by more than two voxels' diagonals.
-  /// Otherwise 0.
+  /// The depth for all voxels of a block if the offset surface crosses no cell around one of them. This holds
+  /// if the depth in the block's middle exceeds its possible change within the block by more than two voxels'
+  /// diagonals. Otherwise 0.
   double of_block(const glm::ivec3& first, int side) const {
     const double depth_mm = at(glm::dvec3(first) + 0.5 * (side - 1), first + side / 2);
     return std::abs(depth_mm) > (0.5 * side + 2.0) * diagonal_mm_ ? depth_mm : 0.0;
@@ -133,7 +135,7 @@ class Depths {
     return points;
   }
 
-  /// The depth at a position. `voxel` decides whether the position counts as inside the solid.
+  /// The depth at a position. The position counts as inside the solid exactly if `voxel` is.
   double at(const glm::dvec3& p_voxel, const glm::ivec3& voxel) const {
     const double distance_mm = surface_.distance(edges_mm_ * p_voxel);
     return octree_.contains(voxel) ? by_mm_ + distance_mm : by_mm_ - distance_mm;
@@ -152,8 +154,8 @@ std::vector<glm::ivec3> blocks_about(const Octree& octree, double by_mm) {
   if (range.is_empty()) return {};
   const Universe& universe = octree.universe();
   if (by_mm > 0.0) {
-    // Along a voxel axis the number of voxels within the offset follows from the distance between the
-    // planes across that axis.
+    // Along a voxel axis, the offset spans a number of voxels that depends on the distance between the
+    // lattice planes across this axis.
     const glm::dmat3 voxel_from_mm = glm::transpose(glm::inverse(glm::dmat3(universe.lps_from_voxel)));
     glm::ivec3 reach(0);
     for (int axis = 0; axis < 3; ++axis)

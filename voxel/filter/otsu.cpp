@@ -13,21 +13,23 @@ std::vector<double> otsu_thresholds(const Histogram& histogram, int classes) {
   if (classes < 2 || classes > 8 || static_cast<std::size_t>(classes) > bins)
     throw InvalidInput("Otsu's thresholds divide samples into 2 to 8 classes, not " +
                        std::to_string(classes));
-  // Sums over the bins before each bin: of samples, and of samples times their bin.
+  // For each bin two sums over the bins before it: the number of samples, and the samples' numbers times
+  // their bins' indices.
   std::vector<double> count(bins + 1, 0.0), total(bins + 1, 0.0);
   for (std::size_t bin = 0; bin < bins; ++bin) {
     const auto here = static_cast<double>(histogram.counts[bin]);
     count[bin + 1] = count[bin] + here;
     total[bin + 1] = total[bin] + here * static_cast<double>(bin);
   }
-  // Least variance within classes is largest variance between them: the sum of total^2 / count.
+  // The variance within classes is least if the variance between them is largest. The latter grows with the
+  // sum of total^2 / count over the classes.
   const auto between = [&](std::size_t from, std::size_t to) {
     const double n = count[to] - count[from];
     const double sum = total[to] - total[from];
     return n > 0.0 ? sum * sum / n : 0.0;
   };
-  // best[end]: the largest sum for the bins before `end`, divided into the classes so far; first[c][end]: the
-  // first bin of the last of these classes.
+  // best[end]: the largest sum for the bins before `end`, divided into the number of classes reached;
+  // first[c][end]: the first bin of the last class in that division.
   std::vector<double> best(bins + 1, 0.0);
   for (std::size_t end = 1; end <= bins; ++end) best[end] = between(0, end);
   std::vector<std::vector<std::size_t>> first;

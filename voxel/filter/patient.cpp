@@ -1,6 +1,6 @@
 // 1 Mark the parts that are extruded along the table.
-// 2 Average the rest over cells of about two millimetres, and find the patient's core: the largest part into
-//   which a ball of detach_mm fits.
+// 2 Average the other samples over cells of about two millimetres, and find the patient's core: the largest
+//   part into which a ball of detach_mm fits.
 // 3 Judge every other part: parts near the patient belong to it; parts that hang behind the core are
 //   supports.
 // 4 Close the patient, and fill everything that it encloses in each slice and in space.
@@ -23,18 +23,22 @@ namespace octotomy::voxel {
 namespace {
 
 constexpr double cell_mm = 2.0;
-constexpr double above_air = 40.0;         ///< HU; for the mean of a cell, whose noise is a fraction of this
-constexpr double contact_mm = 3.0;         ///< length of the stump that a cut-off part leaves on the core
-constexpr double mask_mm = 4.0;            ///< largest thickness of a mask on the face
-constexpr double silhouette_mm = 10.0;     ///< distance within the core's outline, seen from behind, at which
-                                           ///< there is no ear
-constexpr double close_mm = 4.0;           ///< gaps in the skin up to twice this width are closed
-constexpr double foam_limit = -200.0;      ///< HU; with a threshold from here on, soft tissue lies below it
-constexpr double least_core_share = 0.3;   ///< least share of the largest part in the core; with less, the
-                                           ///< object is thin throughout
-constexpr double most_front_share = 0.25;  ///< a thick part with a larger share in front is no support
-constexpr double thick_mm = 4.0;           ///< a part is thick if it contains a ball of this radius
-constexpr double least_bone_share = 0.01;  ///< of a limb's samples; an arm has about a tenth
+/// HU above air at which a cell's mean counts as material; the mean's noise is a fraction of this.
+constexpr double above_air = 40.0;
+/// Length of the stump that remains on the core where a part was cut off.
+constexpr double contact_mm = 3.0;
+constexpr double mask_mm = 4.0;  ///< largest thickness of a mask on the face
+/// Distance inside the core's outline, seen from behind, at which there is no ear.
+constexpr double silhouette_mm = 10.0;
+constexpr double close_mm = 4.0;       ///< gaps in the skin up to twice this width are closed
+constexpr double foam_limit = -200.0;  ///< HU; a threshold of at least this value lies above soft tissue
+/// Least share of the largest part that the core contains; with less, the object is thin throughout.
+constexpr double least_core_share = 0.3;
+/// A thick part with a larger share in front of the middle is no support.
+constexpr double most_front_share = 0.25;
+constexpr double thick_mm = 4.0;  ///< a part is thick if it contains a ball of this radius
+/// Least share of bone in a limb's samples; in an arm it is about a tenth.
+constexpr double least_bone_share = 0.01;
 
 class Parter {
  public:
@@ -70,7 +74,8 @@ class Parter {
     return scene_.lattice.lps_mm((glm::dvec3(cell) + 0.5) * glm::dvec3(grid_.factor) - 0.5).y;
   }
 
-  /// Raised so that the patient's own surface, which a ball of detach_mm does not reach, is always near.
+  /// Raised so that the patient's own surface always counts as near, although a ball of detach_mm does not
+  /// reach it.
   double near_mm() const { return std::max(options_.near_mm, options_.detach_mm + 2.0 * cell_mm); }
 
   void average() {
@@ -99,7 +104,7 @@ class Parter {
     });
   }
 
-  /// The part that contains the largest ball; the scan's sides and back count as its surface.
+  /// The part that contains the largest ball. The scan's sides and back count as surfaces of the part.
   std::vector<std::size_t> thickest(const Cells& set) const {
     std::vector<std::size_t> best;
     double most = -1.0;
@@ -113,7 +118,7 @@ class Parter {
     return best;
   }
 
-  /// Depth of a solid cell below the surface in millimetres.
+  /// The depth of a solid cell below the surface, in millimetres.
   double depth_mm(std::size_t i) const {
     double depth = std::sqrt(static_cast<double>(depth2_[i]));
     for (const int axis : {axes_.side, axes_.back}) {
@@ -145,8 +150,8 @@ class Parter {
     set_middle();
   }
 
-  /// For each sample, whether faces of solid samples connect it to the core. Cells of two millimetres also
-  /// connect parts that a thinner gap separates.
+  /// For each sample, whether solid samples connect it to the core by faces. Cells would not suffice, because
+  /// they connect parts across gaps of less than two millimetres.
   std::vector<std::uint8_t> reached() const {
     const glm::ivec3 dims = scene_.lattice.dims;
     std::vector<std::uint8_t> seen(samples_.size(), 0);
@@ -236,9 +241,9 @@ class Parter {
     middle_y_mm_ = 0.5 * (low + high) + 0.5 * (grid_.mm[axes_.back] + mask_mm);
   }
 
-  /// For each line from the front to the back, the core's rearmost cell if the line lies well within the
-  /// core's outline; otherwise the rearmost cell of all lines within near_mm along the table. Ears lie in
-  /// front of that cell.
+  /// For each line from front to back, the core's rearmost cell on the line if it lies well within the core's
+  /// outline. For other lines, the rearmost cell of all lines within near_mm along the table, so that ears
+  /// lie in front of it.
   std::vector<int> backs() const {
     const int sides = grid_.dims[axes_.side], slices = grid_.dims[axes_.along];
     CellGrid plane = grid_;
@@ -319,8 +324,8 @@ class Parter {
            static_cast<std::size_t>(p[axes_.side]);
   }
 
-  /// Computes the patient's cells with everything that they enclose and their blurred edge, and the edge of
-  /// supports.
+  /// Computes the patient's cells, including all cells that they enclose and their blurred edge, and the edge
+  /// of supports.
   void protect() {
     Cells closed = eroded(grid_, dilated(grid_, body_, close_mm), close_mm);
     for (std::size_t i = 0; i < closed.size(); ++i) closed[i] |= body_[i];
@@ -332,7 +337,7 @@ class Parter {
     }
     inside_ = std::move(closed);
     edge_ = with_edge(grid_, inside_, options_.rim_mm);
-    // The blurred edge of a doubtful part is doubtful too.
+    // The blurred edge of a doubtful part also counts as doubtful.
     Cells beside = with_edge(grid_, doubtful_, options_.rim_mm);
     for (std::size_t i = 0; i < beside.size(); ++i) beside[i] &= support_[i] ^ 1;
     doubtful_ = std::move(beside);
@@ -368,7 +373,7 @@ class Parter {
   }
 
   /// Finds foam and cloth: cells whose surroundings are denser than air on average, and most of whose
-  /// neighbours are such cells, which excludes the blurred edge of skin.
+  /// neighbours are also such cells. The second condition excludes the blurred edge of skin.
   void find_foam() {
     foam_.assign(grid_.count(), 0);
     if (!seeks_foam_) return;
@@ -452,8 +457,8 @@ class Parter {
   bool seeks_foam_ = false;
   int back_sign_ = 1;
   Extrusion extrusion_;
-  /// Per cell: mean sample; squared distance from the core; in solid cells, squared distance from the nearest
-  /// other cell.
+  /// For each cell: the mean sample; the squared distance in mm^2 to the core; for solid cells, the squared
+  /// distance to the nearest cell that is not solid.
   std::vector<float> mean_, away_, depth2_;
   std::vector<std::uint8_t> is_reached_;
   Cells solid_, core_, body_, support_, doubtful_, inside_, edge_, rim_, foam_;
@@ -463,7 +468,8 @@ void check_options(const PatientOptions& options) {
   const auto is_length = [](double value) { return std::isfinite(value) && value >= 0.0; };
   if (!std::isfinite(options.threshold) || !is_length(options.detach_mm) || !is_length(options.near_mm) ||
       !is_length(options.rim_mm) || !is_length(options.board_mm) || options.board_mm == 0.0)
-    throw InvalidInput("a headrest's threshold must be finite, its lengths finite and not negative");
+    throw InvalidInput(
+        "to remove a headrest, the threshold must be finite, and the lengths finite and not negative");
 }
 
 }  // namespace

@@ -7,21 +7,20 @@
 #include "voxel/space/progress.h"
 #include "voxel/space/scene.h"
 
-// Separation of the patient in a scan from things that carry, hold or mark the patient.
+// Separates the patient in a scan from things that carry, hold or mark the patient.
 namespace octotomy::voxel {
 
 struct PatientOptions {
   double threshold = -300.0;  ///< samples of at least this value are solid
-  double detach_mm = 6.0;     ///< links thinner than a ball of this radius are cut
+  double detach_mm = 6.0;     ///< links into which no ball of this radius fits are cut
   /// Parts wholly within this distance of the patient, such as a cut-off ear, bone fragments or teeth, are
-  /// not supports. Raised to detach_mm plus four millimetres, to include the patient's surface that the ball
-  /// does not reach.
+  /// not supports. Values below detach_mm plus four millimetres are raised to this sum, to include the
+  /// patient's surface, which the ball does not reach.
   double near_mm = 25.0;
-  double board_mm =
-      40.0;  ///< above 0: largest thickness of a solid board; with air around it, a couch may be twice as
-             ///< thick
+  /// Largest thickness of a solid board, above 0. A couch may be twice as thick if air surrounds it.
+  double board_mm = 40.0;
   double rim_mm = 2.0;              ///< width of the patient's blurred edge, which is never a support's
-  std::vector<glm::dvec3> keep_mm;  ///< LPS points of parts that are no support, such as a dry skull's jaw
+  std::vector<glm::dvec3> keep_mm;  ///< LPS points in parts that are not supports, such as a dry skull's jaw
   Progress progress{};
 };
 
@@ -30,34 +29,36 @@ constexpr double dense_hu = 300.0;
 
 /// Class of a sample.
 enum class Belongs : std::uint8_t {
-  Air,       ///< nothing, or air that touches no support
-  Patient,   ///< the patient, cavities and blurred edge included
-  Support,   ///< behind the patient's coronal middle and not the patient's: boards, couches, foam, holders
-  Doubtful,  ///< solid, patient or support: in front of the coronal middle, or not separable from the patient
+  Air,      ///< samples below the threshold that belong neither to the patient nor to a support
+  Patient,  ///< the patient, cavities and blurred edge included
+  Support,  ///< boards, couches, foam and holders behind the patient's coronal middle
+  /// Solid parts of the patient or of a support: in front of the coronal middle, or inseparable from the
+  /// patient.
+  Doubtful,
 };
 
 struct PatientParts {
   std::vector<Belongs> of;  ///< for each sample, in the scene's order
-  /// Half-way between the patient's foremost and rearmost point, LPS, or up to some millimetres behind: the
-  /// tip of the nose is not counted, and the thickness of a mask on the face is allowed for. No sample in
-  /// front of it is a support.
+  /// The LPS y of the patient's coronal middle: half-way between the foremost and the rearmost point of the
+  /// patient, or some millimetres farther back, because the tip of the nose is not counted and a mask may
+  /// cover the face. No sample in front of it is classed as a support.
   double middle_y_mm = 0.0;
-  glm::dvec2 table_slope{0.0};      ///< shift of the table per millimetre along it: to the side and to the
-                                    ///< back
-  double front_mm3 = 0.0;           ///< doubtful samples in front of the middle
-  double behind_mm3 = 0.0;          ///< doubtful samples behind the middle
+  /// Shift of the table per millimetre along it: to the side and to the back.
+  glm::dvec2 table_slope{0.0};
+  double front_mm3 = 0.0;           ///< volume of doubtful samples in front of the middle
+  double behind_mm3 = 0.0;          ///< volume of doubtful samples behind the middle
   double extruded_front_mm3 = 0.0;  ///< the part of front_mm3 that belongs to a board or cradle
 };
 
 /// Separates the patient from supports. A support repeats along the table (extrusion_of()), is foam or cloth
-/// outside the skin, or hangs on the patient from behind by a link thinner than a ball of detach_mm. The
-/// patient is the solid part into which the largest ball fits, or the largest part of all for thin objects
-/// such as a dry skull. Another part that is as thick as a body and contains bone is doubtful, because it may
-/// be a limb. Everything that the skin or bone encloses slice by slice belongs to the patient. Foam is sought
-/// only in Hounsfield units and below the threshold. LPS frame of the scene. Throws std::invalid_argument if
-/// samples are not int16 or an option is out of its range; Error (Geometry) if nothing is solid; Stopped.
-/// Same bits on any thread count. Cost: linear; memory: three bytes per sample and 25 per cell of two
-/// millimetres.
+/// outside the skin, or is connected to the patient from behind only by a link thinner than a ball of
+/// detach_mm. The patient is the solid part into which the largest ball fits, or, for thin objects such as a
+/// dry skull, the largest part. Another part that is as thick as a body and contains bone is doubtful,
+/// because it may be a limb. Everything that the skin or bone encloses slice by slice belongs to the patient.
+/// Foam is searched for only in Hounsfield units and below the threshold. LPS frame of the scene. Throws
+/// std::invalid_argument if samples are not int16 or an option is out of its range; Error (Geometry) if
+/// nothing is solid; Stopped. Same bits on any thread count. Cost: linear; memory: three bytes per sample and
+/// 25 per cell of two millimetres.
 PatientParts patient_parts(const Scene& scene, const PatientOptions& options = {});
 
 }  // namespace octotomy::voxel

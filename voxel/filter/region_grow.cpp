@@ -34,8 +34,8 @@ void check(const GreyOctree& grey, const GrowOptions& options) {
   }
 }
 
-/// A region that grows by the mean of its samples. Rejected neighbours wait in one list for each sample
-/// value; a later mean admits the lists of a range of values.
+/// A region that grows by the mean of its samples. Rejected neighbours are stored in a list for each sample
+/// value. When the mean changes, the lists of all values within the tolerance are added.
 class GrowingRegion {
  public:
   GrowingRegion(const GreyOctree& grey, Neighbours neighbours)
@@ -62,7 +62,7 @@ class GrowingRegion {
     fresh_.push_back(voxel);
   }
 
-  /// Grows until a round adds nothing.
+  /// Adds neighbours in rounds until a round adds none.
   void grow(double tolerance, const std::stop_token& stop) {
     while (!fresh_.empty()) {
       if (stop.stop_requested()) throw Stopped("stopped while a region grew");
@@ -113,7 +113,7 @@ class GrowingRegion {
 
   void admit(double tolerance) {
     const double reach = tolerance * static_cast<double>(count_);
-    // Tries one more sample value at each end, because the mean is rounded; each value is then compared
+    // The mean is rounded, so the range is one value wider at each end. Each value in it is then compared
     // exactly.
     const double mean = static_cast<double>(sum_) / static_cast<double>(count_);
     const auto bound = [](double value) { return static_cast<int>(std::clamp(value, -32768.0, 32767.0)); };

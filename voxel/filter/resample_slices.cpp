@@ -18,12 +18,12 @@
 namespace octotomy::voxel {
 namespace {
 
-// The position of a result's slice in units of the scene's slices. An integer up to rounding becomes exactly
-// that integer, so that sampled slices stay unchanged.
+// The position of a slice of the result, in slices of the scene. A position that is an integer except for
+// rounding errors becomes exactly that integer, so that sampled slices remain unchanged.
 double place_of(int slice, double spacing_mm, double from_mm) {
   const double place = slice * (spacing_mm / from_mm);
   const double whole = std::round(place);
-  // The quotient, the product and the spacing itself are rounded: by four parts in 2^52 per slice.
+  // The quotient, the product and the spacing are rounded, together by at most four parts in 2^52 per slice.
   return std::abs(place - whole) <= 4.0 * std::numeric_limits<double>::epsilon() * (1.0 + place) ? whole
                                                                                                  : place;
 }
@@ -40,7 +40,8 @@ double sinc(double x) {
 
 Weights weights_of(double place, SliceKernel kernel) {
   const double cell = std::floor(place);
-  // Every kernel is 1 at 0 and 0 at other integers: copy the sampled slice.
+  // At an integer position the result is a copy of the sampled slice, because every kernel is 1 at 0 and 0 at
+  // other integers.
   if (place == cell) return {static_cast<int>(cell), 1, {1.0}};
   Weights result;
   if (kernel != SliceKernel::Lanczos) {
@@ -65,8 +66,8 @@ Weights weights_of(double place, SliceKernel kernel) {
   return result;
 }
 
-// Distances to the outline of a window's object in one slice, negative inside; empty if the object has no
-// sample in the slice.
+// For each sample of one slice, the distance in mm to the outline of the window's object, negative inside;
+// empty if the object has no sample in the slice.
 std::vector<float> slice_distances(const Scene& scene, int k, const ShapeOptions& options) {
   const glm::ivec3 dims(scene.lattice.dims.x, scene.lattice.dims.y, 1);
   const VoxelRange range{glm::ivec3(0), dims - 1};
@@ -132,15 +133,15 @@ Lattice with_slice_spacing(const Lattice& lattice, double spacing_mm) {
 Scene resample_slices(const Scene& scene, double spacing_mm, SliceKernel kernel, const Progress& progress) {
   check(scene);
   if (scene.meaning == Meaning::Label && kernel != SliceKernel::Nearest)
-    throw InvalidInput("labels cannot be mixed: resample a label map by the nearest slice");
+    throw InvalidInput("labels cannot be interpolated: resample a label map by the nearest slice");
   Scene result = empty_scene_like(scene, with_slice_spacing(scene.lattice, spacing_mm));
   need_room(scene.source, result.lattice.sample_count(),
             std::holds_alternative<FloatSamples>(scene.samples) ? sizeof(float) : sizeof(std::int16_t));
   const double from_mm = scene.lattice.spacing_mm().z;
   const std::size_t size = slice_size(scene.lattice);
   const int last = scene.lattice.dims.z - 1;
-  // NaN without padding, which no sample equals. Samples of overshooting kernels are raised to `least`, above
-  // the padding.
+  // Without padding this is NaN, which no sample equals. Kernels may overshoot downwards; such samples are
+  // raised to `least`, which is above the padding.
   const double padding = scene.padding.value_or(std::numeric_limits<double>::quiet_NaN());
   const double least = scene.padding ? *scene.padding + std::max(1.0, 0x1p-20 * std::abs(*scene.padding))
                                      : -std::numeric_limits<double>::infinity();

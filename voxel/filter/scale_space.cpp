@@ -17,13 +17,13 @@
 namespace octotomy::voxel {
 namespace {
 
-/// For each sample a number: of the sample to which it ascends, or of its region.
+/// A number for each sample: the index of the sample to which it ascends, or the number of its region.
 using Numbers = std::vector<std::uint32_t>;
 
-/// The widths from the coarsest down to about a voxel, then 0, the scan itself.
+/// The blurs' widths, from the coarsest down to about a voxel, then 0 for the scan itself.
 std::vector<double> stack_of(double coarsest_mm, double voxel_mm) {
   std::vector<double> sigmas;
-  // Below half a voxel a Gaussian on samples is the identity.
+  // Narrower than half a voxel, a Gaussian does not change samples.
   for (double sigma = coarsest_mm; sigma >= 0.5 * voxel_mm; sigma /= std::numbers::sqrt2)
     sigmas.push_back(sigma);
   if (sigmas.empty()) sigmas.push_back(coarsest_mm);
@@ -32,10 +32,10 @@ std::vector<double> stack_of(double coarsest_mm, double voxel_mm) {
 }
 
 /// The rule for a sample without a higher neighbour. OneMaximum: it ascends to an equal neighbour of lower
-/// index, so that a flat top is one maximum. EachItsOwn: it is a maximum of its own.
+/// index, so that a flat top is one maximum. EachItsOwn: it is a separate maximum.
 enum class Flat { OneMaximum, EachItsOwn };
 
-/// The maximum to which each sample ascends.
+/// For each sample the index of the maximum to which it ascends.
 Numbers ascended(const FloatSamples& samples, const glm::ivec3& dims, Flat flat, const Progress& progress) {
   Numbers next(samples.size());
   for_each_slice(dims.z, progress, [&](int z) {
@@ -43,7 +43,8 @@ Numbers ascended(const FloatSamples& samples, const glm::ivec3& dims, Flat flat,
     for (int y = 0; y < dims.y; ++y)
       for (int x = 0; x < dims.x; ++x, ++at) {
         std::size_t highest = at;
-        // Visits neighbours in ascending index, and keeps the first of equal ones that exceed the sample.
+        // Visits the neighbours in ascending order of index, so that the first of equally high neighbours is
+        // chosen.
         for (int k = std::max(0, z - 1); k <= std::min(dims.z - 1, z + 1); ++k)
           for (int j = std::max(0, y - 1); j <= std::min(dims.y - 1, y + 1); ++j)
             for (int i = std::max(0, x - 1); i <= std::min(dims.x - 1, x + 1); ++i) {
@@ -65,14 +66,14 @@ Numbers ascended(const FloatSamples& samples, const glm::ivec3& dims, Flat flat,
   return next;
 }
 
-/// The regions in the window, numbered from the largest; equal ones by their first sample.
+/// Numbers the regions in the window, the largest first; regions of equal size by their first samples.
 Int16Samples ranked(const Numbers& region, const std::vector<bool>& is_inside,
                     std::vector<std::uint64_t>& sizes) {
   std::vector<std::uint64_t> count(region.size(), 0);
   std::vector<std::uint32_t> met;
   for (std::size_t at = 0; at < region.size(); ++at)
     if (is_inside[at] && count[region[at]]++ == 0) met.push_back(region[at]);
-  if (met.empty()) throw Error(ErrorCode::Geometry, "no sample is in the window: choose another");
+  if (met.empty()) throw Error(ErrorCode::Geometry, "no sample is in the window: choose another window");
   if (met.size() > 32767)
     throw Error(
         ErrorCode::Geometry,
@@ -140,7 +141,7 @@ ScaleSpace scale_space(const Scene& scene, const ScaleSpaceOptions& options) {
     std::size_t maxima = 0;
     for (std::size_t at = 0; at < top.size(); ++at) maxima += top[at] == at ? 1 : 0;
     made.maxima.push_back(maxima);
-    // A maximum of this level belongs to the region that the coarser level has at the same place.
+    // A maximum of this level belongs to the region of the coarser level at the same sample.
     if (!region.empty())
       for (std::uint32_t& number : top) number = region[number];
     region = std::move(top);

@@ -31,20 +31,20 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr int points_an_edge = 5;  ///< points along a voxel's edge, and columns per edge
+constexpr int points_an_edge = 5;  ///< number of points along a voxel's edge, and of columns per voxel edge
 constexpr int points_a_voxel = points_an_edge * points_an_edge * points_an_edge;
-/// Shares of a cell's longest edge: the largest distance by which a surface of triangles cuts off an edge of
-/// the solid, and the largest outward motion of the triangles' middles (SurfaceCrossings).
+/// Two lengths as shares of a cell's longest edge: how far at most a surface of triangles cuts off an edge of
+/// the solid, and how far at most the triangles' middles are moved outward (SurfaceCrossings).
 constexpr double cut_off = 0.59, moved_out = 0.75;
 /// In voxel edges. An outline is a jump of depth by more than `look_behind`. There the object is searched
 /// for from `look_before` in front of the depth to `look_behind` behind it, in steps of `look_step`. At an
 /// edge of 90 degrees half a step is lost.
 constexpr float look_before = 0.75F, look_behind = 4.0F, look_step = 0.0625F;
-constexpr int tile_side = 16;  ///< a range of depths is stored for each square of this number of columns a
-                               ///< side
+/// A range of depths is stored for each square of this number of columns a side.
+constexpr int tile_side = 16;
 constexpr float no_surface = std::numeric_limits<float>::infinity();
 
-/// Depth is the coordinate along the direction; x and y lie across it.
+/// A frame with the coordinate z, called depth, along the direction; x and y are perpendicular to it.
 struct ColumnFrame {
   glm::dmat3 lps_from_frame{1.0};
 
@@ -56,11 +56,11 @@ struct ColumnFrame {
   glm::dvec3 of(const glm::dvec3& p_mm) const { return glm::transpose(lps_from_frame) * p_mm; }
 };
 
-/// The first surface in each of the columns.
+/// For each column the depth of the first surface in it.
 class FirstDepths {
  public:
-  /// If the direction is an axis of the voxels, columns pass through the points at which a voxel's share is
-  /// counted.
+  /// If the direction is parallel to a voxel axis, the columns pass through the points at which voxels'
+  /// shares are counted.
   FirstDepths(const Universe& universe, const ColumnFrame& frame, const std::vector<glm::dvec3>& points_voxel)
       : frame_(frame), lattice_(universe.lattice()) {
     const glm::dvec3 spacing_mm = lattice_.spacing_mm();
@@ -87,7 +87,8 @@ class FirstDepths {
   glm::dvec3 of_voxel(const glm::dvec3& p_voxel) const { return frame_.of(lattice_.lps_mm(p_voxel)); }
   double far_end_mm() const { return far_end_mm_; }
 
-  /// Lowers the depths of the columns through a triangle, edges included, so that neighbours leave no gap.
+  /// Lowers the depths of the columns that pass through a triangle. The triangle's edges are included, so
+  /// that neighbouring triangles leave no gap.
   void add(const std::array<glm::dvec3, 3>& corners_voxel) {
     std::array<glm::dvec3, 3> p;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -98,8 +99,8 @@ class FirstDepths {
       return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     };
     const double whole = area(p[0], p[1], p[2]);
-    constexpr double edge_on = 1e-12, on_edge = 1e-9;  // edge_on: in areas of a column; on_edge: in shares of
-                                                       // the triangle and in columns
+    // edge_on is in areas of a column; on_edge is in shares of the triangle and in columns.
+    constexpr double edge_on = 1e-12, on_edge = 1e-9;
     if (std::abs(whole) < edge_on) return;
     const glm::dvec2 low = glm::min(glm::min(glm::dvec2(p[0]), glm::dvec2(p[1])), glm::dvec2(p[2])),
                      high = glm::max(glm::max(glm::dvec2(p[0]), glm::dvec2(p[1])), glm::dvec2(p[2]));
@@ -141,7 +142,7 @@ class FirstDepths {
     });
   }
 
-  /// The volume of all columns to the object's far end.
+  /// The volume of all columns from their depths to the object's far end.
   double volume_mm3() const {
     std::vector<double> rows(static_cast<std::size_t>(dims_.y), 0.0);
     tbb::parallel_for(0, dims_.y, [&](int y) {
@@ -197,7 +198,7 @@ class FirstDepths {
     return static_cast<std::size_t>(column.y) * static_cast<std::size_t>(dims_.x) +
            static_cast<std::size_t>(column.x);
   }
-  /// For each column the least depth of the column and those beside it.
+  /// For each column the least depth among the column and its neighbours.
   std::vector<float> nearest_beside() const {
     std::vector<float> in_rows(depths_.size()), found(depths_.size());
     tbb::parallel_for(0, dims_.y, [&](int y) {
@@ -220,7 +221,7 @@ class FirstDepths {
     });
     return found;
   }
-  /// The least of all depths does not depend on their order.
+  /// The least of several depths does not depend on the order in which threads compare them.
   void lower(std::size_t column, float depth) {
     std::atomic<float>& held = depths_[column];
     float now = held.load(std::memory_order_relaxed);
@@ -231,8 +232,8 @@ class FirstDepths {
   ColumnFrame frame_;
   Lattice lattice_;
   double pitch_mm_ = 1.0;
-  int beside_outline_ = 0;  ///< number of columns beside an outline in which the surface may have been cut
-                            ///< off
+  /// Number of columns beside an outline in which the surface may have been cut off.
+  int beside_outline_ = 0;
   double far_end_mm_ = -std::numeric_limits<double>::infinity();
   glm::dvec2 origin_{0.0};
   glm::ivec2 dims_{0}, tiles_{0};
@@ -240,7 +241,7 @@ class FirstDepths {
   std::vector<std::pair<float, float>> ranges_;  ///< of a tile's columns
 };
 
-/// Voxels' shares in the shadow.
+/// Counts the points of voxels that lie in the shadow.
 class ShadowShares {
  public:
   ShadowShares(const FirstDepths& depths, double end_mm) : depths_(depths), end_mm_(end_mm) {
@@ -257,8 +258,8 @@ class ShadowShares {
           points_[number++] = steps_ * ((glm::dvec3(x, y, z) + 0.5) / double{points_an_edge} - 0.5);
   }
 
-  /// The number of a voxel's points in the shadow minus the number outside it, if the same for all voxels of
-  /// a block; 0 if the difference may vary within the block.
+  /// The number of a voxel's points in the shadow minus the number outside it, if it is the same for all
+  /// voxels of a block; 0 if the difference may vary within the block.
   std::int16_t of_block(const glm::ivec3& first, int side) const {
     const glm::dvec3 middle = origin_ + steps_ * (glm::dvec3(first) + 0.5 * (side - 1));
     const glm::dvec3 reach = 0.5 * side * (glm::abs(steps_[0]) + glm::abs(steps_[1]) + glm::abs(steps_[2]));
@@ -275,7 +276,8 @@ class ShadowShares {
       const glm::dvec3 at = centre + point;
       if (holds(at)) share += 2;
     }
-    // The centre decides, as it does of the object's voxels: what is thinner than a voxel has a share below a half.
+    // A voxel is in the shadow exactly if its centre is, as for the object's voxels. Something thinner than a
+    // voxel may contain the centre but less than half of the points; then the sign is changed.
     if (holds(centre) != (share > 0)) share = -share;
     return static_cast<std::int16_t>(share);
   }
@@ -286,7 +288,7 @@ class ShadowShares {
   const FirstDepths& depths_;
   double end_mm_;
   glm::dvec3 origin_{0.0};
-  glm::dmat3 steps_{1.0};  ///< from voxel to voxel, in the columns' frame
+  glm::dmat3 steps_{1.0};  ///< steps between neighbouring voxels, in the columns' frame
   std::array<glm::dvec3, points_a_voxel> points_;
 };
 
@@ -309,7 +311,8 @@ void fill_shares(const ShadowShares& shares, const glm::ivec3& block, int side, 
 }
 
 void check_unit(const glm::dvec3& direction) {
-  constexpr double unit_error = 1e-9;  // of a direction that was normalised or typed with ten figures
+  // Error in the length of a direction that was normalised or typed with ten digits.
+  constexpr double unit_error = 1e-9;
   if (!(std::abs(glm::length(direction) - 1.0) < unit_error))
     throw std::invalid_argument("the direction of a shadow must be a unit vector");
 }

@@ -14,8 +14,8 @@
 #include "voxel/space/error.h"
 
 // A contour is a closed walk over links. A link is a pair of an inside sample and one of its four neighbours
-// that is outside. At each link the two samples and the two ahead of them, a 2 by 2 neighbourhood, decide the
-// next link:
+// that is outside. At each link the 2 by 2 neighbourhood of its two samples and the two samples ahead
+// determines the next link:
 //
 //     a  b        a outside:           the next link is p's towards a   (turn left)
 //     p  q        a inside, b outside: a's in p's direction             (straight on)
@@ -120,7 +120,7 @@ class Follower {
 int slice_axis(const Lattice& lattice) {
   const glm::dvec3 normal = glm::normalize(
       glm::cross(glm::dvec3(lattice.lps_from_voxel[0]), glm::dvec3(lattice.lps_from_voxel[1])));
-  // Over 300 mm a tenth of a degree is half a millimetre.
+  // An error of a tenth of a degree shifts a position 300 mm away by half a millimetre.
   const double least = std::cos(0.1 * std::numbers::pi / 180.0);
   for (int axis = 0; axis < 3; ++axis)
     if (std::abs(normal[axis]) >= least) return axis;
@@ -140,7 +140,7 @@ SliceContour thinned(const SliceContour& contour, double most) {
   const std::size_t count = contour.size();
   if (count < 4) return contour;
   const auto at = [&](std::size_t i) { return contour[i % count]; };
-  // The first point and the point farthest from it stay.
+  // The first point and the point farthest from it are kept.
   std::size_t opposite = 1;
   for (std::size_t i = 1; i < count; ++i)
     if (glm::distance(contour[i], contour[0]) > glm::distance(contour[opposite], contour[0])) opposite = i;
@@ -184,7 +184,7 @@ SliceMask contour_regions(const Scene& scene, const ContourOptions& options) {
     slice.position_mm = glm::dot(scene.lattice.lps_mm({0, 0, k}), mask.view.look);
     for (const SliceContour& contour : slice_contours(scene, k, options.threshold)) {
       const SliceContour thin = thinned(contour, options.thin);
-      // If a sample equals the threshold, the points of its links coincide.
+      // If a sample equals the threshold, the points on all its links coincide.
       if (thin.size() < 3 || std::abs(signed_area(thin)) <= least) continue;
       std::vector<glm::dvec2>& polygon = slice.polygons_mm.emplace_back();
       for (const glm::dvec2& p : thin)
@@ -194,7 +194,7 @@ SliceMask contour_regions(const Scene& scene, const ContourOptions& options) {
   if (std::all_of(mask.slices.begin(), mask.slices.end(),
                   [](const SliceMask::Slice& slice) { return slice.polygons_mm.empty(); }))
     throw Error(ErrorCode::Geometry, "no contour was found at " + std::to_string(options.threshold) +
-                                         ": choose another threshold or a smaller least area");
+                                         ": choose another threshold or a smaller minimum area");
   std::sort(mask.slices.begin(), mask.slices.end(), [](const SliceMask::Slice& a, const SliceMask::Slice& b) {
     return a.position_mm < b.position_mm;
   });

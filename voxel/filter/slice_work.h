@@ -14,7 +14,7 @@
 #include "voxel/space/progress.h"
 #include "voxel/space/scene.h"
 
-// Checks, indices, rounding and parallel work by slices, for the filters of scenes.
+// Shared by the filters of scenes: checks, sample indices, rounding, and parallel work on slices.
 namespace octotomy::voxel {
 
 /// The offset of a sample in a scene's samples. Precondition: the index lies inside the scene.
@@ -29,21 +29,21 @@ inline std::size_t slice_size(const Lattice& lattice) {
   return static_cast<std::size_t>(lattice.dims.x) * static_cast<std::size_t>(lattice.dims.y);
 }
 
-/// Throws std::invalid_argument as check(Scene), and if the scene holds labels, with `refusal` in the
-/// message.
+/// Throws std::invalid_argument as check(Scene) does, and if the samples are labels; the message then ends
+/// with `refusal`.
 inline void check_values(const Scene& scene, const std::string& refusal) {
   check(scene);
   if (scene.meaning == Meaning::Label) throw InvalidInput("labels have no order: " + refusal);
 }
 
-/// A copy of a scene on another lattice, without samples and holes.
+/// A scene on another lattice with all other facts of `scene`, but without samples and holes.
 inline Scene empty_scene_like(const Scene& scene, const Lattice& lattice) {
   return {lattice,     {}, scene.meaning,  scene.modality, scene.source,
           scene.audit, {}, scene.identity, scene.overlaps, scene.padding};
 }
 
-/// Converts a value to a sample; to int16 rounded to the nearest integer, halves upwards, and clamped to its
-/// range.
+/// Converts a value to a sample. An int16 sample is the nearest integer, halves upwards, clamped to the
+/// type's range.
 template <typename Sample>
 Sample rounded(double value) {
   if constexpr (std::is_same_v<Sample, std::int16_t>)

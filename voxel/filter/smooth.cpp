@@ -29,7 +29,8 @@ namespace {
 template <typename Sample>
 using Image = itk::Image<Sample, 3>;
 
-// An image on the samples of slices `from` up to, not including, `to`; it copies nothing.
+// An ITK image of the slices from `from` up to, not including, `to`. It refers to the samples without copying
+// them.
 template <typename Sample>
 typename Image<Sample>::Pointer image_of(const Sample* samples, const Lattice& lattice, int from, int to) {
   auto image = Image<Sample>::New();
@@ -42,7 +43,8 @@ typename Image<Sample>::Pointer image_of(const Sample* samples, const Lattice& l
   const double spacing[3]{spacing_mm.x, spacing_mm.y, spacing_mm.z};
   image->SetSpacing(spacing);
   const std::size_t count = slice_size(lattice) * static_cast<std::size_t>(to - from);
-  // The container takes a mutable pointer and does not own it. No filter here runs in place, so none writes.
+  // The container requires a mutable pointer, which it does not own. No filter here runs in place, so none
+  // writes to the samples.
   image->GetPixelContainer()->SetImportPointer(
       const_cast<Sample*>(samples) + slice_size(lattice) * static_cast<std::size_t>(from), count, false);
   return image;
@@ -53,11 +55,11 @@ void set_threads(Filter& filter) {
   filter.SetNumberOfWorkUnits(static_cast<itk::ThreadIdType>(tbb::this_task_arena::max_concurrency()));
 }
 
-// Calls smooth(from, to, first, last) for slabs of slices [first, last), which depend on slices [from, to):
-// up to `reach` more at both ends.
+// Calls smooth(from, to, first, last) for slabs of slices [first, last), which depend on the slices [from,
+// to), up to `reach` more at either end.
 template <typename Smooth>
 void slab_by_slab(int slices, int reach, const Progress& progress, const Smooth& smooth) {
-  // Thick slabs so that the overlap is a small part of the work.
+  // Slabs are thick so that the overlap is a small part of the work.
   const int thickness = std::max(16, 4 * reach);
   for (int first = 0; first < slices; first += thickness) {
     progress.at(static_cast<double>(first) / slices);
@@ -132,7 +134,7 @@ Scene gaussian(const Scene& scene, double sigma_mm, const Progress& progress) {
            " mm here, not " + rounded(sigma_mm) + " mm");
   if (scene.padding)
     return on_measured(scene, [&](const Scene& whole) { return gaussian(whole, sigma_mm, progress); });
-  // ITK cuts the weights off before four standard deviations and two samples.
+  // ITK cuts the weights off at less than four standard deviations plus two samples.
   const int reach = static_cast<int>(std::ceil(4.0 * sigma_mm / spacing_mm.z)) + 2;
   return filtered(scene, reach, progress, [&]<typename Sample>(Sample /*tag*/) {
     auto filter = itk::DiscreteGaussianImageFilter<Image<Sample>, Image<float>>::New();
@@ -147,15 +149,16 @@ Scene gaussian(const Scene& scene, double sigma_mm, const Progress& progress) {
 Scene diffuse(const Scene& scene, const DiffusionOptions& options) {
   check_values(scene, "a label map cannot be smoothed");
   if (options.iterations < 1 || options.iterations > 1000)
-    refuse("diffusion takes 1 to 1000 iterations, not " + std::to_string(options.iterations));
+    refuse("the number of iterations of the diffusion must be from 1 to 1000, not " +
+           std::to_string(options.iterations));
   if (!(options.conductance > 0.0) || !std::isfinite(options.conductance))
-    refuse("diffusion needs a positive conductance, not " + std::to_string(options.conductance));
+    refuse("the conductance of the diffusion must be positive, not " + std::to_string(options.conductance));
   if (scene.padding) return on_measured(scene, [&](const Scene& whole) { return diffuse(whole, options); });
   options.progress.at(0.0);
   Scene result = empty_scene_like(scene, scene.lattice);
   const Lattice& lattice = scene.lattice;
   const glm::dvec3 spacing_mm = lattice.spacing_mm();
-  // Runs on the whole scan at once, because the conductance is in units of the whole scan's gradient.
+  // Processes the whole scan at once, because the conductance is relative to the gradient of the whole scan.
   std::visit(
       [&](const auto& samples) {
         using Sample = typename std::decay_t<decltype(samples)>::value_type;
@@ -166,7 +169,7 @@ Scene diffuse(const Scene& scene, const DiffusionOptions& options) {
         // The longest step that is stable in three dimensions: the smallest spacing over 2^(3 + 1).
         filter->SetTimeStep(std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z}) / 16.0);
         filter->SetInput(image_of(samples.data(), lattice, 0, lattice.dims.z));
-        // ITK calls this between iterations, in this thread, and passes its exceptions on.
+        // ITK calls this function between iterations, in the calling thread, and lets its exceptions pass.
         filter->AddObserver(itk::IterationEvent(), [&, done = 0](const itk::EventObject&) mutable {
           options.progress.at(static_cast<double>(++done) / (options.iterations + 1));
         });

@@ -57,7 +57,7 @@ StreakClamp clamp_streaks(const Scene& scene, const StreakOptions& options) {
   if (!(options.low < options.high) || !std::isfinite(options.low) || !std::isfinite(options.high) ||
       !std::isfinite(options.metal) || !(options.reach_mm >= 0.0) || !std::isfinite(options.reach_mm))
     throw InvalidInput(
-        "a clamp of streaks needs finite numbers, low below high, and a reach of at least 0 mm");
+        "to clamp streaks, all numbers must be finite, low must be below high, and the reach at least 0 mm");
   StreakClamp result{scene};
   const int slices = scene.lattice.dims.z;
   std::vector<SliceCounts> counts(static_cast<std::size_t>(slices));

@@ -40,7 +40,8 @@ void sort_and_unify(std::vector<Value>& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-/// Whether a solid that the universe cuts off has no surface at a face of the universe.
+/// Whether a voxel's face lies on the universe's border and the solid continues beyond the border, so that it
+/// has no surface there.
 bool goes_on_beyond(const VoxelFace& face, const Universe& universe, const Membership& contains) {
   glm::ivec3 beyond = face.voxel;
   beyond[face.axis] += face.side;
@@ -72,8 +73,8 @@ SurfaceCrossings::SurfaceCrossings(const Octree& octree, const Expression& solid
       found[i].first = no_key;
       return;
     }
-    // Position on the edge as a share of the way out, by eight halvings: the error is below a hundredth of
-    // an edge.
+    // The crossing's position on the edge, 0 at the inner end and 1 at the outer end, by eight halvings: the
+    // error is below a hundredth of the edge.
     double in = 0.0, out = 1.0;
     for (int halving = 0; halving < 8; ++halving) {
       const double middle = 0.5 * (in + out);
@@ -93,7 +94,7 @@ SurfaceCrossings::SurfaceCrossings(const Octree& octree, const Expression& solid
   }
 }
 
-/// The cells that contain a crossing, each by its lowest voxel.
+/// The cells that contain a crossing. A cell is identified by its lowest voxel.
 std::vector<std::uint64_t> SurfaceCrossings::cells() const {
   std::vector<std::uint64_t> found;
   found.reserve(4 * keys_.size());
@@ -132,7 +133,8 @@ std::size_t SurfaceCrossings::crossing(const glm::ivec3& from, int axis) const {
                                                : no_crossing_there;
 }
 
-/// The crossings of a square's four edges: none, two, or four where its corners differ diagonally.
+/// The crossings on a square's four edges: none or two, or four if diagonally opposite corners are on the
+/// same side and neighbouring ones are not.
 std::vector<std::size_t> SurfaceCrossings::of_square(const glm::ivec3& low, int normal) const {
   std::vector<std::size_t> found;
   const int b = (normal + 1) % 3, c = (normal + 2) % 3;
@@ -143,12 +145,13 @@ std::vector<std::size_t> SurfaceCrossings::of_square(const glm::ivec3& low, int 
   return found;
 }
 
-/// Where a square's corners differ diagonally, the chords separate its two corners inside the solid.
+/// In a square with four crossings, the chords separate the two corners inside the solid.
 void SurfaceCrossings::add_chords(const glm::ivec3& low, int normal, std::vector<Chord>& chords) const {
   const std::vector<std::size_t> ends = of_square(low, normal);
   if (ends.size() == 2) chords.emplace_back(ends[0], ends[1]);
   if (ends.size() != 4) return;
-  // The first two crossings lie on edges from the lowest corner, the last two on edges from the highest.
+  // The first two crossings lie on edges that meet at the lowest corner, the last two on edges that meet at
+  // the highest.
   const bool is_low_inside = octree_.contains(low);
   chords.emplace_back(ends[0], ends[is_low_inside ? 1 : 3]);
   chords.emplace_back(ends[2], ends[is_low_inside ? 3 : 1]);
@@ -160,8 +163,8 @@ SurfaceCrossings::Middle SurfaceCrossings::middle_of_chord(std::uint64_t square)
   return {true, 0.5 * (points_[ends[0]] + points_[ends[1]])};
 }
 
-/// The mean of a cell's crossings if chords join all of them to one ring; the cell then holds a single
-/// sheet.
+/// The mean of a cell's crossings, if chords join all of them to one ring; a single sheet of the surface then
+/// passes through the cell.
 SurfaceCrossings::Middle SurfaceCrossings::middle_of_ring(const glm::ivec3& low) const {
   std::vector<Chord> chords;
   for (int normal = 0; normal < 3; ++normal)
@@ -199,14 +202,15 @@ glm::dvec3 SurfaceCrossings::outer_middle(const std::vector<std::size_t>& ring, 
     normal += glm::cross(points_[ring[i]] - middle, points_[ring[i + 1]] - middle);
   const double area = glm::length(normal);
   if (area == 0.0) return middle;
-  // Outward is away from the inner end of an edge that the ring crosses.
+  // The outward direction points away from the inner end of an edge that the ring crosses.
   const std::uint64_t key = keys_[ring.front()];
   const glm::ivec3 from = voxel_of(key);
   const double side = octree_.contains(from) ? 1.0 : -1.0;
   normal *= (normal[static_cast<int>(key & 3)] * side < 0.0 ? -1.0 : 1.0) / area;
   const Lattice lattice = octree_.universe().lattice();
   const auto is_inside = [&](double out) { return contains(lattice.lps_mm(middle + out * normal)); };
-  // Stays within the cell, because a cut-off edge or corner lies in the cell's middle part.
+  // The middle is moved only within the cell, because a cut-off edge or corner lies in the cell's middle
+  // part.
   constexpr double most = 0.75;
   double in = 0.0, out = most;
   if (!is_inside(in) || is_inside(out)) return middle;

@@ -16,8 +16,9 @@
 namespace octotomy::voxel {
 
 /// Where a solid's surface crosses the edges between neighbouring voxels' centres. Positions are in voxels.
-/// `octree` holds the solid's voxels and alone decides on which side a centre lies; `solid` decides where on
-/// an edge the surface crosses it. Keeps both. Cost: eight queries of `solid` for each face of the octree.
+/// `octree` holds the solid's voxels and alone decides on which side a centre lies; `solid` determines the
+/// position of the crossing on the edge. The object stores copies of both. Cost: eight queries of `solid` for
+/// each face of the octree.
 class SurfaceCrossings {
  public:
   SurfaceCrossings(const Octree& octree, const Expression& solid);
@@ -26,10 +27,10 @@ class SurfaceCrossings {
   /// The crossings, the middles of the chords between two crossings in a lattice square, and the middles of
   /// the cells whose crossings form one ring.
   std::vector<glm::dvec3> with_middles() const;
-  /// Calls `visit`, from several threads, with the triangles of a surface through the crossings: a fan about
-  /// the middle of each ring of a cell, moved outward to the solid's surface, so that little of an edge is
-  /// cut off. Neighbouring cells share the chords of their rings, so that the surface is closed where the
-  /// solid ends within the universe. The triangles' winding is arbitrary.
+  /// Calls `visit`, from several threads, with the triangles of a surface through the crossings. In each
+  /// cell, a fan joins the ring of crossings to its middle, which is moved outward to the solid's surface, so
+  /// that little of the solid's edges is cut off. Neighbouring cells share the chords of their rings, so that
+  /// the surface is closed where the solid ends within the universe. The triangles' winding is arbitrary.
   void for_triangles(const std::function<void(const std::array<glm::dvec3, 3>& corners)>& visit) const;
 
  private:

@@ -21,8 +21,8 @@ constexpr std::array<Tissue, 8> known{{
     {"soft_tissue", -29.0, 150.0, "Mitsiopoulos et al., Journal of Applied Physiology 85, 1998: muscle"},
     {"fat", -190.0, -30.0, "Kvist et al., International Journal of Obesity 12, 1988: adipose tissue"},
     {"skin", -300.0, std::nullopt,
-     "everything inside the skin: above the half maximum of skin in air, about -500 HU, which cushions also "
-     "reach"},
+     "everything inside the skin: above the half maximum between air and skin, about -500 HU; cushions may "
+     "also reach this value"},
     {"air", std::nullopt, -500.0,
      "the half maximum between air and water, -1000 and 0 HU by definition (Hounsfield, British Journal of "
      "Radiology 46, 1973)"},

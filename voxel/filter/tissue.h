@@ -9,7 +9,7 @@
 namespace octotomy::voxel {
 
 /// A named window of CT in Hounsfield units. Windows of neighbouring tissues touch or overlap. They are a
-/// first guess, not a diagnosis: samples of cone-beam scanners differ from Hounsfield units by hundreds.
+/// first guess: samples of cone-beam scanners differ from Hounsfield units by hundreds.
 struct Tissue {
   std::string_view name;
   std::optional<double> low;   ///< none: every sample up to `high`
@@ -23,7 +23,7 @@ std::span<const Tissue> tissues();
 /// The tissue of that name; none if the name is unknown.
 std::optional<Tissue> tissue(std::string_view name);
 
-/// Name and bounds for people: "bone (from 300 HU)", "fat (-190 to -30 HU)".
+/// Name and bounds for display: "bone (from 300 HU)", "fat (-190 to -30 HU)".
 std::string described(const Tissue& tissue);
 
 }  // namespace octotomy::voxel

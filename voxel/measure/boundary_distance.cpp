@@ -14,15 +14,16 @@
 namespace octotomy::voxel {
 namespace {
 
-/// Squared distances from a coordinate to four adjacent intervals of `voxels` voxels each.
+/// The squared distances in mm^2 along one axis from a coordinate to four adjacent intervals of `voxels`
+/// voxels each.
 glm::dvec4 squares_mm2(double p, int first, int voxels, double spacing_mm) {
   const glm::dvec4 low = first - 0.5 + double(voxels) * glm::dvec4(0, 1, 2, 3);
   const glm::dvec4 apart_mm = spacing_mm * glm::max(glm::max(low - p, p - low - double(voxels)), 0.0);
   return apart_mm * apart_mm;
 }
 
-/// Searches for the nearest voxel on the other side of the boundary than a point. The shortest path to it
-/// ends on the boundary.
+/// Searches for the voxel nearest to a point on the other side of the boundary. The shortest path from the
+/// point to this voxel ends on the boundary.
 struct Search {
   glm::dvec3 p;  ///< in voxels
   glm::dvec3 spacing_mm;
@@ -33,7 +34,7 @@ struct Search {
   bool is_over() const { return nearest_mm2 < enough_mm2; }
   bool wants(bool is_inside) const { return is_inside == wants_inside; }
 
-  /// Searches the voxels that touch the point's voxel. Returns whether no voxel further away can be nearer.
+  /// Searches the voxels that touch the point's voxel. Returns whether no other voxel can be nearer.
   bool look_around(const Octree& octree, const glm::ivec3& centre) {
     const glm::dvec3 to_low_mm = spacing_mm * (p - glm::dvec3(centre) + 0.5),
                      to_high_mm = spacing_mm - to_low_mm;
@@ -51,7 +52,7 @@ struct Search {
     return nearest_mm2 <= reach_mm * reach_mm;
   }
 
-  /// Includes the distance to the universe's border, beyond which all is outside.
+  /// Considers the distance to the universe's border too, because all space beyond is outside.
   void look_beyond(int side) {
     for (int axis = 0; axis < 3; ++axis) {
       const double mm = spacing_mm[axis] * std::min(p[axis] + 0.5, side - 0.5 - p[axis]);

@@ -6,7 +6,7 @@
 namespace octotomy::voxel {
 
 /// Distances from points to the boundary of an octree's voxels, including the faces of cavities. Voxels
-/// beyond the universe count as outside. Holds a copy of the octree; any number of threads may call it.
+/// beyond the universe count as outside. Stores a copy of the octree. Any number of threads may call it.
 class BoundaryDistance {
  public:
   /// Throws std::invalid_argument if the universe's axes are not perpendicular.
@@ -14,7 +14,7 @@ class BoundaryDistance {
 
   /// Distance in millimetres from a point in LPS to the nearest face; infinity if the octree is empty. The
   /// search stops at the first face nearer than `enough_mm` and returns its distance. Cost: up to 27 look-ups
-  /// within a voxel of the boundary; further away, a walk from the root.
+  /// for points within a voxel of the boundary; for others, a walk from the root.
   double operator()(const glm::dvec3& p_mm, double enough_mm = 0.0) const;
 
  private:

@@ -32,7 +32,7 @@ Share share_of(unsigned pattern) {
     const unsigned step = 1U << axis;
     for (unsigned v = 0; v < 8; ++v)
       if ((v & step) == 0) tally(1U << v | 1U << (v | step), pairs, pairs_any);
-    // The four voxels on one side of the corner along the axis surround an edge at the corner.
+    // The four voxels on one side of the corner along this axis share an edge that ends at the corner.
     unsigned low = 0;
     for (unsigned v = 0; v < 8; ++v)
       if ((v & step) == 0) low |= 1U << v;

@@ -42,7 +42,8 @@ class Envelope {
       while (last >= 0) {
         const int j = apex_[static_cast<std::size_t>(last)];
         const double there = line[static_cast<std::size_t>(j)];
-        // The position from which the parabola at i is below the one at j.
+        // The position from which on the parabola with its vertex at i is below the parabola with its vertex
+        // at j.
         from = 0.5 * ((here - there) / (square_step * (i - j)) + (i + j));
         if (from > start_[static_cast<std::size_t>(last)]) break;
         --last;
@@ -75,16 +76,18 @@ glm::dvec3 orthogonal_spacing_mm(const Universe& universe) {
   const glm::dvec3 spacing_mm = universe.lattice().spacing_mm();
   for (int axis = 0; axis < 3; ++axis) {
     const int next = (axis + 1) % 3;
-    // A shear of 2^-20 moves the end of the longest universe, 4096 voxels, by less than a hundredth of a
+    // A shear below 2^-20 moves the end of the longest universe, 4096 voxels, by less than a hundredth of a
     // voxel.
     if (std::abs(glm::dot(edges[axis], edges[next])) > 0x1p-20 * spacing_mm[axis] * spacing_mm[next])
       throw InvalidInput(
-          "distances need a universe whose axes are at right angles: resample the sheared scan first");
+          "distances can be computed only in a universe with axes at right angles: resample the sheared scan "
+          "first");
   }
   return spacing_mm;
 }
 
-// Sets slice z to zero at the voxels of the set, or of its complement, and to far_away at the others.
+// Sets the entries of slice z to zero for voxels of the set, or of its complement, and to far_away for other
+// voxels.
 void seed_slice(const Octree& octree, bool complement, int z, DistanceMap& map) {
   const int side = octree.universe().side();
   SliceBits slice;
@@ -100,7 +103,7 @@ void seed_slice(const Octree& octree, bool complement, int z, DistanceMap& map) 
   }
 }
 
-// Turns the zeros and far_away of a row into squared distances along it.
+// Replaces the entries 0 and far_away of a row by squared distances along the row.
 void sweep_row(float* row, int count, double step) {
   assert(count > 0 && step > 0.0);
   constexpr int none = std::numeric_limits<int>::max() / 2;
@@ -161,8 +164,9 @@ DistanceMap cropped(DistanceMap map, const VoxelRange& wanted) {
 DistanceMap map_of(const Octree& octree, bool complement, const VoxelRange& wanted) {
   DistanceMap map{wanted, {}};
   if (wanted.is_empty()) return map;
-  // The map must cover every voxel that can be the nearest: for the set, the set's range; for the complement,
-  // also a shell around this range, because the shell is nearer than any voxel farther out.
+  // The map must cover every voxel that can be nearest. For the set these lie in the set's range. For the
+  // complement a shell of one voxel around this range is added; no voxel farther out is nearer than the
+  // shell.
   const VoxelRange set = grown(range_of(octree), 1);
   if (!set.is_empty()) map.range = {glm::min(wanted.low, set.low), glm::max(wanted.high, set.high)};
   map.square_mm2.resize(voxels_of(map.range));

@@ -21,11 +21,11 @@ struct VoxelRange {
 /// The smallest range that contains every voxel of the octree; empty for an empty octree.
 VoxelRange range_of(const Octree& octree);
 
-/// The range enlarged by `voxels` on every side; it may leave the universe.
+/// The range enlarged by `voxels` on every side; it may extend beyond the universe.
 VoxelRange grown(const VoxelRange& range, int voxels);
 
-/// Squared distances in square millimetres from each voxel's centre to the nearest centre of a voxel of a
-/// set, over a range of voxels, x fastest; infinity for an empty set.
+/// For each voxel of a range, x fastest, the squared distance in mm^2 from its centre to the nearest centre
+/// of a voxel of a set; infinity if the set is empty.
 struct DistanceMap {
   VoxelRange range;
   std::vector<float> square_mm2;
@@ -44,10 +44,10 @@ DistanceMap distance_map(const Octree& octree, const VoxelRange& range);
 DistanceMap distance_map_of_complement(const Octree& octree, const VoxelRange& range);
 
 /// Converts a map that is zero at the voxels of a set and infinite elsewhere into the squared distances to
-/// the set. Throws and costs as distance_map().
+/// the set. Exceptions and cost are those of distance_map().
 void spread(DistanceMap& map, const Universe& universe);
 
-/// The voxels of the range, and of the universe, whose squared distance satisfies `wanted`.
+/// The object of the voxels in both range and universe whose squared distance satisfies `wanted`.
 Octree octree_where(const Universe& universe, const DistanceMap& map,
                     const std::function<bool(double square_mm2)>& wanted);
 

@@ -1,6 +1,6 @@
 // 1 Sort the faces by plane, then row by row, as 64-bit numbers.
 // 2 Join faces beside each other in a row, and in neighbouring rows (union-find).
-// 3 Sum the parts that are larger than a curved surface's can be.
+// 3 Sum the areas of the parts that are too large for a curved surface.
 #include "voxel/measure/flat_parts.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr int bits = 20;  // bits of a coordinate; a universe needs fewer
+constexpr int bits = 20;  // number of bits for a coordinate; a universe needs fewer
 constexpr std::uint64_t one_row = 1u << bits;
 
 /// Ascends by axis, side, plane, row and column.
@@ -43,10 +43,11 @@ glm::dvec3 flat_parts_mm2(const Octree& octree) {
   tbb::parallel_sort(faces.begin(), faces.end());
   std::vector<std::size_t> part(faces.size());
   std::iota(part.begin(), part.end(), std::size_t{0});
-  std::size_t row_before = 0;  // first face that is not before the neighbour of face i in the preceding row
+  // Index of the first face not sorted before the neighbour of face i in the preceding row.
+  std::size_t row_before = 0;
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    // Faces in the first column or row have no neighbour before them: the preceding number belongs to another
-    // row or plane.
+    // Faces in the first column or row have no preceding neighbour; for them, the number below belongs to
+    // another row or plane.
     if ((faces[i] & (one_row - 1)) != 0 && i > 0 && faces[i - 1] == faces[i] - 1)
       part[root_of(part, i)] = root_of(part, i - 1);
     if ((faces[i] >> bits & (one_row - 1)) == 0) continue;

@@ -15,7 +15,7 @@ class GreyCounter {
 
   // Counts the eight children of a Partial node, a cube of 2^side_log2 voxels a side.
   void count_children(const glm::ivec3& origin, int side_log2) {
-    assert(side_log2 > 0);  // a voxel has one sample
+    assert(side_log2 > 0);  // a voxel has only one sample, so it cannot be Partial
     for (int k = 0; k < 8; ++k) {
       const int child_log2 = side_log2 - 1;
       const glm::ivec3 child = origin + (glm::ivec3(k & 1, (k >> 1) & 1, k >> 2) << child_log2);

@@ -10,7 +10,7 @@ namespace octotomy::voxel {
 
 /// Levels 1..n of the condensed grey octree as the thesis counts them (table 3.2). A node of equal samples is
 /// Empty if they are the background, otherwise Full; other nodes are Partial. Cost: one pass over the bricks
-/// with different samples.
+/// whose samples are not all equal.
 std::vector<LevelCount> level_counts(const GreyOctree& grey);
 
 }  // namespace octotomy::voxel

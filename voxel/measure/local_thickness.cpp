@@ -25,9 +25,9 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr double no_larger = 1.0 + 1e-3;  ///< a ball must be larger than the largest so far by this factor to
-                                          ///< be examined
-constexpr double coverage_99 = 2.576;     ///< standard errors of a normal distribution
+/// A ball must be larger than the largest so far by this factor to be examined.
+constexpr double no_larger = 1.0 + 1e-3;
+constexpr double coverage_99 = 2.576;  ///< standard errors of a normal distribution
 
 std::size_t count_of(const glm::ivec3& dims) {
   return static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) *
@@ -40,7 +40,8 @@ std::size_t index_in(const glm::ivec3& dims, const glm::ivec3& at) {
               static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(at.z));
 }
 
-/// Distances to the nearest voxel outside and, by level, the largest of each block.
+/// For each place, the distance to the nearest voxel outside. The pyramid's higher levels store the largest
+/// distance in each block.
 class Pyramid {
  public:
   Pyramid(const Octree& octree, const VoxelRange& range, int finer)
@@ -48,7 +49,7 @@ class Pyramid {
     const glm::ivec3 dims = finer * (range.dims() - 1) + 1;
     DistanceMap map{{glm::ivec3(0), dims - 1}, {}};
     map.square_mm2.assign(count_of(dims), 0.0F);
-    // A place is outside if no voxel of the object touches it. A place half-way between voxels touches
+    // A place counts as outside if no voxel of the object touches it. Places half-way between voxels touch
     // several voxels.
     tbb::parallel_for(0, dims.z, [&](int z) {
       for (int voxel_z = z / finer; voxel_z * finer <= z + finer - 1 && voxel_z < range.dims().z; ++voxel_z)
@@ -82,8 +83,8 @@ class Pyramid {
   }
   glm::ivec3 place_of(const glm::ivec3& voxel) const { return finer_ * (voxel - low_); }
 
-  /// The centre of the largest ball that contains a place, with all radii smaller by `shorter_mm`; the
-  /// place itself if no ball is larger.
+  /// The centre of the largest ball that contains a place, if all radii are reduced by `shorter_mm`. Returns
+  /// the place itself if no ball is larger.
   glm::ivec3 largest_about(const glm::ivec3& place, double shorter_mm) const {
     Search search{place, shorter_mm, distance_mm(place), place};
     walk(static_cast<int>(levels_.size()) - 1, glm::ivec3(0), search);
@@ -153,15 +154,16 @@ class Pyramid {
   std::vector<Level> levels_;
 };
 
-/// A ball about a place of the pyramid.
+/// A ball whose centre is a place of the pyramid.
 struct LatticeBall {
   double radius_mm = 0.0;
   bool is_of_wall = false;
 };
 
-/// Half the distance between lattice planes across a direction, given in steps: the outside begins between
-/// two such planes. Along an axis it is half a voxel; for oblique directions it approaches 0. If voxels
-/// have unequal edges, oblique planes are assumed to be those of cubes with the shortest edge.
+/// Half the distance in mm between the lattice planes across a direction, which is given in steps of places.
+/// The surface lies between two such planes. Along an axis it is half a voxel; for oblique directions it
+/// approaches 0. If voxels have unequal edges, oblique planes are assumed to be those of cubes with the
+/// shortest edge.
 double half_planes_mm(const glm::ivec3& direction, const Pyramid& pyramid) {
   const glm::dvec3 voxel_mm = double(pyramid.finer()) * pyramid.step_mm();
   const glm::ivec3 a = glm::abs(direction);
@@ -172,8 +174,8 @@ double half_planes_mm(const glm::ivec3& direction, const Pyramid& pyramid) {
 }
 
 /// The largest ball about a centre. Places outside that are up to a voxel farther away than the nearest one
-/// also count as sides of the ball: the centre lies on a lattice, so it need not be exactly midway between
-/// two sides.
+/// also count as touched by the ball: the centre is on a lattice, so it may not be exactly midway between two
+/// sides of a wall.
 LatticeBall ball_about(const glm::ivec3& centre, const Pyramid& pyramid, double most_cosine) {
   const glm::dvec3& step_mm = pyramid.step_mm();
   const double distance = pyramid.distance_mm(centre);
@@ -197,7 +199,8 @@ LatticeBall ball_about(const glm::ivec3& centre, const Pyramid& pyramid, double 
     for (int y = -most_y; y <= most_y; ++y) {
       const double across = (step_mm.z * z) * (step_mm.z * z) + (step_mm.y * y) * (step_mm.y * y);
       const int high = static_cast<int>(std::sqrt(std::max(0.0, shell * shell - across)) / step_mm.x);
-      // No place outside is nearer than `distance`, so rows are entered at the sphere of this radius.
+      // No place outside is nearer than `distance`, so in each row the search begins at the sphere of this
+      // radius.
       const int low =
           static_cast<int>(std::sqrt(std::max(0.0, distance * distance * (1.0 - 1e-6) - across)) / step_mm.x);
       for (int x = -high; x <= -low; ++x) add({x, y, z});
@@ -212,7 +215,8 @@ LatticeBall ball_about(const glm::ivec3& centre, const Pyramid& pyramid, double 
   return ball;
 }
 
-/// All voxels, or about `wanted` of them, chosen by a multiplicative hash of their position in the list.
+/// All voxels if there are at most `wanted`, else about `wanted` of them, chosen by a multiplicative hash of
+/// their index in the list.
 std::vector<glm::ivec3> some_of(const std::vector<glm::ivec3>& voxels, std::size_t wanted) {
   if (voxels.size() <= wanted) return voxels;
   const double share = static_cast<double>(wanted) / static_cast<double>(voxels.size());
@@ -240,7 +244,7 @@ std::vector<glm::ivec3> voxels_of(const Octree& octree, const VoxelRange& range)
   return all;
 }
 
-/// Voxels with a face to the outside, each once.
+/// The voxels with at least one face to the outside, each listed once.
 std::vector<glm::ivec3> surface_of(const Octree& octree) {
   std::vector<glm::ivec3> voxels;
   for (const VoxelFace& face : voxel_boundary(octree)) voxels.push_back(face.voxel);
@@ -251,7 +255,8 @@ std::vector<glm::ivec3> surface_of(const Octree& octree) {
   return voxels;
 }
 
-/// Measures voxels with one pyramid. Each ball is examined once, however many voxels it contains.
+/// Measures the thickness at voxels by one pyramid. Each ball is examined only once, even if it is the
+/// largest one of many voxels.
 class Balls {
  public:
   Balls(const Pyramid& pyramid, double most_cosine, const Progress& progress)
@@ -267,9 +272,9 @@ class Balls {
     return balls;
   }
 
-  /// The voxel of the thinnest wall, and its ball. Balls are examined in ascending order of their distances;
-  /// a radius is at most half a voxel less than the distance. The blocks of balls do not depend on the number
-  /// of threads.
+  /// The voxel at the thinnest wall, and the largest ball there. Balls are examined in ascending order of
+  /// their centres' distances to the outside, in blocks that do not depend on the number of threads. A radius
+  /// is at most half a voxel less than the distance, which bounds the search.
   std::optional<std::pair<std::size_t, LatticeBall>> thinnest(const std::vector<glm::ivec3>& voxels) const {
     std::vector<Run> runs = runs_about(voxels, 0.0);
     const auto distance = [&](const Run& run) { return pyramid_.distance_mm(run.centre); };
@@ -296,7 +301,7 @@ class Balls {
   }
 
  private:
-  /// Voxels whose largest balls have the same centre, in the voxels' order.
+  /// Groups the voxels whose largest balls have the same centre, in the voxels' order.
   struct Run {
     glm::ivec3 centre{0};
     std::vector<std::size_t> voxels;
@@ -348,7 +353,7 @@ void summarise(std::vector<double> values, double longest_edge_mm, VoxelThicknes
 }
 
 void check(const LocalThicknessOptions& options) {
-  if (options.samples < 64) throw InvalidInput("local thickness: needs at least 64 samples");
+  if (options.samples < 64) throw InvalidInput("local thickness: the number of samples must be at least 64");
   if (!(options.wall_angle_deg >= 91.0 && options.wall_angle_deg <= 179.0))
     throw InvalidInput("local thickness: a wall's angle must be from 91 to 179 degrees");
 }
@@ -358,7 +363,7 @@ Pyramid pyramid_of(const Octree& octree) {
   const VoxelRange range = grown(range_of(octree), 1);
   constexpr std::size_t most_fine = std::size_t{1} << 26, most = std::size_t{1} << 28;
   if (count_of(range.dims()) > most)
-    throw TooLarge("local thickness: the object's extent has more than 2^28 voxels: take larger voxels");
+    throw TooLarge("local thickness: the object's extent has more than 2^28 voxels: choose larger voxels");
   return Pyramid(octree, range, count_of(2 * range.dims()) <= most_fine ? 2 : 1);
 }
 
@@ -378,7 +383,7 @@ VoxelThickness local_thickness(const Octree& octree, const LocalThicknessOptions
   options.progress.at(0.4);
   const Balls balls(pyramid, most_cosine_of(options), options.progress);
   const glm::dvec3 voxel_mm = octree.universe().lattice().spacing_mm();
-  // The surface lies between 0 and half a voxel before the nearest place outside.
+  // On the way to the nearest place outside, the surface lies 0 to half a voxel before this place.
   const double shorter_mm = 0.25 * std::min({voxel_mm.x, voxel_mm.y, voxel_mm.z});
   std::vector<double> values;
   for (const LatticeBall& ball : balls.about(some_of(voxels_of(octree, own), options.samples), shorter_mm))

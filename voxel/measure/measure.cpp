@@ -18,12 +18,12 @@
 #include "voxel/tree/slice_bits.h"
 
 // Area by the Crofton formula: the area of a boundary is four times the mean, over all directions, of the
-// number of entries of parallel lines times the area per line. Here 13 directions, those to a voxel's 26
-// neighbours, represent all. Along each direction, the lines run through the lattice's points: crossings are
-// pairs of neighbours with one inside, and the area per line is the voxel's volume divided by the step's
-// length. Source: Ohser and Muecklich, Statistical Analysis of Microstructures, 2000, section 4.2; weights as
-// in Lang, Ohser and Hilfer, J. Microscopy 203, 2001. Departure: a direction's weight is the share of the
-// sphere nearest to it, computed for the lattice's own spacing on a fine grid of directions, so that
+// number of entries of parallel lines times the area per line. Here the 13 directions to a voxel's 26
+// neighbours represent all directions. Along each direction, the lines run through the lattice's points:
+// crossings are pairs of neighbours with one inside, and the area per line is the voxel's volume divided by
+// the step's length. Source: Ohser and Muecklich, Statistical Analysis of Microstructures, 2000, section 4.2;
+// weights as in Lang, Ohser and Hilfer, J. Microscopy 203, 2001. Departure: a direction's weight is the share
+// of the sphere nearest to it, computed for the lattice's own spacing on a fine grid of directions, so that
 // anisotropic voxels have no bias either.
 
 namespace octotomy::voxel {
@@ -47,8 +47,9 @@ glm::dvec3 step_mm(const Lattice& lattice, const std::array<int, 3>& direction) 
   return glm::dmat3(lattice.lps_from_voxel) * glm::dvec3(direction[0], direction[1], direction[2]);
 }
 
-// The share of all directions nearest to each of the 13, from an equal-area grid of the half sphere. With
-// 400 x 400 directions the error, from grid points along the cells' boundaries, is below 0.1 % of a weight.
+// For each of the 13 directions the share of all directions that are nearest to it, counted on an equal-area
+// grid of the half sphere. With 400 x 400 grid points the error, which arises at points on the cells'
+// boundaries, is below 0.1 % of a weight.
 std::array<double, 13> summed_shares(const Lattice& lattice) {
   std::array<glm::dvec3, 13> unit;
   for (std::size_t d = 0; d < unit.size(); ++d) unit[d] = glm::normalize(step_mm(lattice, directions[d]));
@@ -72,8 +73,8 @@ std::array<double, 13> summed_shares(const Lattice& lattice) {
   return share;
 }
 
-// Caches the shares of the last lattice, because all objects of a plan have the same lattice and computing
-// the shares takes longer than counting a small object.
+// Caches the shares of the last lattice. All objects of a plan have the same lattice, and computing the
+// shares takes longer than measuring a small object.
 std::array<double, 13> shares(const Lattice& lattice) {
   static std::mutex mutex;
   static glm::dmat3 known(0.0);
@@ -87,8 +88,8 @@ std::array<double, 13> shares(const Lattice& lattice) {
   return share;
 }
 
-// Counts the voxels x of a row that differ from voxel x + shift of another row, which is empty beyond its
-// ends. Bit x of a shifted word is voxel x + shift.
+// Counts the voxels x of a row that differ from voxel x + shift of another row. Voxels beyond a row's ends
+// are outside. Bit x of a shifted word is voxel x + shift.
 OCTOTOMY_VECTOR_CLONES std::uint64_t differing(const std::uint64_t* row, const std::uint64_t* other,
                                                int words, int shift) {
   std::uint64_t count = 0;
@@ -101,16 +102,16 @@ OCTOTOMY_VECTOR_CLONES std::uint64_t differing(const std::uint64_t* row, const s
   return count;
 }
 
-// First and second moments, and boundary pairs by direction, of a run of slices.
+// Sums over a run of slices: first and second moments, and the numbers of boundary pairs by direction.
 class Sums {
  public:
-  // Pairs of neighbours along each direction with exactly one inside, pairs across the universe's ends
-  // included.
+  // For each direction the number of pairs of neighbours with exactly one inside the object, pairs across the
+  // universe's faces included.
   std::array<std::uint64_t, 13> crossings{};
   glm::dvec3 first_moment{0.0};   ///< sum of voxel indices: exact below 2^53
-  glm::dmat3 second_moment{0.0};  ///< sum of products of voxel indices: the lower triangle
+  glm::dmat3 second_moment{0.0};  ///< sum of products of two voxel indices; only the lower triangle is used
 
-  // Counts the pairs (v, v - direction) with v in slice z, rows one beyond each end of the slice included.
+  // Counts the pairs (v, v - direction) with v in slice z, including v in the rows just outside the slice.
   // `none` is an empty row.
   void add_slice(const SliceBits& below, const SliceBits& slice, const std::uint64_t* none, int z) {
     const int words = slice.words_per_row, side = slice.side;
@@ -120,7 +121,7 @@ class Sums {
     std::array<const std::uint64_t*, 3> here{none, none, row_of(slice, 0)},
         under{none, none, row_of(below, 0)};
     for (int y = -1; y <= side; ++y) {
-      // Rows y - 1, y and y + 1.
+      // Now the arrays contain the rows y - 1, y and y + 1.
       std::rotate(here.begin(), here.begin() + (y >= 0), here.end());
       std::rotate(under.begin(), under.begin() + (y >= 0), under.end());
       if (y >= 0) {
@@ -147,12 +148,12 @@ class Sums {
     return std::all_of(row, row + words, [](std::uint64_t word) { return word == 0; });
   }
 
-  // Pairs of voxel x of `here` with voxel x - dx of `there`.
+  // Counts the pairs of voxel x of `here` with voxel x - dx of `there` of which exactly one is set.
   static std::uint64_t pairs(const std::uint64_t* here, const std::uint64_t* there, int words, int side,
                              int dx) {
     std::uint64_t count = differing(here, there, words, -dx);
-    // A voxel at the end of the row pairs with one outside. The shifted word contains this pair unless the
-    // row ends with the word.
+    // The last voxel of the row forms a pair with a voxel outside the row. The shifted word contains this
+    // pair unless the row ends at the end of a word.
     if (dx == 1 && side % 64 == 0) count += there[words - 1] >> 63;
     if (dx == -1) count += there[0] & 1;
     return count;
@@ -179,19 +180,20 @@ class Sums {
     second_moment[2].z += count * z * z;
   }
 
-  // Entry k: the bits of a word whose index has bit k set.
+  // Entry k is a mask of those bits of a word whose index has bit k set.
   static constexpr std::array<std::uint64_t, 6> places{0xaaaaaaaaaaaaaaaa, 0xcccccccccccccccc,
                                                        0xf0f0f0f0f0f0f0f0, 0xff00ff00ff00ff00,
                                                        0xffff0000ffff0000, 0xffffffff00000000};
 
-  // The sum of the indices of set bits: bit k of an index adds 2^k.
+  // The sum of the indices of a word's set bits, in which bit k of an index counts 2^k.
   static double sum_of_places(std::uint64_t word) {
     int sum = 0;
     for (std::size_t k = 0; k < places.size(); ++k) sum += std::popcount(word & places[k]) << k;
     return sum;
   }
 
-  // The sum of the squares of these indices: a pair of bits j and k of an index adds 2^(j + k).
+  // The sum of the squares of the indices of a word's set bits, in which a pair of bits j and k of an index
+  // counts 2^(j + k).
   static double sum_of_square_places(std::uint64_t word) {
     if (word == all_children) return 63.0 * 64.0 * 127.0 / 6.0;
     int sum = 0;
@@ -203,13 +205,13 @@ class Sums {
   }
 };
 
-// The runs of slices are fixed, so that even sums too large to be exact do not depend on the number of
-// threads.
+// The division into runs of slices is fixed, so that even sums that are rounded do not depend on the number
+// of threads.
 Sums sums_of(const Octree& octree) {
   constexpr int run = 16;
   const int side = octree.universe().side(), words = (side + 63) / 64;
   const std::vector<std::uint64_t> none(static_cast<std::size_t>(words), 0);
-  // The upper neighbours of the last slice are counted with one empty slice beyond it.
+  // One empty slice is added beyond the last one, to count the last slice's upper neighbours.
   std::vector<Sums> parts(static_cast<std::size_t>((side + run) / run));
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     const auto read = [&](int z, SliceBits& slice) {
@@ -233,8 +235,8 @@ Sums sums_of(const Octree& octree) {
 }
 
 // Lindblad's weight of a pattern of 2 x 2 x 2 voxels, in squares of the voxel's edge. A pattern of more than
-// four voxels has the weight of its complement. The number of voxels and their neighbours by faces determine
-// which of the 14 cases it is.
+// four voxels has the weight of its complement. Which of the 14 cases it is follows from the number of voxels
+// and of their neighbours by faces.
 double lindblad_weight(unsigned pattern) {
   assert(pattern > 0 && pattern < 255);
   if (std::popcount(pattern) > 4) pattern = ~pattern & 255U;
@@ -280,8 +282,8 @@ std::optional<double> lindblad_mm2(const Octree& octree) {
   return squares * edge_mm.x * edge_mm.x;
 }
 
-// The inertia from sums over voxel indices. Every voxel is a cuboid, which adds a variance of 1/12 along each
-// edge.
+// Computes the inertia from sums over voxel indices. Every voxel is a cuboid, so 1/12 is added to the
+// variance along each edge.
 glm::dmat3 inertia_mm5(const Lattice& lattice, double count, const glm::dvec3& first,
                        const glm::dmat3& second) {
   assert(count > 0.0);

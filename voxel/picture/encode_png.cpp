@@ -25,8 +25,9 @@ constexpr std::size_t pixel_bytes = 3;
 constexpr std::size_t chunk_bytes = 8192;
 constexpr int deflate_level = 3;
 
-/// A filter subtracts from each byte a prediction from the left, upper and upper left neighbours. Both rows
-/// begin with a black pixel beyond the picture's edge; `filtered` does not.
+/// A filter subtracts from each byte a prediction made from the left, upper and upper left neighbours. `row`
+/// and `above` begin with an additional black pixel left of the picture; `filtered` does not. Returns the sum
+/// of the filtered bytes' sizes, by which filters are compared.
 template <int number>
 OCTOTOMY_VECTOR_CLONES std::size_t filter(const Byte* row, const Byte* above, std::size_t count,
                                           Byte* filtered) {
@@ -51,7 +52,7 @@ OCTOTOMY_VECTOR_CLONES std::size_t filter(const Byte* row, const Byte* above, st
 using Filter = std::size_t (*)(const Byte*, const Byte*, std::size_t, Byte*);
 constexpr std::array<Filter, 5> filters{filter<0>, filter<1>, filter<2>, filter<3>, filter<4>};
 
-/// The filtered rows, each after the number of its filter.
+/// The filtered rows, each preceded by the number of its filter.
 std::vector<Byte> filtered_rows(const glm::ivec2& size_px, const std::vector<Byte>& rgb) {
   const std::size_t count = pixel_bytes * static_cast<std::size_t>(size_px.x);
   std::vector<Byte> rows, row(count + pixel_bytes, 0), above = row, best(count + 1), tried(count + 1);
@@ -82,7 +83,7 @@ std::vector<Byte> deflated(std::vector<Byte>& bytes) {
     --window_bits;
   z_stream stream{};
   const auto need = [](bool done) {
-    if (!done) throw Error(ErrorCode::Resource, "a picture cannot be deflated: zlib refused");
+    if (!done) throw Error(ErrorCode::Resource, "a picture cannot be compressed: zlib reports an error");
   };
   need(deflateInit2(&stream, deflate_level, Z_DEFLATED, window_bits, 8, Z_FILTERED) == Z_OK);
   const std::unique_ptr<z_stream, decltype(&deflateEnd)> end(&stream, deflateEnd);
@@ -93,9 +94,9 @@ std::vector<Byte> deflated(std::vector<Byte>& bytes) {
   stream.avail_out = static_cast<uInt>(made.size());
   need(deflate(&stream, Z_FINISH) == Z_STREAM_END);
   made.resize(stream.total_out);
-  // Compressing needs a window 262 bytes larger than the data; decompressing does not. The stream's first
-  // byte states the window for decompressing and is lowered here; the second byte makes the number that both
-  // form a multiple of 31.
+  // Compression requires a window 262 bytes larger than the data; decompression does not. The stream's first
+  // byte states the window for decompression and is lowered here. The second byte is chosen so that both
+  // bytes form a multiple of 31.
   int told = made[0] >> 4;
   while (told > 0 && bytes.size() <= std::size_t{1} << (told + 7)) --told;
   made[0] = static_cast<Byte>(told << 4 | Z_DEFLATED);
@@ -111,7 +112,8 @@ std::vector<std::uint8_t> encode_png(const glm::ivec2& size_px, const std::vecto
          pixel_bytes * static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y));
   if (rgb.size() > std::size_t{1} << 31)
     throw Error(ErrorCode::Resource, "a picture of " + std::to_string(size_px.x) + " x " +
-                                         std::to_string(size_px.y) + " pixels is too large; draw it smaller");
+                                         std::to_string(size_px.y) +
+                                         " pixels is too large; choose a smaller size");
   std::vector<Byte> rows = filtered_rows(size_px, rgb);
   const std::vector<Byte> stream = deflated(rows);
   const auto four_bytes = [](int number) { return big_endian(static_cast<std::uint32_t>(number)); };

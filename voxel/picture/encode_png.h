@@ -7,11 +7,11 @@
 
 namespace octotomy::voxel {
 
-/// A PNG picture of 8-bit sRGB pixels, row by row from the top left. Preconditions: the size is positive and
-/// matches the number of pixels. Throws Error (Resource) if the picture is too large for zlib. Produces the
-/// same bytes as OpenImageIO at compression level 3, without the 0.2 s that loading OpenImageIO takes.
-/// Compared with the best level, files are a tenth larger and take a third of the time. Cost: linear, about
-/// 20 ms per million pixels.
+/// Encodes 8-bit sRGB pixels, row by row from the top left, as a PNG picture. Preconditions: the size is
+/// positive and matches the number of pixels. Throws Error (Resource) if the picture is too large for zlib.
+/// Produces the same bytes as OpenImageIO at compression level 3, without the 0.2 s that loading OpenImageIO
+/// takes. Compared with the highest compression level, files are a tenth larger and encoding takes a third of
+/// the time. Cost: linear, about 20 ms per million pixels.
 std::vector<std::uint8_t> encode_png(const glm::ivec2& size_px, const std::vector<std::uint8_t>& rgb);
 
 }  // namespace octotomy::voxel

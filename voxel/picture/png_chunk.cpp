@@ -57,8 +57,8 @@ std::vector<std::uint8_t> with_png_text(const std::vector<std::uint8_t>& png, co
                                         const std::string& text) {
   const std::string_view bytes(reinterpret_cast<const char*>(png.data()), png.size());
   const std::string_view header = png_chunks(bytes).front().data;
-  const auto end = header.data() + header.size() + 4 - bytes.data();  // end of the header chunk, after its
-                                                                      // CRC
+  // End of the header chunk, after its CRC.
+  const auto end = header.data() + header.size() + 4 - bytes.data();
   const std::string chunk = png_chunk("tEXt", keyword + '\0' + text);
   std::vector<std::uint8_t> made = png;
   made.insert(made.begin() + end, chunk.begin(), chunk.end());

@@ -15,11 +15,11 @@ inline constexpr std::string_view png_signature("\x89PNG\r\n\x1a\n", 8);
 
 /// A number as four bytes, highest first.
 std::string big_endian(std::uint32_t number);
-/// Reads four bytes at `at` as a number, highest first. Precondition: `bytes` holds them.
+/// Reads four bytes at `at` as a number, highest first. Precondition: `bytes` contains these four bytes.
 std::uint32_t big_endian_at(std::string_view bytes, std::size_t at);
 std::string png_chunk(const std::string& letters, std::string_view data);
 
-/// A view of a chunk; the caller holds the picture's bytes.
+/// A view of a chunk in a picture's bytes, which must outlive it.
 struct PngChunk {
   std::string_view letters, data;
 };
@@ -32,12 +32,13 @@ std::vector<PngChunk> png_chunks(std::string_view bytes);
 std::vector<std::uint8_t> with_png_text(const std::vector<std::uint8_t>& png, const std::string& keyword,
                                         const std::string& text);
 
-/// The size of a PNG and one of its texts.
+/// The size of a PNG and the text of one of its text chunks.
 struct PngText {
   glm::ivec2 size_px{0};
   std::optional<std::string> text;  ///< none: the PNG has no such chunk
 };
-/// The size, and the text with the given keyword. Throws std::invalid_argument as png_chunks() does.
+/// The size of a PNG, and the text that it stores under the given keyword. Throws std::invalid_argument as
+/// png_chunks() does.
 PngText png_text(std::string_view bytes, const std::string& keyword);
 
 }  // namespace octotomy::voxel

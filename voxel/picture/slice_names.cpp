@@ -21,16 +21,16 @@ bool is_digit_at(const std::string& text, std::size_t at) {
   return at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) != 0;
 }
 
-/// Counts every byte beyond ASCII as a letter.
+/// Whether a byte is a letter. Every byte beyond ASCII counts as one.
 bool is_letter_or_digit(char c) {
   const auto byte = static_cast<unsigned char>(c);
   return std::isalnum(byte) != 0 || byte >= 0x80;
 }
 
 struct NumberInName {
-  char sign = '\0';             ///< as written: '-', '+' or none
-  bool is_behind_word = false;  ///< the sign follows a letter
-  std::string whole, fraction;  ///< digits; those of the integer part without leading zeros
+  char sign = '\0';             ///< the sign as written: '-', '+' or '\0' for none
+  bool is_behind_word = false;  ///< whether the sign follows a letter
+  std::string whole, fraction;  ///< digits before and after the dot; `whole` without leading zeros
   bool is_negative = false, is_decimal = true;
 };
 
@@ -71,7 +71,7 @@ CutName cut(const std::string& name) {
     if (!is_chained && at < name.size() && name[at] == '.' && is_digit_at(name, at + 1)) {
       const std::size_t dot = at++;
       number.fraction = digits();
-      // 1.2.840 is read as three numbers.
+      // Two dots, as in 1.2.840, separate numbers: this text is read as three numbers.
       if (at < name.size() && name[at] == '.' && is_digit_at(name, at + 1)) {
         number.fraction.clear();
         at = dot;
@@ -85,11 +85,13 @@ CutName cut(const std::string& name) {
   return made;
 }
 
-/// Properties that names with equal text have at one of their numbers.
+/// Properties of the numbers at one position, over all names with equal text.
 struct NumberProperties {
   bool has_minus = false, has_other = false, is_behind_word = false;
-  std::size_t least_digits = 0, most_digits = 0;  ///< counts of digits after a dot, if there is one
-  bool ends_with_zero = false;                    ///< several digits after a dot end with 0
+  /// Least and largest number of digits after a dot, among numbers with a dot.
+  std::size_t least_digits = 0, most_digits = 0;
+  /// Whether a number has several digits after a dot and ends with 0.
+  bool ends_with_zero = false;
 
   void add(const NumberInName& number) {
     (number.sign == '-' ? has_minus : has_other) = true;
@@ -253,7 +255,8 @@ std::string stacks_named(const std::vector<fs::path>& files) {
 }
 
 std::string numbered_alike(const SliceNames& names) {
-  std::map<std::string, std::set<double>> numbers_of;  // by the text before the last number
+  // The names' numbers, by the text before the last number.
+  std::map<std::string, std::set<double>> numbers_of;
   for (std::size_t i = 0; i < names.files.size(); ++i) {
     const std::string stem = names.files[i].stem().string();
     const std::size_t last = stem.find_last_of("0123456789");

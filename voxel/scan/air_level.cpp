@@ -22,7 +22,7 @@ namespace {
 struct Counts {
   std::uint64_t samples = 0;
   std::uint64_t air = 0;    ///< -1100..-900
-  std::uint64_t above = 0;  ///< -900..-700, the band above air
+  std::uint64_t above = 0;  ///< samples from -900 to -700, the band above air
   std::uint64_t soft = 0;   ///< -900..-20
 
   Counts operator+(const Counts& other) const {
@@ -41,7 +41,7 @@ Counts counts_of(std::span<const float> samples) {
   return counts;
 }
 
-/// A 16-bit counter does not overflow in this many samples.
+/// Number of samples in which a 16-bit counter cannot overflow.
 constexpr std::size_t short_run = 1 << 15;
 
 /// Counts at most short_run samples. All counters have 16 bits, so that a vector has as many lanes as
@@ -104,7 +104,7 @@ std::string span(const Scene& scene) {
   return text;
 }
 
-/// Air is -1000 HU. With noise of 30 to 50 HU almost no sample of air is below this.
+/// Air is -1000 HU. With noise of 30 to 50 HU almost no sample of air is below this limit.
 constexpr double below_air = -1100.0;
 constexpr double padding_gap = 100.0;
 constexpr std::size_t least_padded = 64, samples_for_one_padded = 10000, padded_for_one_in_gap = 100;
@@ -125,8 +125,8 @@ AirLevel air_level_of_ct(const Scene& scene) {
   return {Meaning::Raw,
           {"air_level", Verdict::Fail,
            "air is not near -1000, so values " + span(scene) +
-               " are not Hounsfield: windows in HU do not apply; if air is near 0 the rescale intercept "
-               "(about -1024) is missing"}};
+               " are not Hounsfield units: windows in HU do not apply; if air is near 0, the rescale "
+               "intercept (about -1024) is missing"}};
 }
 
 AirLevel air_level_of_unnamed(const Scene& scene) {
@@ -167,7 +167,7 @@ std::optional<Finding> lost_sign_finding(const Scene& scene, bool is_ct) {
       print("%zu samples from %.9g to %.9g lie far above all others (up to %.9g). As 16-bit numbers with a "
             "sign "
             "they would be %.9g to %.9g, which is air or padding. If so, every window without an upper bound "
-            "takes them for bone: correct the type in the header to 16 bits with a sign",
+            "contains them like bone: correct the type in the header to 16 bits with a sign",
             count, low, high, static_cast<double>(others), low - 65536.0, high - 65536.0)};
 }
 

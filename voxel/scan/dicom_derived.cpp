@@ -44,7 +44,7 @@ void put_study(DicomAttributes& attributes, const DicomOptions& options, const D
   const std::string character_set = found == options.source->attributes.end() ? "" : found->second.value;
   for (const auto& [tag, text] : options.source->attributes) {
     const DicomTag group = tag >> 16;
-    if (group == 0x0018 || tag == 0x00200060) continue;  // of the acquisition, not of the study
+    if (group == 0x0018 || tag == 0x00200060) continue;  // attribute of the acquisition, not of the study
     if (tag == character_set_tag && in_utf8) continue;
     const std::optional<std::string> value = in_utf8 ? utf8_of(character_set, text.value) : text.value;
     if (!value)

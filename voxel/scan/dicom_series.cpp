@@ -32,13 +32,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Slices closer than a tenth of the usual gap repeat one position.
+/// Slices closer than this share of the usual gap count as being at one position.
 double repeat_tolerance_mm(double usual_gap_mm) {
   return 0.1 * usual_gap_mm;
 }
 
-/// A rotation that moves an image's farthest pixel by at most a tenth of a pixel changes its samples less
-/// than a slice's partial volume does.
+/// A rotation that moves the farthest pixel of an image by at most this many pixels changes samples less than
+/// the partial volume effect of a slice.
 constexpr double unseen_turn_px() {
   return 0.1;
 }
@@ -46,13 +46,13 @@ constexpr double unseen_turn_px() {
 /// A direction whose length differs from 1 by more than this is not a rounded or badly scaled unit vector.
 constexpr double most_length_error = 0.1;
 
-/// Rounding to two decimals changes each cosine by up to 0.005. A vector's length then errs by up to 0.005
-/// times the root of three, a product of two vectors by twice that.
+/// Rounding to two decimals changes each cosine by up to 0.005. A vector's length is then wrong by up to
+/// 0.005 times the root of three, and the scalar product of two vectors by up to twice this value.
 double two_decimals_error() {
   return 0.01 * std::sqrt(3.0);
 }
 
-/// The mean distance of slices along the normal of the first one; none for a single slice.
+/// The mean distance between neighbouring slices along the first slice's normal; none for a single slice.
 std::optional<double> mean_distance_mm(const std::vector<DicomSlice>& slices) {
   if (slices.size() < 2) return {};
   const glm::dvec3 normal = glm::cross(slices.front().along_row, slices.front().along_column);
@@ -139,8 +139,9 @@ class SeriesAssembler {
     for (const fs::path& staged : folder.staged)
       skip(name_of(staged), {"files that another run did not finish or still writes"});
     if (found.empty() && !is_folder(path_) && is_directory_of_dicom(headers.front()))
-      refuse(path_,
-             "is a DICOM directory, which lists images but contains none: give the folder that contains it");
+      refuse(
+          path_,
+          "is a DICOM directory, which lists images but contains none: choose the folder in which it lies");
     if (found.empty() && !is_folder(path_))
       refuse(path_, "is not a readable scan: " + std::get<NoSlice>(headers.front()).reason +
                         "; scans are DICOM, .nii, .nii.gz, .nrrd, .nhdr, .mha and .mhd");
@@ -158,7 +159,7 @@ class SeriesAssembler {
     return none != nullptr && none->is_directory;
   }
 
-  /// The name to show to users: the path below the scan's folder.
+  /// A file's name for messages: its path below the scan's folder.
   std::string name_of(const fs::path& file) const {
     return (is_folder(path_) ? file.lexically_relative(path_) : file.filename()).string();
   }
@@ -173,8 +174,8 @@ class SeriesAssembler {
     refuse(path_, "no DICOM slice in the folder or below; it holds no files");
   }
 
-  /// Reports files that hold no slice. If such a file belongs to the chosen series, that series lacks a
-  /// slice.
+  /// Reports files without a slice. If such a file belongs to the chosen series, the finding states that the
+  /// series lacks it.
   void audit_skipped(const std::string& taken_uid) {
     const auto tell = [&](const char* check, NoSlice::Kind kind, Verdict verdict, const char* passed,
                           const char* what) {
@@ -197,7 +198,8 @@ class SeriesAssembler {
          " left out that are damaged or cannot be read; copy them again: ");
   }
 
-  /// The slices that choose() selects. Lines about files without slices come first in the audit.
+  /// Returns the slices of the series that choose() selects. The audit begins with lines about files without
+  /// slices.
   std::vector<DicomSlice> chosen_of(std::vector<DicomSlice> found) {
     const auto before = static_cast<std::ptrdiff_t>(audit_.size());
     std::vector<DicomSlice> taken = choose(std::move(found));
@@ -241,7 +243,7 @@ class SeriesAssembler {
     return list;
   }
 
-  /// "; choose by --series N of ...", or empty if there is no choice.
+  /// "; choose by --series N of ...", or empty if there is only one series.
   std::string advice() const { return choice_count_ > 1 ? "; choose by --series N of " + choices_ : ""; }
 
   /// The requested series or stack, else the series with most slices.
@@ -275,15 +277,15 @@ class SeriesAssembler {
                                                                  : Verdict::Pass,
          std::to_string(all.size()) + " series: took " + std::to_string(taken.number) + " " +
              named(taken.members) + ", left " + others +
-             (is_scattered ? print("; %zu images of %zu other series lie at further places of the same "
-                                   "planes: --join reads them as one",
+             (is_scattered ? print("; %zu images of %zu other series lie at other positions of the same "
+                                   "stack: --join reads all as one series",
                                    scattered.images, scattered.series)
                            : std::string()) +
              (options_.series.empty() ? "; choose another by --series N" : ""));
     return std::move(taken.members);
   }
 
-  /// Images of other series that may continue a series: same kind, other positions.
+  /// Images of other series that may continue a series: of the same kind, at other positions.
   struct Scattered {
     std::size_t series = 0, images = 0;
   };
@@ -326,7 +328,8 @@ class SeriesAssembler {
     std::optional<std::size_t> stack = {};
   };
 
-  /// The one series or stack that the options' text names by number, identifier, description or attribute.
+  /// The series or stack that the options name by number, identifier, description or attribute. Throws unless
+  /// exactly one fits.
   ChosenSeries asked(const std::vector<Series>& all) const {
     const std::string& wanted = options_.series;
     std::vector<ChosenSeries> described, with_words;
@@ -365,7 +368,7 @@ class SeriesAssembler {
     return members;
   }
 
-  /// Keeps the largest group of slices that are alike. A finding lists the others.
+  /// Groups the slices by `alike` and keeps the largest group. A finding lists the other slices.
   void keep_commonest(const char* check, std::vector<DicomSlice>& members,
                       const std::function<bool(const DicomSlice&, const DicomSlice&)>& alike,
                       const std::function<std::string(const DicomSlice&)>& named) {
@@ -387,8 +390,8 @@ class SeriesAssembler {
     members = std::vector<DicomSlice>(std::move(most));
   }
 
-  /// Keeps the commonest patient, study, modality and frame of reference. An image without the attribute
-  /// counts as one of the commonest.
+  /// Keeps the commonest patient, study, modality and frame of reference. An image without such an attribute
+  /// counts as having the commonest value.
   std::vector<DicomSlice> with_one_identity(std::vector<DicomSlice> members) {
     for (std::size_t trait = 0; trait < dicom_traits.size(); ++trait) {
       const bool is_joinable = dicom_traits[trait].role == TraitRole::Origin;
@@ -417,13 +420,15 @@ class SeriesAssembler {
       find(dicom_traits[trait].check, Verdict::Fail,
            "one series holds " + std::string(dicom_traits[trait].effect) + ": kept " +
                slices(members.size()) + ", left out " + slices(left.size()) + ": " + listed(left) +
-               (is_joinable ? "; if an export gave the images of one scan several, --join keeps them" : ""),
+               (is_joinable ? "; if an export assigned several of them to the images of one scan, --join "
+                              "keeps all images"
+                            : ""),
            left);
     }
     return members;
   }
 
-  /// If several stacks lie at one place, keeps the largest.
+  /// If several stacks lie at the same positions, keeps the largest.
   void keep_one_stack(std::vector<DicomSlice>& members) {
     std::vector<DicomSubseries> stacks = parted_at_one_place(std::move(members));
     members = std::move(stacks.front().slices);
@@ -440,7 +445,7 @@ class SeriesAssembler {
          left);
   }
 
-  /// Keeps the slices that the options name.
+  /// Keeps the slices that the options select.
   void keep_asked(DicomStack& stack) {
     if (options_.slices.empty()) return;
     const auto count = static_cast<int>(stack.slices.size());
@@ -504,7 +509,7 @@ class SeriesAssembler {
     return stack;
   }
 
-  /// Spacings of one grid may differ in their last decimals. All slices get the mean.
+  /// Pixel spacings that count as equal may differ in their last decimals. All slices get the mean.
   static void take_mean_spacing(DicomStack& stack) {
     glm::dvec2 sum(0.0);
     bool is_one = true;
@@ -516,7 +521,8 @@ class SeriesAssembler {
     for (DicomSlice& slice : stack.slices) slice.spacing_mm = sum / static_cast<double>(stack.slices.size());
   }
 
-  /// The mean of the slices' directions. If all are equal, exactly those of the first slice, bit for bit.
+  /// Sets the directions to the mean of the slices' directions. If all are equal, the result has exactly the
+  /// bits of the first slice.
   std::pair<glm::dvec3, glm::dvec3> mean_directions(const DicomStack& stack) {
     const DicomSlice& first = stack.first();
     glm::dvec3 along_row(0.0), along_column(0.0);
@@ -534,7 +540,7 @@ class SeriesAssembler {
       most_px = std::max(most_px, px);
       if (px > unseen_turn_px()) turned.push_back(slice.name);
     }
-    // The audit already has a passing line on the orientation. Adds another line only if there is a doubt.
+    // The audit already has a passing line on the orientation. This adds a line only if there is a doubt.
     if (!turned.empty())
       find("orientation_noise", Verdict::Warn,
            "directions differ from slice to slice, which moves pixels of " + slices(turned.size()) +
@@ -578,8 +584,8 @@ class SeriesAssembler {
   }
 
   void order(DicomStack& stack) {
-    // height_mm() counts from the first slice, and sorting changes which slice is first. Compares heights
-    // from the origin instead.
+    // height_mm() counts from the first slice, but sorting changes the first slice. Therefore heights from
+    // the origin are compared.
     const glm::dvec3 normal = stack.normal;
     std::stable_sort(stack.slices.begin(), stack.slices.end(), [&](const DicomSlice& a, const DicomSlice& b) {
       const double height_a = glm::dot(a.first_mm, normal);
@@ -593,8 +599,8 @@ class SeriesAssembler {
     std::vector<double> gaps;
     for (std::size_t i = 1; i < stack.slices.size(); ++i)
       gaps.push_back(stack.height_mm(stack.slices[i]) - stack.height_mm(stack.slices[i - 1]));
-    std::erase_if(gaps, [](double gap) { return gap < 1e-6; });  // less than the rounding of positions in any
-                                                                 // file
+    // Less than the rounding of positions in any file.
+    std::erase_if(gaps, [](double gap) { return gap < 1e-6; });
     double usual_gap_mm = 0.0;
     if (!gaps.empty()) {
       std::nth_element(gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2), gaps.end());
@@ -621,7 +627,7 @@ class SeriesAssembler {
     audit_identifiers(stack);
   }
 
-  /// Reports images of different files with the same SOP Instance UID. Frames of one file share theirs.
+  /// Reports images of different files with the same SOP Instance UID. Frames of one file share one UID.
   void audit_identifiers(const DicomStack& stack) {
     std::map<std::string, std::filesystem::path> file_of;
     std::vector<std::string> shared;

@@ -22,7 +22,7 @@ struct DicomStack {
   double height_mm(const DicomSlice& slice) const {
     return glm::dot(slice.first_mm - first().first_mm, normal);
   }
-  /// The shift in pixels, within the plane, of a slice's first pixel from the first slice's.
+  /// How far the first pixel of a slice is shifted within the plane from that of the first slice, in pixels.
   glm::dvec2 aside_px(const DicomSlice& slice) const {
     const glm::dvec3 offset_mm = slice.first_mm - first().first_mm;
     return glm::dvec2(glm::dot(offset_mm, along_row), glm::dot(offset_mm, along_column)) / first().spacing_mm;
@@ -39,8 +39,8 @@ struct DicomStack {
 DicomStack stack_of_series(const std::filesystem::path& path, const ReadOptions& options,
                            std::vector<Finding>& audit);
 
-/// Runs a task for every index in parallel. If several tasks throw, rethrows the exception of the lowest
-/// index, on any thread count. Throws Stopped if a stop is requested before a task begins.
+/// Runs a task for every index in parallel. If tasks throw, rethrows the exception of the lowest index, so
+/// that it does not depend on the threads. Throws Stopped if a stop is requested before a task begins.
 void for_each_index(std::size_t count, const Progress& progress,
                     const std::function<void(std::size_t)>& task);
 

@@ -29,7 +29,7 @@ constexpr std::array<SharedAttribute, 28> shared_attributes{
      {0x00180083, "DS"}, {0x00180091, "IS"}, {0x00185100, "CS"}, {0x0020000d, "UI"}, {0x00200010, "SH"},
      {0x00200052, "UI"}, {0x00200060, "CS"}, {0x00201040, "LO"}}};
 
-/// Files state positions to a hundredth of a millimetre or better. Planes closer than this are the same.
+/// Files state positions to a hundredth of a millimetre or better. Planes closer than this count as one.
 constexpr double same_plane_mm() {
   return 0.01;
 }

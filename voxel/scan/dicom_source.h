@@ -14,7 +14,8 @@
 
 namespace octotomy::voxel {
 
-/// The patient, study and images of a DICOM series, which files derived from it copy and refer to.
+/// Patient, study and images of a DICOM series, for files that are derived from the series: these copy
+/// patient and study and refer to the images.
 struct DicomSource {
   struct Text {
     std::string vr;  ///< its value representation
@@ -23,7 +24,8 @@ struct DicomSource {
   struct Image {
     std::string class_uid;
     std::string instance_uid;
-    double height_mm = 0.0;  ///< of its plane along `normal`, from the frame of reference's origin
+    /// Position of the image's plane along `normal`, from the frame of reference's origin.
+    double height_mm = 0.0;
   };
 
   /// Patient, study, frame of reference and acquisition by tag, from the first image's file and in its
@@ -33,13 +35,13 @@ struct DicomSource {
   std::string series_uid;
   int series_number = 0;
   std::string modality;
-  std::vector<Image> images;  ///< in order along the normal; each frame of a file is an image
+  std::vector<Image> images;  ///< sorted along the normal; each frame of a file is an image
   glm::dvec3 normal{0, 0, 1};
-  std::optional<Lattice> lattice = {};  ///< lattice of the images at their stated positions; none if they
-                                        ///< form no lattice
-  Lattice around = {};  ///< the lattice that read_scene() makes of the images, which holds all of them
-  /// The part of read_scene()'s audit that comes from headers: the chosen series, the images left out, and
-  /// their positions. Lines on samples are absent.
+  /// Lattice of the images at their stated positions; none if they form no lattice.
+  std::optional<Lattice> lattice = {};
+  Lattice around = {};  ///< the lattice on which read_scene() returns the samples, which contains all images
+  /// The lines of read_scene()'s audit that follow from headers: about the chosen series, the images left
+  /// out, and the positions. Lines about samples are absent.
   std::vector<Finding> audit = {};
 };
 

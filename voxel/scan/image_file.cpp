@@ -28,7 +28,8 @@ namespace fs = std::filesystem;
 using Encode = decltype(&octotomy_encode_image);
 using Read = decltype(&octotomy_read_images);
 
-/// Loads the library. It is never unloaded, because OpenImageIO's threads run until the program ends.
+/// The library octotomy_image_io.so. It is never unloaded, because OpenImageIO's threads run until the
+/// program ends.
 void* symbol_of_library(const char* name) {
   const fs::path path = helper_file("octotomy_image_io.so");
   void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -69,7 +70,7 @@ std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ive
 std::string image_library_version() {
   using Version = decltype(&octotomy_image_library_version);
   const int version = reinterpret_cast<Version>(symbol_of_library("octotomy_image_library_version"))();
-  // The number is 10000 major + 100 minor + patch.
+  // OpenImageIO's version number is 10000 major + 100 minor + patch.
   return std::to_string(version / 10000) + "." + std::to_string(version / 100 % 100) + "." +
          std::to_string(version % 100);
 }
@@ -94,7 +95,7 @@ std::vector<StoredImage> read_images(const fs::path& path) {
   std::string error;
   bool is_read = false;
   {
-    const QuietErrors quiet;  // libpng prints its reasons as well
+    const QuietErrors quiet;  // libpng also prints its error messages
     is_read = read(path.c_str(), header.format.c_str(), header.largest_sample, most_bytes, &images, &error);
   }
   if (!is_read) {

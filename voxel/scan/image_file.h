@@ -12,7 +12,7 @@
 
 namespace octotomy::voxel {
 
-/// An ASCII text, stored in pictures of formats that support it.
+/// An ASCII text with a keyword, stored in pictures whose format supports texts.
 struct ImageText {
   std::string keyword, text;
 };
@@ -26,9 +26,9 @@ std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ive
                                        const std::vector<std::uint8_t>& rgb,
                                        const std::optional<ImageText>& text = std::nullopt);
 
-/// Writes a picture in the format of the extension (.png, .jpg, .jpeg, .webp); written beside and renamed
-/// into place. Throws as encode_image() does, with the path, and Error (Resource) if the disk is full or
-/// fails.
+/// Writes a picture in the format of the extension (.png, .jpg, .jpeg, .webp), to a temporary file that is
+/// renamed into place. Throws as encode_image() does, with the path, and Error (Resource) if the disk is full
+/// or fails.
 void write_image(const std::filesystem::path& path, const glm::ivec2& size_px,
                  const std::vector<std::uint8_t>& rgb, const std::optional<ImageText>& text = std::nullopt);
 
@@ -38,8 +38,8 @@ std::string image_library_version();
 
 /// Reads the pages of a file, as grey images. The format is recognised by the first bytes: PNG, TIFF, JPEG,
 /// WebP, BMP, PNM, EXR or JPEG 2000. Throws Error with path and reason: Input, or Resource if the library
-/// cannot be loaded. Memory: pages of at most 64 MiB, or of 1100 times the file if that is more, plus the
-/// memory of the format's reader, two or three times as much.
+/// cannot be loaded. Memory: the pages, in total at most 64 MiB or, if that is more, 1100 times the file's
+/// size; the format's reader uses two or three times as much in addition.
 std::vector<StoredImage> read_images(const std::filesystem::path& path);
 
 }  // namespace octotomy::voxel

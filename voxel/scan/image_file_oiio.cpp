@@ -47,11 +47,12 @@ namespace {
 using octotomy::voxel::StoredImage;
 
 /// Largest difference, of 255, between the channels of a grey picture coded as brightness and two colours:
-/// decoding rounds each channel separately.
+/// it arises because decoding rounds each channel separately.
 constexpr int lossy_shades_apart = 1;
 
-/// The original value of a stretched sample. Readers stretch by multiplying with the ratio of the type's
-/// largest value to the picture's and rounding down, or by repeating the highest bits below the lowest.
+/// The original value of a stretched sample. Readers stretch samples in one of two ways: they multiply by the
+/// type's largest value, divide by the picture's largest and round down, or they repeat the highest bits
+/// below the lowest.
 template <typename Sample>
 Sample unstretched(Sample sample, std::uint32_t largest) {
   constexpr std::uint64_t whole = std::numeric_limits<Sample>::max();
@@ -60,7 +61,7 @@ Sample unstretched(Sample sample, std::uint32_t largest) {
   return static_cast<Sample>((std::uint64_t{sample} * largest + whole - 1) / whole);
 }
 
-/// The first channel of each pixel, converted to another type that can hold its values.
+/// Copies the first channel of each pixel to a type that can represent its values.
 template <typename Read, typename Stored>
 std::vector<char> first_channel(const std::vector<char>& pixels, std::size_t channels,
                                 std::uint32_t largest) {
@@ -76,8 +77,8 @@ std::vector<char> first_channel(const std::vector<char>& pixels, std::size_t cha
   return bytes;
 }
 
-/// The types in which samples are read and stored. OpenImageIO would stretch integers if another type were
-/// requested.
+/// The type in which samples are read, and the type in which they are stored. If another type were requested,
+/// OpenImageIO would stretch integers.
 struct Reading {
   OIIO::TypeDesc read_as;
   StoredImage::Type stored_as;
@@ -131,13 +132,13 @@ bool is_grey(const std::vector<char>& pixels, std::size_t channels, std::size_t 
   return true;
 }
 
-/// Turns the pixels from the order in which they are stored to rows from the top, each from the left.
+/// Reorders the pixels from the stored orientation to rows from the top, each from the left.
 void turn_upright(StoredImage& image) {
   const int code = image.orientation;
   if (code < 2 || code > 8) return;
   const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
   const std::size_t bytes = image.bytes.size() / (width * height);
-  // TIFF 6.0, page 36: from 5 on rows and columns are exchanged.
+  // TIFF 6.0, page 36: in the orientations 5 to 8 rows and columns are exchanged.
   const bool is_turned = code >= 5, from_right = code == 2 || code == 3 || code == 7 || code == 8,
              from_below = code == 3 || code == 4 || code == 6 || code == 7;
   std::vector<char> upright(image.bytes.size());
@@ -155,7 +156,7 @@ void turn_upright(StoredImage& image) {
   image.height = static_cast<int>(rows);
 }
 
-/// Copies a page's statements about its pixels.
+/// Copies a page's statements about its pixels, such as orientation and resolution.
 void take_statements(const OIIO::ImageSpec& spec, std::string_view format, StoredImage& image) {
   image.pixels_per_unit = static_cast<double>(spec.get_float_attribute("XResolution", 0.0f));
   image.pixels_per_unit_across = static_cast<double>(spec.get_float_attribute("YResolution", 0.0f));
@@ -179,7 +180,8 @@ std::string read_page(OIIO::ImageInput& in, int page, std::uint32_t largest_samp
   image.type = reading.stored_as;
   const OIIO::TypeDesc type = reading.read_as;
   const auto channels = static_cast<std::size_t>(spec.nchannels);
-  if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || channels < 1) return "a page that is no image";
+  if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || channels < 1)
+    return "a page that contains no image";
   // With such a tile size, TIFF's reader would loop forever.
   const bool has_tiles = spec.tile_width != 0 || spec.tile_height != 0;
   if (has_tiles && (spec.tile_width < 1 || spec.tile_height < 1 || spec.tile_depth > 1))
@@ -212,7 +214,7 @@ extern "C" bool octotomy_read_images(const char* path, const char* format, std::
                                      std::size_t most_bytes, std::vector<StoredImage>* images,
                                      std::string* error) {
   try {
-    // open() would try every reader that OpenImageIO has.
+    // Creates the format's own reader, because open() would try all of OpenImageIO's readers.
     const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::create(format);
     OIIO::ImageSpec first, wishes;
     wishes.attribute("oiio:UnassociatedAlpha", 1);  // otherwise samples are multiplied by their alpha

@@ -21,23 +21,25 @@ struct StoredImage {
   int width = 0;
   int height = 0;
   Type type = Type::UInt8;
-  std::vector<char> bytes;  ///< in this machine's byte order, upright
-  /// Orientation of rows and columns as the file states it (1 to 8 of TIFF and EXIF); 1: as stored.
+  std::vector<char> bytes;  ///< samples in this machine's byte order, rotated upright
+  /// The orientation that the file states for its stored rows and columns, 1 to 8 as in TIFF and EXIF; 1:
+  /// they were upright.
   int orientation = 1;
-  double pixels_per_unit = 0.0;         ///< along rows, as the file states; 0: not stated
+  double pixels_per_unit = 0.0;         ///< resolution along rows, as the file states it; 0: not stated
   double pixels_per_unit_across = 0.0;  ///< across rows
-  double mm_per_unit = 0.0;             ///< 0: the unit of resolution is not stated, or no length
-  bool is_white_zero = false;           ///< TIFF's WhiteIsZero: large samples are dark
+  /// Length of the resolution's unit; 0: the unit is not stated or is not a length.
+  double mm_per_unit = 0.0;
+  bool is_white_zero = false;  ///< TIFF's WhiteIsZero: large samples are dark
   bool is_lossy = false;
-  std::string description;  ///< free text, in which ImageJ and OME describe the file
+  std::string description;  ///< free text in which ImageJ and OME describe the file
 };
 }  // namespace octotomy::voxel
 
-/// Exported by octotomy_image_io.so. Fills `images` with the pages of a file of a format, or fills `error`
-/// with the reason and returns false. Samples have the values of the file: stretching by the reader is undone
-/// by means of `largest_sample`, the largest value that a sample may have (PictureHeader). Refuses colour:
-/// channels that differ, in JPEG and WebP by more than one of 255. All pages together take at most
-/// `most_bytes`, and so does a single tile.
+/// Exported by octotomy_image_io.so. Fills `images` with the pages of a file in the given format, or fills
+/// `error` with the reason and returns false. Samples have the values of the file: stretching by the reader
+/// is undone by means of `largest_sample`, the largest value that a sample may have (PictureHeader). Refuses
+/// colour: channels that differ, in JPEG and WebP by more than one of 255. Refuses files whose pages
+/// together, or a single tile, take more than `most_bytes`.
 extern "C" bool octotomy_read_images(const char* path, const char* format, std::uint32_t largest_sample,
                                      std::size_t most_bytes,
                                      std::vector<octotomy::voxel::StoredImage>* images, std::string* error);

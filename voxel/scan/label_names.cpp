@@ -69,13 +69,13 @@ std::vector<SlicerSegment> slicer_segments(const fs::path& path) {
       segment.layer = number;
       segment.value = 1;
     }
-    // Without a value the segments are numbered as they are listed.
+    // Segments without a value are numbered in the order of the list.
     if (segment.value <= 0) segment.value = number + 1;
     largest = std::max(largest, segment.value);
     segments.push_back(std::move(segment));
   }
   std::set<int> taken;
-  std::map<std::pair<int, int>, int> number_of;  // number of each pair of layer and value
+  std::map<std::pair<int, int>, int> number_of;  // the label's number for each pair of layer and value
   for (SlicerSegment& segment : segments) {
     const auto [known, is_new] = number_of.try_emplace({segment.layer, segment.value}, segment.value);
     if (is_new && taken.contains(segment.value)) known->second = ++largest;

@@ -11,17 +11,18 @@
 
 namespace octotomy::voxel {
 
-/// The largest number of a label or an overlap. Single precision holds every integer up to here; 2^24 is
-/// excluded because larger integers round to it.
+/// The largest allowed number of a label or an overlap. Single precision represents every integer up to this
+/// one; 2^24 is excluded because 2^24 + 1 is rounded to it.
 constexpr int most_number = (1 << 24) - 1;
 
-/// Assigns numbers above all labels to samples that lie in several labels: see Scene::overlaps.
+/// Assigns a number above all labels to each set of labels that overlap in a sample: see Scene::overlaps.
 class LabelOverlaps {
  public:
   /// `largest_label` is the largest number that any label or sample has.
   explicit LabelOverlaps(int largest_label) : next_(largest_label + 1) {}
 
-  /// The number of a sample after a label was added to it; 0 means no label.
+  /// The new number of a sample with the number `number` after a label was added to the sample; 0 means no
+  /// label.
   int joined(int number, int label) {
     if (number == 0 || number == label) return label;
     const auto [known, is_new] = joined_.try_emplace({number, label}, 0);
@@ -47,12 +48,13 @@ class LabelOverlaps {
   std::map<int, std::vector<int>> overlaps_;
 };
 
-/// Text for the audit: "500 samples lie in 1 'Mandible' and 2 'Teeth', as number 3; ...", and its
-/// consequence. `counts` has the number of samples of each number.
+/// Text for the audit: "500 samples lie in 1 'Mandible' and 2 'Teeth', as number 3; ...", followed by the
+/// consequence for windows and files. `counts` has the number of samples of each number.
 std::string described(const std::map<int, std::vector<int>>& overlaps,
                       const std::map<int, std::size_t>& counts, const std::map<int, std::string>& names);
 
-/// The scene with only the lowest label where several overlap, for files of one layer.
+/// A copy of the scene in which samples with several labels have only the lowest one, for files with one
+/// layer.
 Scene with_lowest_labels(const Scene& scene);
 
 }  // namespace octotomy::voxel

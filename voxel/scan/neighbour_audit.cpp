@@ -24,15 +24,16 @@ namespace octotomy::voxel {
 namespace {
 
 constexpr int largest_side = 64;
-/// Images with fewer pixels a side have too little detail to be compared.
+/// Images with fewer pixels along a side have too little detail to be compared.
 constexpr int smallest_side = 8;
 
-/// Flips are bits: 1 mirrored along rows, 2 mirrored along columns; exclusive-or combines two flips.
+/// Flips are sets of bits: 1 mirrors along rows, 2 mirrors along columns. The exclusive-or of two flips is
+/// their combination.
 constexpr int flip_count = 4;
 constexpr std::array<const char*, flip_count> flip_words = {
     "", "mirrored along its rows", "mirrored along its columns", "turned by 180 degrees"};
 
-/// An image minus its mean, and the length of its values as a vector.
+/// An image after subtraction of its mean, and the Euclidean norm of its values.
 struct Thumbnail {
   std::vector<float> values;
   int width = 0, height = 0;
@@ -55,8 +56,8 @@ Thumbnail thumbnail_of(const Sample* pixels, const glm::ivec2& size_px, double f
   Thumbnail small;
   small.width = size_px.x / block;
   small.height = size_px.y / block;
-  // Pixels that do not fill a block are left out equally on both sides, so that a flipped image has the same
-  // blocks.
+  // Pixels that do not fill a whole block are left out at both sides equally, so that a flipped image has the
+  // same blocks.
   const glm::ivec2 start = (size_px - block * glm::ivec2(small.width, small.height)) / 2;
   double mean = 0.0;
   const auto width = static_cast<std::size_t>(size_px.x);
@@ -84,7 +85,7 @@ Thumbnail thumbnail_of(const Sample* pixels, const glm::ivec2& size_px, double f
   return small;
 }
 
-/// Correlation of image `a` with image `b` flipped; 0 if one of them is blank.
+/// The correlation of image `a` with the flipped image `b`; 0 if one of the images is blank.
 double correlation(const Thumbnail& a, const Thumbnail& b, int flip) {
   if (!(a.length > 0.0 && b.length > 0.0)) return 0.0;
   double product = 0.0;
@@ -133,7 +134,7 @@ class NeighbourAudit {
  private:
   using Pair = std::array<double, flip_count>;
 
-  /// The pairs that a slice is in.
+  /// The pairs of neighbouring slices to which a slice belongs.
   std::vector<std::size_t> pairs_of(std::size_t slice) const {
     std::vector<std::size_t> pairs;
     if (slice > 0) pairs.push_back(slice - 1);
@@ -141,15 +142,15 @@ class NeighbourAudit {
     return pairs;
   }
 
-  /// The agreement of the slices on both sides of a slice, as a reference for the slice itself. For a slice
-  /// at an end, the agreement of the next pair.
+  /// A reference for a slice's agreement with its neighbours: the agreement of the two slices beside it. For
+  /// a slice at an end it is the agreement of the next pair.
   double reference_of(std::size_t slice) const {
     if (slice == 0) return pairs_[1][0];
     if (slice == pairs_.size()) return pairs_[pairs_.size() - 2][0];
     return across_[slice - 1];
   }
 
-  /// The flip that improves all pairs of a slice; 0: none.
+  /// The flip of a slice that improves the agreement of all its pairs; 0: none does.
   int flip_of(std::size_t slice) const {
     int best = 0;
     double most = 0.0;
@@ -160,8 +161,8 @@ class NeighbourAudit {
         as_is += pairs_[pair][0] / static_cast<double>(pairs.size());
         flipped += pairs_[pair][static_cast<std::size_t>(flip)] / static_cast<double>(pairs.size());
       }
-      // Slices of one noiseless shape agree up to rounding errors, whose ratio is meaningless. Hence the
-      // lower bound.
+      // The lower bound is needed for noiseless slices of one shape: they differ only by rounding errors,
+      // whose ratio is meaningless.
       const bool is_unusual = 1.0 - as_is > std::max(1e-3, 1.2 * usual_disagreement_);
       if (is_better(as_is, flipped) && is_unusual && flipped > most) {
         most = flipped;
@@ -171,8 +172,8 @@ class NeighbourAudit {
     return best;
   }
 
-  /// Whether a slice has about the same contrast as its neighbours but agrees with none of them, although the
-  /// neighbours agree with each other.
+  /// Whether a slice agrees with none of its neighbours, although it has about their contrast and they agree
+  /// with each other.
   bool is_unlike(std::size_t slice) const {
     double most = -1.0, contrast = 0.0;
     for (const std::size_t pair : pairs_of(slice)) {
@@ -181,7 +182,7 @@ class NeighbourAudit {
     }
     const bool is_end = slice == 0 || slice == pairs_.size();
     const double reference = reference_of(slice);
-    // A slice at an end may lie beyond the head and show only air; it has little contrast.
+    // A slice at an end may lie beyond the head. It then shows only air, with little contrast.
     return most < (is_end ? 0.3 : 0.5) && 1.0 - most > 4.0 * (1.0 - reference) &&
            slices_[slice].length > (is_end ? 0.5 : 0.25) * contrast;
   }
@@ -280,12 +281,13 @@ class NeighbourAudit {
   std::vector<int> flips_;
   std::vector<char> is_judged_;
   std::vector<std::string> unlike_;
-  std::vector<Pair> pairs_;     ///< correlation of slices i and i + 1 by the flip of the second
-  std::vector<double> across_;  ///< correlation of slices i and i + 2
+  /// Entry i: correlations of slices i and i + 1, one for each flip of the latter.
+  std::vector<Pair> pairs_;
+  std::vector<double> across_;  ///< entry i: correlation of slices i and i + 2
   double usual_disagreement_ = 0.0;
 };
 
-/// Mean difference of samples that lie `stride` apart in memory, over at most sixteen slices.
+/// The mean absolute difference of samples `stride` apart in memory, over at most sixteen slices.
 template <typename Samples>
 double difference_at(const Samples& samples, std::size_t area, std::size_t stride, double floor) {
   const std::size_t count = samples.size() / area, step = std::max<std::size_t>(1, count / 16);
@@ -308,7 +310,7 @@ void audit_rows(const Samples& samples, const glm::ivec2& size_px, double floor,
   const double declared = difference_at(samples, area, static_cast<std::size_t>(size_px.x), floor);
   const double exchanged = difference_at(samples, area, static_cast<std::size_t>(size_px.y), floor);
   const double along_row = difference_at(samples, area, 1, floor);
-  // With the correct row length, rows differ about as much as columns do.
+  // If the row length is correct, neighbouring rows differ about as much as neighbouring columns.
   if (declared > 2.0 * exchanged && declared > 2.0 * along_row)
     audit.push_back(
         {"rows_columns", Verdict::Fail,

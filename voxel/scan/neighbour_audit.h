@@ -15,8 +15,8 @@ namespace octotomy::voxel {
 /// - rows_columns, a Fail: images whose rows agree with each other at least twice as well if Rows and Columns
 ///   are exchanged.
 /// Agreement is the correlation of images reduced to at most 64 x 64 pixels. Adds no line if there is no
-/// doubt. Values below `floor` count as `floor`, so that padding does not outweigh the patient. `names` are
-/// the names of the slices. Parallel over slices; same result on any thread count.
+/// doubt. Values below `floor` are raised to `floor`, so that padding does not outweigh the patient. `names`
+/// are the slices' names for messages. Parallel over slices; same result on any thread count.
 void audit_neighbours(const decltype(Scene::samples)& samples, const glm::ivec2& size_px,
                       const std::vector<std::string>& names, double floor, std::vector<Finding>& audit);
 

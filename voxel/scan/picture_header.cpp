@@ -23,7 +23,8 @@ using namespace std::string_view_literals;
 constexpr std::string_view jpeg_begin = "\xff\xd8"sv;
 constexpr std::string_view codestream_begin = "\xff\x4f\xff\x51"sv;  // start, image and tile size
 constexpr std::string_view jp2_begin = "\0\0\0\x0cjP  "sv;
-/// Upper bound on headers at the beginning of a file. A PNM header may contain comments.
+/// Largest length of a header that is read at the beginning of a file. A PNM header may be long because of
+/// comments.
 constexpr std::size_t longest_header = 1 << 16;
 
 [[noreturn]] void refuse_claim() {
@@ -43,13 +44,14 @@ std::uint32_t little_endian_at(std::string_view bytes, std::size_t at) {
 /// Reads the sizes of image and tiles at the start of a JPEG 2000 codestream. Returns the largest sample that
 /// its bit depth allows; 0 above 16 bits.
 std::uint32_t read_codestream(std::string_view bytes, std::size_t most_bytes) {
-  constexpr std::size_t header_bytes = 43, depth_at = 42;  // with the first channel's depth
+  // Length of the header, up to the first channel's depth.
+  constexpr std::size_t header_bytes = 43, depth_at = 42;
   if (!bytes.starts_with(codestream_begin))
     throw InvalidInput("is a JPEG 2000 picture that does not begin with its size");
   if (bytes.size() < header_bytes) throw InvalidInput("is a JPEG 2000 picture that ends in its header");
   const auto number = [&](std::size_t at) { return static_cast<double>(big_endian_at(bytes, at)); };
   const double channels = big_endian_pair_at(bytes, 40);
-  // OpenJPEG's opj_tcp_t and opj_tccp_t, a tile's and its channels' parameters, rounded up.
+  // Memory of OpenJPEG's opj_tcp_t and opj_tccp_t, the parameters of a tile and of its channels, rounded up.
   constexpr double tile_bytes = 8192, tile_channel_bytes = 2048;
   double samples = channels, tiles = 1;
   for (const std::size_t axis : {0, 4}) {
@@ -87,9 +89,9 @@ std::string_view codestream_of(std::string_view bytes) {
   throw InvalidInput("is a JPEG 2000 picture without a codestream");
 }
 
-/// Checks the first frame's header. Markers are FF and a byte that is neither 00 nor FF; after most there is
-/// a length that includes its own bytes. For a picture in several scans, libjpeg keeps the whole picture in
-/// memory.
+/// Checks the first frame's header. A marker is FF and a byte that is neither 00 nor FF. Most markers are
+/// followed by a length that includes its own two bytes. For a picture in several scans, libjpeg keeps the
+/// whole picture in memory.
 void check_jpeg(std::string_view bytes, std::size_t most_bytes) {
   for (std::size_t at = jpeg_begin.size(); at + 4 <= bytes.size();) {
     const auto code = static_cast<std::uint8_t>(bytes[at + 1]);
@@ -124,7 +126,8 @@ void check_bitmap(std::string_view bytes) {
         "is a run-length-encoded BMP picture, which would be read wrongly: save it uncompressed");
 }
 
-/// The largest sample of a PNM: the third number behind its two letters, which comments may interrupt.
+/// The largest sample of a PNM: the third number after the two letters. Comments may stand between the
+/// numbers.
 std::uint32_t read_pnm(std::string_view bytes) {
   std::size_t at = 2;
   std::uint32_t number = 0;
@@ -172,7 +175,7 @@ PictureHeader read_picture_header(std::string_view bytes, std::size_t most_bytes
   if (begins("P2") || begins("P3") || begins("P5") || begins("P6")) return {"pnm", read_pnm(bytes)};
   if (begins("P1") || begins("P4") || begins("PF") || begins("Pf")) return {"pnm"};
   throw InvalidInput(
-      "is not a picture in a known format: give PNG, TIFF, JPEG, WebP, BMP, PGM, EXR or JPEG 2000");
+      "is not a picture in a known format: use PNG, TIFF, JPEG, WebP, BMP, PGM, EXR or JPEG 2000");
 }
 
 std::string picture_header_bytes(const std::filesystem::path& path) {

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 3> of_axis{"X", "Y", "Z"};
 
-/// The text after a key, up to the closing quote or else the end of the line.
+/// The text after a key, up to the closing quote or, without quotes, to the end of the line.
 std::optional<std::string> words_behind(const std::string& text, const std::string& key) {
   const std::size_t found = text.find(key);
   if (found == std::string::npos) return std::nullopt;
@@ -38,7 +38,8 @@ std::optional<double> number_behind(const std::string& text, const std::string& 
   return error == std::errc() ? std::optional(number) : std::nullopt;
 }
 
-/// A unit with its micro sign converted to UTF-8: Java programs write it as \u00B5, older ones as one byte.
+/// A unit whose micro sign is converted to UTF-8. Java programs write this sign as \u00B5, older programs as
+/// one byte.
 std::string plain_unit(const std::string& word) {
   for (const std::string_view micro : {"\\u00B5", "\\u00b5", "\\u03BC", "\\u03bc", "\xb5"})
     if (word.starts_with(micro)) return "\u00b5" + word.substr(micro.size());
@@ -50,13 +51,13 @@ bool is_near(double a, double b) {
   return std::abs(a - b) <= 0.01 * b;
 }
 
-/// Stores a size that the program states, in one of its units.
+/// Stores a size that the picture's program states, after conversion from the given unit to mm.
 void take_size(StatedPicture& stated, std::size_t axis, std::optional<double> number,
                const std::string& unit) {
   if (!number) return;
   const std::optional<LengthUnit> length = length_unit(unit);
   if (!length)
-    stated.not_sizes = "its unit '" + unit + "' is no length that is known";
+    stated.not_sizes = "its unit '" + unit + "' is not a known unit of length";
   else if (!(*number > 0.0) || !std::isfinite(*number))
     stated.not_sizes = print("it states a size of %g %s", *number, unit.c_str());
   else
@@ -81,7 +82,8 @@ void read_image_j(const StoredImage& image, StatedPicture& stated) {
     take_size(stated, 1, inverse(image.pixels_per_unit_across), unit_of("\nyunit="));
     take_size(stated, 2, number_behind(text, "\nspacing="), unit_of("\nzunit="));
   }
-  // In the tags ImageJ writes only the units inch and cm, and then its description has the same unit.
+  // In the resolution tags ImageJ writes only the units inch and cm, and its description then states the same
+  // unit.
   if (const auto unit = length_unit(stated.unit);
       unit && image.mm_per_unit > 0.0 && !is_near(image.mm_per_unit, unit->mm)) {
     stated.size_mm[0] = stated.size_mm[1] = std::nullopt;
@@ -102,8 +104,8 @@ void read_ome(const StoredImage& image, StatedPicture& stated) {
   if (image.orientation >= 5) std::swap(stated.size_mm[0], stated.size_mm[1]);
 }
 
-/// Whether a resolution is a common one for print. Programs write these as defaults, so they are no
-/// information about a pixel's size.
+/// Whether a resolution is a common one for print. Programs write these resolutions as defaults, so they do
+/// not state a pixel's size.
 bool is_of_print(double pixels_per_mm) {
   constexpr std::array<double, 6> per_inch{72.0, 96.0, 100.0, 150.0, 300.0, 600.0};
   return std::any_of(per_inch.begin(), per_inch.end(),

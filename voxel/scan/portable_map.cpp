@@ -40,7 +40,7 @@ StoredImage read_portable_map(std::string_view bytes, std::size_t most_bytes) {
   const std::uint32_t width = number_at(bytes, at), height = number_at(bytes, at),
                       largest = number_at(bytes, at);
   ++at;  // one blank before the samples
-  // In text a sample takes at least a digit and a blank; the last needs no blank.
+  // As text, a sample takes at least a digit and a blank; the last sample needs no blank.
   const double samples = static_cast<double>(width) * height * static_cast<double>(channels);
   const double left = at < bytes.size() ? static_cast<double>(bytes.size() - at) : 0.0;
   if (width < 1 || height < 1 || 2.0 * samples > static_cast<double>(most_bytes))
@@ -65,7 +65,7 @@ StoredImage read_portable_map(std::string_view bytes, std::size_t most_bytes) {
       if (pixel[channel] > largest)
         throw InvalidInput("is a PNM picture with a sample of " + std::to_string(pixel[channel]) +
                            ", above the largest that its header states, " + std::to_string(largest) +
-                           ": is the file damaged?");
+                           ": the file may be damaged");
       if (pixel[channel] != pixel[0]) throw InvalidInput("is a colour image; a scan is grey");
     }
     const auto sample = static_cast<std::uint16_t>(pixel[0]);

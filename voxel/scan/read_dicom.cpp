@@ -119,7 +119,8 @@ class SeriesReader {
     return true;
   }
 
-  /// A mark of padding in single precision: minus sixteen times the largest value that any slice can hold.
+  /// The padding's value for samples in single precision: minus sixteen times the largest value that any
+  /// slice can contain.
   static double far_below(const Stack& stack) {
     double largest = 65535.0;
     for (const DicomSlice& slice : stack.slices)
@@ -130,7 +131,8 @@ class SeriesReader {
     return static_cast<double>(static_cast<float>(std::max(-16.0 * largest, least)));
   }
 
-  /// Reports bits outside BitsStored: an overlay if the header says so, else values that have wrapped around.
+  /// Reports pixels with bits outside BitsStored: an overlay if the header states one, else values that may
+  /// have been cut off.
   void audit_stored_bits(const Stack& stack, const std::vector<DecodedSlice>& decoded) {
     std::vector<std::string> names;
     std::size_t count = 0;
@@ -145,7 +147,7 @@ class SeriesReader {
       find("stored_bits", Verdict::Fail,
            std::to_string(count) + " pixels of " + slices(names.size()) +
                print(" have bits beyond the %u that BitsStored counts. They were cut off: if they belong to "
-                     "the values, those are wrong; correct BitsStored and HighBit: ",
+                     "the values, these values are wrong; correct BitsStored and HighBit: ",
                      stored) +
                listed(names),
            names);
@@ -304,8 +306,8 @@ class SeriesReader {
            repeats);
   }
 
-  /// The greatest common divisor of all differences of samples. Coarser steps than a unit come from 8-bit
-  /// storage or from lossy processing.
+  /// The greatest common divisor of all differences between samples. If it is above one unit, samples were
+  /// stored with 8 bits or processed with losses.
   void audit_steps() {
     const auto* samples = std::get_if<Int16Samples>(&scene_.samples);
     if (samples == nullptr || scene_.modality != "CT") return;
@@ -341,7 +343,7 @@ class SeriesReader {
     return found;
   }
 
-  /// The range of a stored padding after a slice's rescale.
+  /// The range of a slice's padding after the slice's rescale.
   static Range read_as(const DicomPadding& padding, const DicomSlice& slice) {
     const double slope = slice.slope.value_or(1.0) == 0.0 ? 1.0 : slice.slope.value_or(1.0);
     const double a = slope * padding.low + slice.intercept.value_or(0.0),
@@ -349,7 +351,7 @@ class SeriesReader {
     return {std::min(a, b), std::max(a, b)};
   }
 
-  /// The range of the headers' padding after rescale, over all slices without a LUT.
+  /// The range of the padding that headers state, after rescale, over all slices without a LUT.
   static std::optional<Range> padding_values(const Stack& stack) {
     std::optional<Range> values;
     for (const DicomSlice& slice : stack.slices) {
@@ -363,7 +365,7 @@ class SeriesReader {
     return values;
   }
 
-  /// Whether slices state paddings that differ.
+  /// Whether the slices state different paddings.
   static bool is_padding_mixed(const Stack& stack) {
     const std::optional<DicomPadding> usual = usual_padding(stack);
     return usual && std::any_of(stack.slices.begin(), stack.slices.end(), [&](const DicomSlice& slice) {
@@ -371,7 +373,8 @@ class SeriesReader {
            });
   }
 
-  /// Whether most padded samples have measured ones on two sides or more. Real padding fills areas instead.
+  /// Whether most padded samples have measured samples on at least two sides. Real padding fills areas
+  /// instead.
   template <typename Samples>
   bool is_scattered(const Samples& samples, const glm::ivec2& size_px) const {
     const std::size_t width = static_cast<std::size_t>(size_px.x),
@@ -403,8 +406,8 @@ class SeriesReader {
     return DicomPadding{most->first.first, most->first.second};
   }
 
-  /// Marks the samples of an image within `values` that are connected to its rim through such samples.
-  /// Returns their number.
+  /// Marks the samples of an image that lie within `values` and are connected to the image's rim by such
+  /// samples. Returns their number.
   template <typename Sample>
   static std::size_t mark_from_rim(std::span<Sample> image, int width, const Range& values, Sample mark) {
     const auto columns = static_cast<std::size_t>(width), rows = image.size() / columns;
@@ -437,8 +440,8 @@ class SeriesReader {
   }
 
   /// Handles slices without PixelPaddingValue in a series whose other slices state one. Samples with the
-  /// others' usual padding value that are connected to the rim are assumed to be padding. Inside the body the
-  /// same value may be a measurement.
+  /// others' usual padding value that are connected to the rim are assumed to be padding. Elsewhere the same
+  /// value may be a measurement.
   template <typename Samples>
   void assume_padding(Stack& stack, Samples& samples) {
     using Sample = typename Samples::value_type;
@@ -478,9 +481,9 @@ class SeriesReader {
     if (!scene_.padding) find("padding", Verdict::Pass, std::move(without));
   }
 
-  /// Pixels beyond the scanner's field of view hold a padding value, which is no measurement. All these
-  /// pixels get one value below all measured samples: the header's padding if it is below them, else the mark
-  /// to which the pixels were decoded.
+  /// Pixels beyond the scanner's field of view have a padding value, which is no measurement. All these
+  /// pixels get one value below all measured samples: the header's padding if it is below them, else the
+  /// value to which such pixels were decoded.
   template <typename Samples>
   void take_padding(Stack& stack, Samples& samples) {
     using Sample = typename Samples::value_type;

@@ -31,9 +31,9 @@ constexpr const char* segmentation_storage = "1.2.840.10008.5.1.4.1.1.66.4";
 constexpr const char* label_map_storage = "1.2.840.10008.5.1.4.1.1.66.7";
 
 /// Positions may deviate by this share of the planes' distance and still count as even, with a warning. Two
-/// planes that deviate towards each other still remain distinct.
+/// planes that deviate towards each other still remain separate.
 constexpr double jitter = 0.2;
-/// Positions closer than this are equal, because decimal strings are rounded.
+/// Positions closer than this count as equal, because decimal strings are rounded.
 constexpr double same_position_mm = 1e-4;
 
 struct Frame {
@@ -111,7 +111,7 @@ class SegReader {
     scene_.audit.push_back({"segments", Verdict::Pass, list});
   }
 
-  /// A decimal attribute from a frame's own functional groups, else from the shared ones.
+  /// A decimal attribute from a frame's own functional groups or, if absent there, from the shared groups.
   static std::optional<std::vector<double>> group_decimals(const DicomFile* own, const DicomFile* shared,
                                                            DicomTag group, DicomTag tag) {
     for (const DicomFile* groups : {own, shared}) {
@@ -162,7 +162,7 @@ class SegReader {
               std::to_string(rows_) + " pixels, more than its bytes can hold: it is damaged");
     const auto parts = file_.frame_fragments(count);
     if (!parts)
-      refused("whose compressed fragments belong to no certain frames: decompress it with another tool");
+      refused("whose compressed fragments cannot be assigned to frames: decompress it with another tool");
     for (std::size_t i = 0; i < count; ++i) {
       const auto bits = static_cast<unsigned>(bits_);
       CompressedFrame frame{
@@ -172,7 +172,7 @@ class SegReader {
       const std::optional<std::string> decoded = decompress(frame);
       if (!decoded)
         refused("whose frame " + std::to_string(i + 1) + " in transfer syntax " + syntax +
-                " cannot be decompressed: the file is damaged, or decompress it with another tool");
+                " cannot be decompressed: the file may be damaged; try to decompress it with another tool");
       decompressed_ += *decoded;
     }
     pixels_ = decompressed_;
@@ -212,13 +212,13 @@ class SegReader {
     frames_.push_back({segment, glm::dot(offset, normal_), number});
   }
 
-  /// How well the frames fit a lattice of this step.
+  /// How well the frames fit evenly spaced planes with this distance.
   struct Fit {
     double step_mm = 0.0, low_mm = 0.0;
-    double off_mm = 0.0;  ///< deviation of `worst`, the frame farthest from its plane
+    double off_mm = 0.0;  ///< distance of `worst`, the frame farthest from its plane, from that plane
     Frame worst = {};
     bool is_distinct = true;  ///< no two planes coincide
-    /// The error of a single position is half that of a difference of two.
+    /// A single position errs by at most half as much as the difference of two positions.
     bool is_exact() const { return is_distinct && off_mm <= 0.5 * position_tolerance_mm(step_mm); }
     bool holds() const { return is_distinct && off_mm <= jitter * step_mm; }
   };
@@ -248,8 +248,8 @@ class SegReader {
     return std::lround((frame.height_mm - fit.low_mm) / fit.step_mm);
   }
 
-  /// The largest distance between frames of one plane: a share of the least distance of two frames of a
-  /// segment, or of the stated distance.
+  /// The largest distance between frames that count as one plane: a share of the least distance between two
+  /// frames of one segment or, if no segment has two, of the stated distance.
   double distance_in_plane_mm() const {
     double least_mm = std::numeric_limits<double>::infinity();
     std::map<int, double> last_mm;
@@ -263,7 +263,7 @@ class SegReader {
     return std::max(same_position_mm, jitter * stated_step_mm_.value_or(thickness_mm_.value_or(0.0)));
   }
 
-  /// The distances of neighbouring planes, ascending.
+  /// The distances between neighbouring planes, in ascending order.
   std::vector<double> gaps_mm() const {
     std::vector<double> gaps;
     for (std::size_t i = 1; i < frames_.size(); ++i)
@@ -273,8 +273,8 @@ class SegReader {
     return gaps;
   }
 
-  /// The planes' distance: the stated one if the frames fit it, else the usual distance of neighbours, else,
-  /// if none is stated, the least distance.
+  /// Chooses the distance between planes: the stated one if the frames fit it, else the usual distance of
+  /// neighbours, else, if none is stated, the least distance.
   Fit chosen_fit() {
     const std::vector<double> gaps = gaps_mm();
     if (gaps.empty()) {
@@ -332,7 +332,7 @@ class SegReader {
     if (!fit_.is_exact())
       warn_spacing(
           print("planes lie up to %.3g mm off planes %.6g mm apart, most ", fit_.off_mm, fit_.step_mm) +
-          place_of(fit_.worst) + ": they are taken as even");
+          place_of(fit_.worst) + ": they are treated as evenly spaced");
     const double planes = std::round((frames_.back().height_mm - fit_.low_mm) / fit_.step_mm) + 1.0;
     if (planes > 4.0 * static_cast<double>(frames_.size()) + 64.0)
       refused("whose planes are scattered: " + print("%.0f for %zu frames", planes, frames_.size()));
@@ -381,7 +381,7 @@ class SegReader {
             "': choose its label or number, one of " + all);
   }
 
-  /// The share of a pixel that segment `wanted` fills, from 0 to 1.
+  /// The fraction of a pixel that belongs to segment `wanted`, from 0 to 1.
   float fraction_at(const Frame& frame, std::size_t pixel, int wanted) const {
     if (most_fraction_ == 0) return segment_at(frame, pixel) == wanted ? 1.0F : 0.0F;
     const int stored = static_cast<unsigned char>(pixels_[pixel]);
@@ -407,12 +407,12 @@ class SegReader {
     if (most_fraction_ > 0 && kind != "OCCUPANCY")
       scene_.audit.push_back({"fractions", Verdict::Warn,
                               what + ": the file states " + (kind.empty() ? "no type of fraction" : kind) +
-                                  ", so they may be no shares of volume"});
+                                  ", so they may not be shares of volume"});
     else
       scene_.audit.push_back({"fractions", Verdict::Pass, what});
   }
 
-  /// Counts the fractions of a frame that are neither zero nor the maximum.
+  /// Counts the pixels of a frame whose fractions are neither zero nor the maximum.
   void count_fractions(const Frame& frame, std::size_t area) {
     int& largest = largest_fractions_[frame.segment];
     for (const char pixel : pixels_.substr(frame.number * area, area)) {
@@ -428,7 +428,7 @@ class SegReader {
     if (is_label_map_) largest = bits_ == 8 ? 255 : 65535;
     std::stable_sort(frames_.begin(), frames_.end(),
                      [](const Frame& a, const Frame& b) { return a.segment < b.segment; });
-    // Reserves half of the numbers of int16 for overlaps.
+    // Labels in int16 use at most half of the positive numbers; the other half is reserved for overlaps.
     constexpr int most_of_int16 = 1 << 14;
     held_.resize(static_cast<std::size_t>(largest) + 1);
     LabelOverlaps overlaps(largest);
@@ -447,7 +447,7 @@ class SegReader {
     if (!undescribed.empty())
       scene_.audit.push_back({"undescribed", Verdict::Warn,
                               "samples belong to segments that the file does not describe: " +
-                                  listed(undescribed) + ": they have a number and no name"});
+                                  listed(undescribed) + ": they have a number but no name"});
     if (rounded_down_ + rounded_up_ == 0) return;
     for (const auto& [segment, fraction] : largest_fractions_)
       if (fraction > 0 && fraction < least_)
@@ -503,13 +503,13 @@ class SegReader {
   int rows_ = 0, columns_ = 0;
   std::size_t bits_ = 1;
   bool is_label_map_ = false;
-  std::string_view pixels_;        ///< of all frames, one after the other
-  std::string decompressed_ = {};  ///< the same, if the frames were compressed
+  std::string_view pixels_;        ///< pixels of all frames, one frame after the other
+  std::string decompressed_ = {};  ///< memory of `pixels_` if the frames were compressed
   int least_ = 128;
   int most_fraction_ = 0;  ///< maximum of a fractional segmentation; 0 for others
   std::size_t rounded_down_ = 0, rounded_up_ = 0;
   std::map<int, int> largest_fractions_;  ///< by segment
-  std::vector<std::size_t> held_;         ///< number of samples by segment
+  std::vector<std::size_t> held_;         ///< number of samples of each segment
   std::optional<double> stated_step_mm_, thickness_mm_;
   glm::dvec2 spacing_mm_{1.0};
   double same_plane_mm_ = 0.0;
@@ -520,7 +520,7 @@ class SegReader {
 }  // namespace
 
 bool is_dicom_seg(const fs::path& path) {
-  // The class is one of the first attributes.
+  // The storage class is among the first attributes, so the beginning of the file suffices.
   std::string bytes(4096, '\0');
   std::ifstream in = opened(path);
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
@@ -531,7 +531,7 @@ bool is_dicom_seg(const fs::path& path) {
 
 namespace {
 
-/// Reads a segmentation's file and converts it to a scene by `read`.
+/// Reads the file of a segmentation and returns the scene that `read` makes from it.
 template <typename Read>
 Scene read_seg(const fs::path& path, const Read& read) {
   std::string stored = file_bytes(path);

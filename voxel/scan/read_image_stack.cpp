@@ -63,8 +63,8 @@ SampleType sample_type_of(const StoredImage& image) {
   return SampleType::Float;
 }
 
-/// A sentence on files that seem to be missing: the numbers in most names differ by the least step, but some
-/// by more. Empty if none seems to be missing.
+/// A sentence on files that seem to be missing; empty if none does. Files seem to be missing if the numbers
+/// in most neighbouring names differ by the least step, but some differ by more.
 std::string skipped(const SliceNames& names) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < names.files.size(); ++i) {
@@ -73,7 +73,7 @@ std::string skipped(const SliceNames& names) {
     steps.push_back(*here - *below);
   }
   if (steps.empty()) return {};
-  // Steps of decimal fractions differ by rounding in the last digit.
+  // Steps between decimal fractions differ by rounding errors.
   constexpr double near = 1.5;
   const double least = *std::min_element(steps.begin(), steps.end());
   const auto is_wider = [&](double step) { return step > near * least; };
@@ -97,7 +97,7 @@ std::vector<fs::path> image_files(const fs::path& path) {
   if (fs::is_regular_file(path, error)) return is_image(path) ? std::vector{path} : std::vector<fs::path>{};
   const std::string pattern = path.filename().string();
   if (pattern.find_first_of("*?") == std::string::npos) return {};
-  // Each star multiplies the matching time by the length of the name.
+  // Each star multiplies the time for matching by the length of the name.
   if (std::count(pattern.begin(), pattern.end(), '*') > 4)
     refuse(path, "has more than four * in its pattern; use fewer");
   return ordered_by_name(files_in(path.has_parent_path() ? path.parent_path() : fs::path("."), pattern))

@@ -28,9 +28,9 @@ std::string bytes_of_part(const fs::path& path, std::uint64_t offset, std::uint6
   return bytes;
 }
 
-/// Mean difference between neighbours along x, divided by the mean deviation of all samples: small for a
-/// volume, about 1.4 for random numbers. Reads at most a million samples, in whole rows. Precondition: two
-/// bytes a sample.
+/// The mean difference between neighbours along x, divided by the samples' mean deviation from their mean. It
+/// is small for a scan and about 1.4 for random numbers. Reads at most a million samples, in whole rows.
+/// Precondition: two bytes a sample.
 double roughness(std::string_view bytes, const glm::ivec3& dims, const StoredSamples& stored) {
   const auto value = [&](std::size_t i) {
     const auto first = static_cast<unsigned char>(bytes[2 * i]),
@@ -51,7 +51,7 @@ double roughness(std::string_view bytes, const glm::ivec3& dims, const StoredSam
   return apart > 0.0 ? steps / apart : 0.0;
 }
 
-/// Whether the volume is much smoother in the other byte order.
+/// Whether the samples are much smoother in the other byte order.
 bool is_smoother_swapped(std::string_view bytes, const glm::ivec3& dims, const StoredSamples& stored) {
   if (bytes_of(stored.type) != 2 || dims.x < 8) return false;
   const double rough = roughness(bytes, dims, stored);
@@ -94,7 +94,7 @@ Scene read_raw(const fs::path& path, const ReadOptions& options) {
     bytes *= static_cast<std::uint64_t>(layout.dims[axis]);
   }
   if (std::error_code ignored; !fs::is_regular_file(path, ignored))
-    refuse(path, "is no regular file; give a file of raw samples");
+    refuse(path, "is not a regular file; choose a file of raw samples");
   const std::uint64_t held = fs::file_size(path);
   if (held < layout.offset || held - layout.offset != bytes)
     refuse(path, "holds " + std::to_string(held) + " bytes, but the raw layout takes " +

@@ -16,8 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* structure_set_storage = "1.2.840.10008.5.1.4.1.1.481.3";
 
-/// The value of an integer string; 0 if it is absent, not an integer, or larger than any program's region
-/// numbers.
+/// The value of an integer string; 0 if it is absent, not an integer, or larger than programs number regions.
 int number_of(const DicomFile& item, DicomTag tag) {
   const double number = item.decimal(tag).value_or(0.0);
   constexpr double most = 1e9;
@@ -44,7 +43,7 @@ void add_contours(const DicomFile& of_region, Structure& structure) {
     structure.is_interpolated |= kind == "INTERPOLATED_PLANAR";
     const auto numbers = contour.decimals(0x30060050);
     if (!numbers || numbers->size() % 3 != 0) {
-      structure.flaw = "a contour's points are no numbers x, y, z";
+      structure.flaw = "a contour's points are not triples of numbers x, y, z";
       continue;
     }
     if (const int stated = number_of(contour, 0x30060046);
@@ -64,7 +63,8 @@ void add_contours(const DicomFile& of_region, Structure& structure) {
                                                   : slab_mm;
     const std::optional<glm::dvec3> offset_mm = offset_of(contour);
     if (!offset_mm) {
-      structure.flaw = "a contour's ContourOffsetVector is not three numbers, so that its place is unknown";
+      structure.flaw =
+          "a contour's ContourOffsetVector is not three numbers, so that the contour's place is unknown";
       continue;
     }
     structure.moved += *offset_mm != glm::dvec3(0.0);
@@ -83,7 +83,7 @@ void add_uid(std::vector<std::string>& uids, std::string uid) {
   if (!uid.empty() && std::find(uids.begin(), uids.end(), uid) == uids.end()) uids.push_back(std::move(uid));
 }
 
-/// The file's own identity, and the studies, series and frames of reference that it refers to.
+/// The identity of the file, with the studies, series and frames of reference to which it refers.
 Identity identity_of_set(const DicomFile& file) {
   Identity identity = identity_of(file);
   for (const DicomFile& frame : file.items(0x30060010)) {
@@ -100,7 +100,7 @@ Identity identity_of_set(const DicomFile& file) {
 }  // namespace
 
 bool is_rtstruct(const fs::path& path) {
-  // The class is one of the first attributes.
+  // The storage class is among the first attributes, so the beginning of the file suffices.
   std::string bytes(4096, '\0');
   std::ifstream in = opened(path);
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
@@ -128,7 +128,7 @@ StructureSet read_rtstruct(const fs::path& path) {
                                       [&](const Structure& each) { return each.number == number; });
       if (found == structures.end())
         refuse(path, "a structure set whose contours belong to region " + std::to_string(number) +
-                         ", which it does not name");
+                         ", which it does not define");
       add_contours(contours, *found);
     }
     return set;

@@ -14,15 +14,17 @@ namespace octotomy::voxel {
 struct Structure {
   int number = 0;
   std::string name;  ///< as written, in UTF-8
-  std::vector<std::vector<glm::dvec3>>
-      contours_mm;             ///< closed and planar, LPS, at their offset; the closing edge is implied
-  std::size_t others = 0;      ///< points and open lines, which enclose nothing
-  std::size_t degenerate = 0;  ///< closed contours of one or two points, which enclose nothing
-  std::size_t miscounted = 0;  ///< contours whose number of points differs from NumberOfContourPoints
-  std::size_t stated_points = 0, held_points = 0;  ///< point counts of the first such contour
-  std::size_t moved = 0;                           ///< contours whose points a ContourOffsetVector moved
-  glm::dvec3 farthest_offset_mm{0.0};              ///< the longest of these vectors, LPS
-  std::string flaw = {};                           ///< why the contours cannot be read; empty: they can
+  /// Closed planar contours, LPS, with their offset added; the closing edge is implied.
+  std::vector<std::vector<glm::dvec3>> contours_mm;
+  std::size_t others = 0;      ///< number of points and open lines, which enclose no area
+  std::size_t degenerate = 0;  ///< number of closed contours of one or two points, which enclose no area
+  std::size_t miscounted = 0;  ///< number of contours whose point count differs from NumberOfContourPoints
+  /// Stated and actual point count of the first such contour.
+  std::size_t stated_points = 0, held_points = 0;
+  /// Number of contours whose points a ContourOffsetVector moved.
+  std::size_t moved = 0;
+  glm::dvec3 farthest_offset_mm{0.0};  ///< the longest of these vectors, LPS
+  std::string flaw = {};               ///< why the contours cannot be read; empty: they can
   /// Whether the file states that the region continues between neighbouring contours at any distance: the
   /// type INTERPOLATED_PLANAR.
   bool is_interpolated = false;
@@ -31,8 +33,8 @@ struct Structure {
   std::vector<double> slabs_mm = {};         ///< ContourSlabThickness of each of contours_mm; 0: not stated
 };
 
-/// Regions, and the identity of the set. `identity` has the studies, series and frames of reference of the
-/// file itself and those that it references.
+/// The regions of a structure set. `identity` contains the studies, series and frames of reference of the
+/// file and of the objects to which it refers.
 struct StructureSet {
   std::vector<Structure> structures;
   Identity identity;
@@ -42,9 +44,10 @@ struct StructureSet {
 /// read.
 bool is_rtstruct(const std::filesystem::path& path);
 
-/// The regions of a structure set (PS3.3, A.19), in their order, including those without contours. Contours
-/// may cross or contain each other. A region whose contours are damaged has its `flaw` set, so that the
-/// others can be read. Throws Error (Input) with path and reason. Memory: the file and its points.
+/// The regions of a structure set (PS3.3, A.19), in the file's order, including regions without contours.
+/// Contours may cross or contain each other. A region whose contours are damaged has its `flaw` set, so that
+/// the others can be read. Throws Error (Input) with path and reason. Memory: the file's bytes and the
+/// points.
 StructureSet read_rtstruct(const std::filesystem::path& path);
 
 }  // namespace octotomy::voxel

@@ -30,12 +30,12 @@ void need_no_override(const fs::path& path, const ReadOptions& options) {
     throw InvalidInput(path.string() + ": DICOM states its spacing: leave --spacing out");
 }
 
-/// Refuses options that choose a series: a single file or stack has none to choose from.
+/// Refuses options that choose a series, because a single file or a stack contains no series.
 void need_no_series(const fs::path& path, const ReadOptions& options) {
   if (!options.series.empty() || options.join || !options.slices.empty())
-    throw InvalidInput(
-        path.string() +
-        ": is no DICOM series: leave --series, --join and --slices out, or give the folder of the series");
+    throw InvalidInput(path.string() +
+                       ": is not a DICOM series: leave --series, --join and --slices out, or choose the "
+                       "folder of the series");
 }
 
 Scene read_volume_file(const fs::path& path, VolumeFormat format, const ReadOptions& options) {
@@ -73,7 +73,7 @@ Scene read_any(const fs::path& path, const ReadOptions& options) {
     need_no_series(path, options);
     return read_dicom_seg(path);
   }
-  // A folder of images may also hold DICOM. DICOM is tried first because it has positions.
+  // A folder of images may also contain DICOM files. DICOM is tried first because it states positions.
   if (image_files(path).empty()) {
     need_no_override(path, options);
     return read_dicom(path, options);
@@ -90,7 +90,7 @@ Scene read_any(const fs::path& path, const ReadOptions& options) {
 
 /// Refuses positions that no scanner produces and for which later sums would overflow.
 void need_near_places(const fs::path& path, const Lattice& lattice) {
-  constexpr double farthest_mm = 1e9;  // up to here doubles resolve 1e-7 mm
+  constexpr double farthest_mm = 1e9;  // up to this distance doubles resolve 1e-7 mm
   const glm::dvec3 last = glm::dvec3(lattice.dims - 1);
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 p_mm = glm::abs(

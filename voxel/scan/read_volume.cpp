@@ -41,8 +41,8 @@ bool passes_check(const Scene& scene) {
   }
 }
 
-/// Reads the scene's samples and calls `slices_final` on the way. Returns the number of bytes after the
-/// samples.
+/// Reads the scene's samples, and calls `slices_final` while doing so. Returns the number of bytes that
+/// follow the samples.
 std::uintmax_t read_slices(
     const Scene& scene, const SlicesFinal& slices_final,
     const std::function<std::uintmax_t(const std::function<void(std::uintmax_t)>&)>& read) {
@@ -69,7 +69,7 @@ SmallNumbers read_samples(const fs::path& path, const SampleFiles& from, const R
                           Scene& scene) {
   std::uintmax_t behind = 0;
   StoredSamples stored = from.stored;
-  // Numbers of text are parsed into this machine's order.
+  // Numbers in text are parsed to this machine's byte order.
   if (from.encoding == SampleFiles::Encoding::Text)
     stored.big_endian = std::endian::native == std::endian::big;
   const SmallNumbers small = take_stored(stored, scene, [&](char* memory, std::size_t bytes) {
@@ -87,8 +87,8 @@ SmallNumbers read_samples(const fs::path& path, const SampleFiles& from, const R
   return small;
 }
 
-/// A mask or label map with a header copied from a CT seems to hold Hounsfield units. It is recognised by its
-/// stored numbers, which are few and small and include 0.
+/// A mask or label map with a header copied from a CT seems to contain Hounsfield units. Its stored numbers
+/// reveal it: they are few and small and include 0.
 bool is_mask(const SmallNumbers& small) {
   return small && small->test(0) && small->count() <= 64;
 }
@@ -110,11 +110,11 @@ std::optional<Meaning> meaning_of(const std::string& word) {
 Finding undescribed(const std::vector<std::string>& values) {
   return {"undescribed", Verdict::Warn,
           "samples have values that no segment of the file has: " + listed(values) +
-              ": they have a number and no name"};
+              ": they have a number but no name"};
 }
 
-/// The layers of a segmentation of 3D Slicer as one label map, in which a further number represents several
-/// labels where segments overlap.
+/// Merges the layers of a 3D Slicer segmentation to one label map. Where segments overlap, a further number
+/// represents the set of their labels.
 class LayerReader {
  public:
   LayerReader(const fs::path& path, const VolumeHeader& header, const std::vector<SlicerSegment>& segments)
@@ -135,7 +135,7 @@ class LayerReader {
     scene.audit.insert(scene.audit.end(), wide_.audit.begin(), wide_.audit.end());
     number_unlisted(scene);
     LabelOverlaps overlaps(largest_);
-    // Reserves half of the numbers of int16 for overlaps.
+    // Labels in int16 use at most half of the positive numbers; the other half is reserved for overlaps.
     constexpr int most_of_int16 = 1 << 14;
     largest_ <= most_of_int16 ? fill_as<std::int16_t>(overlaps, 2 * most_of_int16 - 1, scene)
                               : fill_as<float>(overlaps, most_number, scene);
@@ -147,15 +147,14 @@ class LayerReader {
         [&](const auto& samples) {
           const double value = samples[index];
           if (value > most_number)
-            refuse(path_, print("has the label %.9g; the largest that is read is %d: give labels smaller "
-                                "numbers",
+            refuse(path_, print("has the label %.9g; the largest that can be read is %d: renumber the labels",
                                 value, most_number));
           return value >= 0.5 ? static_cast<int>(std::lround(value)) : 0;
         },
         wide_.samples);
   }
 
-  /// Assigns numbers above the listed ones to values that no segment has, and reports them.
+  /// Assigns numbers above those of the listed segments to values that no segment has, and reports them.
   void number_unlisted(Scene& scene) {
     std::vector<std::string> unlisted;
     for (std::size_t i = 0; i < wide_.lattice.sample_count(); ++i)
@@ -192,12 +191,12 @@ class LayerReader {
   const fs::path& path_;
   std::size_t layers_;
   Scene wide_;
-  std::map<std::pair<int, int>, int> number_of_;  ///< number of each pair of layer and value
+  std::map<std::pair<int, int>, int> number_of_;  ///< the label's number for each pair of layer and value
   std::map<int, std::string> names_;
   int largest_ = 0;
 };
 
-/// Reports values of a file of one layer that no segment has.
+/// For a file with one layer, reports sample values that no segment has.
 void audit_undescribed(const std::vector<SlicerSegment>& segments, Scene& scene) {
   std::map<double, std::size_t> counts{{0.0, 0}};
   for (const SlicerSegment& segment : segments) counts[segment.number] = 0;
@@ -273,12 +272,12 @@ void take_meaning(const VolumeHeader& header, const SmallNumbers& small, Scene& 
   if (auto sign = lost_sign_finding(scene, is_ct)) scene.audit.push_back(std::move(*sign));
 }
 
-/// Accepts the padding that the file states only if it is the lowest sample, because padding is below every
-/// measured one.
+/// Accepts the padding that the file states only if no sample is lower, because padding must be below every
+/// measured sample.
 void take_padding_below_all(std::optional<double> stated, Scene& scene) {
   if (!stated) return;
-  // Samples that are not numbers are already padding, below all others. Samples with the stated value get the
-  // same value.
+  // Samples that are not numbers have already become padding, below all others. Samples with the stated value
+  // get that padding's value.
   if (scene.padding && range(scene).low == *stated)
     std::visit(
         [&](auto& samples) {

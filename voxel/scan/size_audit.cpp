@@ -12,9 +12,10 @@ namespace octotomy::voxel {
 
 namespace {
 
-// Lengths in mm. Scanners: the widest bore in use is 900 mm and reconstructs 820; a whole body is two metres
-// long. Pixels of CT: 1000 mm over 256 at the coarsest. Organs: an inner ear is reconstructed to at least 40
-// mm and 256 pixels a side; halved twice, 64 pixels remain. The head of a newborn is 90 mm wide.
+// Limits in mm. Scanners: the widest bore in use is 900 mm, with images of up to 820 mm; a whole body is two
+// metres long. Pixels of CT: 1000 mm over 256 at the coarsest. Organs: images of an inner ear are at least 40
+// mm wide and have 256 pixels a side, or 64 if their resolution was halved twice. The head of a newborn is 90
+// mm wide.
 constexpr double widest_field_mm = 1000.0, longest_field_mm = 2500.0;
 constexpr double coarsest_ct_mm = 5.0, finest_pixel_mm = 0.05;
 constexpr double smallest_field_mm = 10.0, smallest_fine_field_mm = 36.0;
@@ -23,11 +24,11 @@ constexpr double smallest_scan_mm = 1.0;
 constexpr double smallest_body_mm = 70.0;
 constexpr int fine_body_px = 60;
 
-/// The usual width of a field that shows a head, by which a factor is chosen.
+/// The usual width of images of a head, by which the ratio of two units is chosen.
 constexpr double usual_field_mm = 250.0;
 
 /// The extent, in pixels along the image's axes, of the samples at or above -300 HU in the middle slice, if
-/// air surrounds them. None if it touches a side.
+/// air surrounds them. None if these samples touch a side of the image.
 std::optional<glm::ivec2> body_px(const Scene& scene) {
   if (scene.meaning != Meaning::Hounsfield) return std::nullopt;
   const glm::ivec3 dims = scene.lattice.dims;
@@ -91,7 +92,8 @@ std::optional<Finding> size_finding(const Scene& scene) {
     doubt = print("the scan is %.3g x %.3g x %.3g mm, smaller than any scan of a person", field_mm.x,
                   field_mm.y, field_mm.z);
   } else if (scene.meaning != Meaning::Label && !is_known) {
-    // Such a field is smaller than any whole field of a person. A cropped part may be as small.
+    // Such a scan is smaller than any complete scan of a person, but a part cut out of a scan may be as
+    // small.
     if (std::max(wide_mm, field_mm.z) >= smallest_fine_field_mm || std::min(dims.x, dims.y) < fine_side_px)
       return std::nullopt;
     doubt = print(

@@ -20,26 +20,27 @@ namespace octotomy::voxel {
 
 namespace {
 
-/// A shift of d pixels changes a sample at a step edge by d times the step; a tenth is below the partial
-/// volume effect of any slice, and far above the rounding of positions.
+/// A shift of d pixels changes a sample at an edge by d times the edge's height. A tenth of a pixel changes
+/// samples less than the partial volume effect of any slice, and is far above the rounding of positions.
 constexpr double aside_tolerance_px() {
   return 0.1;
 }
 
-/// If positions err by up to a tenth of the slices' distance, treating them as even blurs less than linear
-/// interpolation between two slices, which mixes in up to half of the neighbour.
+/// If positions err by up to a tenth of the slices' distance, the error from treating the slices as evenly
+/// spaced is smaller than the blur of linear interpolation, which mixes up to half of the neighbouring slice
+/// in.
 constexpr double noise_share() {
   return 0.1;
 }
 
-/// A sideways shift of up to half a pixel counts as noise of the positions; a larger one means that the slice
-/// moved.
+/// A sideways shift of up to half a pixel counts as noise of the positions; a larger one as a displacement of
+/// the slice.
 constexpr double most_noise_px() {
   return 0.5;
 }
 
-/// The step, from 1 mm down, to which one coordinate of all positions is rounded; 0 if it is finer
-/// than a micrometre or the coordinate never changes.
+/// The decimal step, 1 mm or finer, to which one coordinate of all positions is rounded; 0 if the step is
+/// finer than a micrometre or the coordinate is equal in all slices.
 double rounding_step_mm(const std::vector<DicomSlice>& slices, int axis) {
   const bool changes = std::any_of(slices.begin(), slices.end(), [&](const DicomSlice& slice) {
     return slice.first_mm[axis] != slices.front().first_mm[axis];
@@ -106,7 +107,7 @@ class Layer {
     if (!is_known) plan_.step_mm = 1.0;
     find("slice_spacing", Verdict::Warn,
          print("a single slice; its thickness of %g mm is %s", plan_.step_mm,
-               is_known ? "the header's" : "assumed, the header has none"));
+               is_known ? "the header's" : "assumed, because the header states none"));
   }
 
   double total_mm() const { return heights_mm_.back(); }
@@ -114,8 +115,8 @@ class Layer {
   double most_mm() const { return *std::max_element(gaps_mm_.begin(), gaps_mm_.end()); }
 
   void choose_step() {
-    // The finest distance that occurs often enough: a single slice squeezed between two others must not set
-    // the step.
+    // Chooses the least distance that occurs often enough, so that a single slice squeezed between two others
+    // does not determine the step.
     std::vector<double> sorted = gaps_mm_;
     std::sort(sorted.begin(), sorted.end());
     const std::size_t needed = (gaps_mm_.size() + 4) / 5;
@@ -125,7 +126,7 @@ class Layer {
         usual_mm = sorted[i];
         break;
       }
-    // The mean of all such gaps is exact enough to count through a long stack.
+    // The mean of all gaps near this distance is accurate enough to count the slices of a long stack.
     double sum = 0.0;
     int count = 0;
     for (const double gap : gaps_mm_)
@@ -143,8 +144,7 @@ class Layer {
     plan_.step_mm = total_mm() / static_cast<double>(step_count_);
   }
 
-  /// The number of each slice on an even lattice. A slice with a number lies at height low_mm + number *
-  /// step_mm.
+  /// Evenly spaced heights, and for each slice the number of its height: low_mm + number * step_mm.
   struct Even {
     std::vector<long> numbers;
     double low_mm = 0.0, step_mm = 0.0, worst_mm = 0.0;
@@ -152,7 +152,7 @@ class Layer {
     double height_mm(std::size_t i) const { return low_mm + step_mm * static_cast<double>(numbers[i]); }
   };
 
-  /// The even lattice that fits these numbers by least squares.
+  /// The evenly spaced heights that fit the slices with these numbers best, by least squares.
   Even fitted(std::vector<long> numbers) const {
     const auto count = static_cast<double>(numbers.size());
     double mean_number = 0.0, mean_mm = 0.0, square = 0.0, product = 0.0;
@@ -172,10 +172,10 @@ class Layer {
     return even;
   }
 
-  /// The largest rounding error of a height, from the decimals of the positions.
+  /// The largest rounding error of a height, computed from the decimals of the positions.
   double height_rounding_mm() const { return 0.5 * glm::dot(rounding_mm_, glm::abs(stack_.normal)); }
 
-  /// Whether the images are numbered without a gap, so that none is missing between them.
+  /// Whether the images' numbers are consecutive, so that no image is missing between them.
   bool numbers_run_on() const {
     const int step = stack_.slices[1].instance_number - stack_.slices[0].instance_number;
     for (std::size_t i = 1; i < stack_.slices.size(); ++i)
@@ -183,13 +183,13 @@ class Layer {
     return std::abs(step) == 1;
   }
 
-  /// Whether rounding or noise of the positions explains the deviations from an even lattice. Rounding by
-  /// more than a quarter of a step resembles missing slices. Then the images' numbers must show that none is
-  /// missing, and long gaps must be as frequent as rounding makes them.
+  /// Whether rounding or noise of the positions explains the deviations from evenly spaced heights. Rounding
+  /// by more than a quarter of a step resembles missing slices. In that case the images' numbers must also be
+  /// consecutive, and long gaps must be as frequent as rounding produces them.
   bool is_explained(const Even& even) const {
     if (!(even.step_mm > 0.0)) return false;
     if (even.worst_mm <= noise_share() * even.step_mm) return true;
-    // A least-squares fit deviates slightly more than the half step of rounding.
+    // Heights fitted by least squares may deviate by slightly more than half a step of rounding.
     if (even.worst_mm > 1.1 * height_rounding_mm()) return false;
     const double tag_mm = std::abs(stack_.first().spacing_tag_mm.value_or(0.0));
     const bool tag_agrees = tag_mm == 0.0 || std::abs(tag_mm - even.step_mm) <= 0.05 * even.step_mm;
@@ -198,7 +198,7 @@ class Layer {
     return even.worst_mm <= 0.25 * even.step_mm || (numbers_run_on() && tag_agrees && long_gaps > 2);
   }
 
-  /// Uses an even lattice if only errors in the tags keep the slices from fitting the chosen one.
+  /// Uses evenly spaced heights if the slices deviate from them only by errors of the stated positions.
   void even_out() {
     const double tolerance_mm = position_tolerance_mm(plan_.step_mm);
     std::vector<long> counted(heights_mm_.size(), 0), spaced(heights_mm_.size(), 0);
@@ -222,7 +222,7 @@ class Layer {
     plan_.low_mm = even_->low_mm;
   }
 
-  /// Each slice of the even lattice is a slice of the stack, or lies between two.
+  /// Each evenly spaced height is that of a slice of the stack or lies between two slices.
   void take_even_sources() {
     for (std::size_t i = 0; i < even_->numbers.size(); ++i) {
       if (i > 0) {
@@ -259,7 +259,7 @@ class Layer {
     return even_->numbers[a + 1] - even_->numbers[a] == even_->numbers[b + 1] - even_->numbers[b];
   }
 
-  /// Whether a gap is one of at least three equal ones in a row.
+  /// Whether a gap is one of at least three equal gaps in a row.
   bool is_in_run(std::size_t gap) const {
     std::size_t first = gap, last = gap;
     while (first > 0 && are_alike(first - 1, gap)) --first;
@@ -271,7 +271,7 @@ class Layer {
     return even_ ? even_->numbers[gap + 1] - even_->numbers[gap] > 1 : gaps_mm_[gap] > 1.5 * plan_.step_mm;
   }
 
-  /// Whether the scanner's numbers skip as many images as fit into the gap.
+  /// Whether the images' numbers skip as many images as fit into the gap.
   bool skips_numbers(std::size_t gap) const {
     const int skipped = std::abs(stack_.slices[gap + 1].instance_number - stack_.slices[gap].instance_number);
     return skipped > 1 && std::lround(gaps_mm_[gap] / plan_.step_mm) == skipped;
@@ -370,9 +370,8 @@ class Layer {
          names);
   }
 
-  /// Shift aside per millimetre of height, in pixels: the median over pairs of slices that lie half a stack
-  /// apart (after Theil and Sen), so that neither a single displaced slice nor noise of the positions affects
-  /// it.
+  /// The sideways shift in pixels per millimetre of height: the median over pairs of slices half a stack
+  /// apart (after Theil and Sen). A single displaced slice or noise of the positions hardly changes it.
   glm::dvec2 lean_px_per_mm() const {
     const std::size_t count = stack_.slices.size(), half = count / 2;
     glm::dvec2 lean;
@@ -399,7 +398,7 @@ class Layer {
     return medians;
   }
 
-  /// A line through the stack, and the distances of the slices from it.
+  /// A line through the stack, and the sideways distances of the slices from it.
   struct Line {
     glm::dvec2 lean_px_per_mm{0.0}, start_px{0.0}, scatter_px{0.0};
     std::vector<glm::dvec2> off_px;
@@ -412,14 +411,15 @@ class Layer {
     line.start_px = medians_of(line.off_px);
     std::vector<glm::dvec2> sizes;
     for (glm::dvec2& off : line.off_px) sizes.push_back(glm::abs(off -= line.start_px));
-    line.scatter_px = 1.48 * medians_of(sizes);  // the standard deviation of normally distributed noise
+    // Estimates the standard deviation of normally distributed noise from the median.
+    line.scatter_px = 1.48 * medians_of(sizes);
     return line;
   }
 
-  /// The stack's line. It leans only if the lean is larger than scatter of the positions can produce. The
-  /// shift over the stack, from half as many pairs as slices, errs by about 5 / sqrt(slices) times their
-  /// scatter; six times that is allowed, because the scatter of a dozen slices is itself known to a factor of
-  /// two.
+  /// The line through the stack. It leans only if the lean is larger than scatter of the positions can
+  /// produce. The shift over the whole stack is computed from half as many pairs as slices, so its error is
+  /// about 5 / sqrt(slices) times the scatter. Six times this error is allowed, because the scatter of a
+  /// dozen slices is known only to a factor of two.
   Line line() const {
     Line leaning = line_along(lean_px_per_mm());
     const glm::dvec2 scatter_px = leaning.scatter_px;
@@ -432,8 +432,8 @@ class Layer {
 
   static double size_of(const glm::dvec2& off) { return std::max(std::abs(off.x), std::abs(off.y)); }
 
-  /// Reports the slices that deviate from the line and sets the sideways position of all: slices within the
-  /// noise stay on the line.
+  /// Reports the slices that deviate from the line and sets the sideways positions of all slices. Slices
+  /// within the noise are put on the line.
   void place_aside(const Line& line, bool is_tilted) {
     std::vector<std::string> names;
     double most_px = 0.0, most_mm = 0.0;
@@ -443,7 +443,8 @@ class Layer {
       most_mm = std::max(most_mm, glm::length(line.off_px[i] * stack_.first().spacing_mm));
       names.push_back(stack_.slices[i].name);
     }
-    // A single displaced slice is reported. Small displacements of many slices are noise of the tags.
+    // A single displaced slice is reported. Small displacements of many slices count as noise of the
+    // positions.
     const bool is_common =
         5 * names.size() >= line.off_px.size() || most_px <= 5.0 * size_of(line.scatter_px);
     const bool is_noise = !names.empty() && most_px <= most_noise_px() && is_common;
@@ -461,10 +462,9 @@ class Layer {
     if (is_noise)
       find("sideways", Verdict::Warn,
            slices(names.size()) +
-               print(
-                   " scatter up to %.3g mm (%.2g pixels) to the side, as noisy or rounded positions do: they "
-                   "are kept in line: ",
-                   most_mm, most_px) +
+               print(" scatter up to %.3g mm (%.2g pixels) to the side, as noisy or rounded positions do: "
+                     "these slices are put in line: ",
+                     most_mm, most_px) +
                listed(names),
            names);
     else if (!names.empty())
@@ -482,7 +482,7 @@ class Layer {
       const DicomSlice& slice = stack_.slices[i];
       const double aside_mm = glm::length((stack_.aside_px(slice) - stack_.aside_px(stack_.slices[i - 1])) *
                                           stack_.first().spacing_mm);
-      // The noise of slices that nearly touch may exceed their distance.
+      // Positions of slices that nearly touch may have more noise than the distance between the slices.
       if (aside_mm > std::max(gaps_mm_[i - 1], most_noise_px() * stack_.first().spacing_mm.x))
         refuse(slice.path,
                print("lies %.4g mm to the side of the slice before it, more than any gantry tilt explains; "
@@ -491,7 +491,7 @@ class Layer {
     }
   }
 
-  /// Sets the lattice's extent across the stack, wider than the slices if they lean.
+  /// Sets the lattice's extent within the slices' planes, wider than a slice if the stack leans.
   void lay_across() {
     refuse_far_aside();
     const Line line = this->line();
@@ -538,12 +538,12 @@ class Layer {
   std::filesystem::path path_;
   std::vector<Finding>& audit_;
   SlicePlan plan_;
-  std::vector<double> heights_mm_;  ///< from the first slice, along the normal
+  std::vector<double> heights_mm_;  ///< heights of the slices along the normal, from the first slice
   std::vector<double> gaps_mm_;     ///< gap i lies between slices i and i + 1
   std::vector<std::size_t> hole_gaps_;
   std::size_t step_count_ = 0;
   glm::dvec3 rounding_mm_{0.0};  ///< decimal step of the positions' coordinates
-  std::optional<Even> even_;     ///< set: the slices are taken as evenly spaced
+  std::optional<Even> even_;     ///< if set, the slices are treated as evenly spaced at these heights
 };
 
 }  // namespace

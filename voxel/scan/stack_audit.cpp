@@ -37,7 +37,8 @@ class StackAudit {
   }
 
  private:
-  using Values = std::map<std::string, std::vector<std::string>>;  ///< names of slices by value
+  /// For each value the names of the slices that have it.
+  using Values = std::map<std::string, std::vector<std::string>>;
 
   void find(const char* check, Verdict verdict, std::string detail, std::vector<std::string> files = {}) {
     audit_.push_back({check, verdict, std::move(detail), std::move(files)});
@@ -55,7 +56,7 @@ class StackAudit {
                             [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
   }
 
-  /// The slices with another value than the commonest.
+  /// The names of the slices whose value is not the commonest one.
   static std::vector<std::string> fewer_of(const Values& values) {
     std::vector<std::string> names;
     for (auto value = values.begin(); value != values.end(); ++value)
@@ -116,13 +117,13 @@ class StackAudit {
           same += (same.empty() ? "" : ", ") + std::string(kind.words) + " " + values.begin()->first;
         continue;
       }
-      // Axial scanners count one acquisition per rotation, and times increase, so nearly each slice has its
-      // own value.
+      // Axial scanners count one acquisition per rotation, and times increase from slice to slice, so nearly
+      // each slice has its own value.
       const bool counts_on = 4 * values.size() > stack_.slices.size() && values.size() > 2 &&
                              (kind.check == std::string("acquisition") || kind.check == std::string("phase"));
       if (counts_on) continue;
       if (kind.check == std::string("acquisition_date") && !are_days_apart(values)) continue;
-      // An audit may be passed on; names and birth dates may not.
+      // Audits may be given to others, so names and birth dates are not shown.
       const bool is_of_person =
           std::string(kind.check).starts_with("patient_") && kind.check != std::string("patient_position");
       find(kind.check, Verdict::Warn,
@@ -148,7 +149,7 @@ class StackAudit {
     }
     find("compression", Verdict::Warn,
          slices(names.size()) + " lost values by compression (" + how +
-             "): surfaces and densities are only as good as that: " + listed(names),
+             "): the errors of surfaces and densities depend on this compression: " + listed(names),
          names);
   }
 
@@ -175,7 +176,7 @@ class StackAudit {
            "mixed: " + mixture_of(values) + "; each slice is decoded by its own header", fewer_of(values));
   }
 
-  /// The commonest distance of neighbours, to a hundredth of a millimetre.
+  /// The commonest distance between neighbours, rounded to a hundredth of a millimetre.
   double usual_gap_mm() const {
     std::map<long, std::size_t> counts;
     for (std::size_t i = 1; i < stack_.slices.size(); ++i)
@@ -254,7 +255,8 @@ class StackAudit {
            "check that left and right are not exchanged");
   }
 
-  /// The names of the slices whose header has a text, such as "a.dcm, b.dcm", and the first such text.
+  /// The names of the slices whose header has the given text, such as "a.dcm, b.dcm", and the first text
+  /// found.
   struct Noted {
     std::vector<std::string> names;
     std::string text;
@@ -277,17 +279,17 @@ class StackAudit {
            commas.names);
   }
 
-  /// The unit of a slice's values; empty: none is stated.
+  /// The unit of a slice's values; empty if none is stated.
   static std::string unit_of(const DicomSlice& slice) {
     const std::string& type = slice.lut ? slice.lut->type : slice.rescale_type;
     return type == "US" || type.empty() ? (slice.modality == "CT" ? "HU" : "") : type;
   }
 
-  /// Whether a mapping produces the same numbers as the rescale, in the same unit.
+  /// Whether a mapping produces the same numbers and the same unit as the rescale.
   static bool agrees_with(const RealWorldMapping& mapping, const DicomSlice& slice) {
     if (slice.lut || !mapping.slope || !mapping.intercept) return false;
     const double slope = slice.slope.value_or(1.0), intercept = slice.intercept.value_or(0.0);
-    // A decimal string of 16 characters has room for ten digits besides sign and exponent.
+    // In a decimal string of 16 characters, ten digits fit beside sign and exponent.
     const auto are_one = [](double a, double b) {
       return std::abs(a - b) <= 1e-9 * std::max({std::abs(a), std::abs(b), 1e-300});
     };
@@ -318,8 +320,9 @@ class StackAudit {
     }
     if (with == 0) return;
     if (first == nullptr)
-      return find("real_world_values", Verdict::Pass,
-                  "the Real World Value Mapping of " + slices(with) + " makes the values of the rescale");
+      return find(
+          "real_world_values", Verdict::Pass,
+          "the Real World Value Mapping of " + slices(with) + " produces the same values as the rescale");
     const RealWorldMapping& mapping = first->real_world.front();
     const double slope = first->slope.value_or(1.0), intercept = first->intercept.value_or(0.0);
     const std::string unit = unit_of(*first);
@@ -343,7 +346,7 @@ class StackAudit {
     }
     find("real_world_values", Verdict::Warn,
          "values are " + used + ". The Real World Value Mapping of " + slices(differing.size()) +
-             " is not applied. It would make " + other +
+             " is not applied. It would produce " + other +
              (mapping.slope && mapping.intercept ? ". If the mapping's values are wanted, write its slope "
                                                    "and intercept into RescaleSlope and "
                                                    "RescaleIntercept: "
@@ -357,8 +360,8 @@ class StackAudit {
     std::string told;
     for (const DicomSlice& slice : stack_.slices) {
       const double spacing_ratio = slice.spacing_mm.y / slice.spacing_mm.x;
-      // PixelAspectRatio and PixelSpacing are stated with few digits. An error of a hundredth distorts a head
-      // by two millimetres.
+      // The tolerance between both attributes, which are stated with few digits. An error of a hundredth
+      // distorts a head by two millimetres.
       if (!slice.aspect_ratio || std::abs(*slice.aspect_ratio / spacing_ratio - 1.0) < 0.01) continue;
       if (names.empty())
         told = print("PixelAspectRatio makes pixels %.4g times as high as wide, PixelSpacing %.4g times",
@@ -412,14 +415,14 @@ class StackAudit {
            names);
   }
 
-  /// Whether a direction agrees with its first letter: L, R, P, A, H or F. Other letters are for animals and
-  /// agree with any direction.
+  /// Whether a direction agrees with the first letter of its stated name: L, R, P, A, H or F. Other letters
+  /// are used for animals and agree with any direction.
   static bool agrees(std::string_view letters, const glm::dvec3& along) {
     constexpr std::string_view known = "LRPAHF";
     const std::size_t at = letters.empty() ? std::string_view::npos : known.find(letters.front());
     if (at == std::string_view::npos) return true;
     const double towards = along[static_cast<int>(at / 2)] * (at % 2 == 0 ? 1.0 : -1.0);
-    // The first letter names the largest of three components.
+    // The first letter states the axis with the largest component.
     return towards >= 0.5;
   }
 

@@ -54,7 +54,7 @@ Stored interpolated(const SlicePlan& plan, const glm::ivec2& from_px, const Stor
       const std::size_t column = i % width, row = i / width;
       const glm::dvec2 p_px = glm::dvec2(plan.low_px) + glm::dvec2(column, row);
       const glm::dvec2 below_px = p_px - aside_px[source.below], above_px = p_px - aside_px[source.above];
-      // A mixture of a sample and the fill value would not be a measurement.
+      // A mixture of a sample and the fill value is no measurement, so such samples get the fill value.
       double value = fill;
       if (covers(below_px) && covers(above_px)) {
         value = in_slice(source.below, below_px);

@@ -25,24 +25,24 @@ constexpr const char* ct_image_storage = "1.2.840.10008.5.1.4.1.1.2";
 constexpr const char* mr_image_storage = "1.2.840.10008.5.1.4.1.1.4";
 constexpr const char* secondary_capture_storage = "1.2.840.10008.5.1.4.1.1.7";
 
-/// Sample = slope * stored + intercept.
+/// The rescale of the written files: sample = slope * stored + intercept.
 struct Rescale {
   double slope = 1.0;
   double intercept = 0.0;
 };
 
-/// A number as rounded by a decimal string of 16 characters.
+/// A number after rounding to a decimal string of 16 characters.
 double as_written(double number) {
   return std::strtod(dicom_decimal(number).c_str(), nullptr);
 }
 
-/// The stored value of Scene::padding. No measured sample is stored as this number, because padding lies
-/// below all.
+/// The stored value of Scene::padding. No measured sample is stored as this number, because padding is below
+/// all measured samples.
 constexpr std::int16_t stored_padding = std::numeric_limits<std::int16_t>::min();
 
 /// Slope 1 and intercept 0 for integers in int16's range, else the finest power of two for which the range of
-/// samples fits 16 bits. Samples that are multiples of the slope, such as halves, then keep their values;
-/// others change by at most half a slope.
+/// samples fits 16 bits. Samples that are multiples of the slope, such as halves, keep their values; others
+/// change by at most half the slope.
 Rescale rescale_of(const Scene& scene) {
   const auto is_exact = [&](double value) {
     return value >= stored_padding + (scene.padding ? 1 : 0) &&
@@ -57,7 +57,7 @@ Rescale rescale_of(const Scene& scene) {
   if (!std::all_of(samples.begin(), samples.end(), [](float value) { return std::isfinite(value); }))
     throw InvalidInput("a sample is not finite: DICOM stores numbers only");
   const Range values = range(scene);
-  // One step is reserved at either end for the rounding of the intercept.
+  // One stored value is reserved at either end, because the intercept is rounded.
   double slope = std::exp2(std::ceil(std::log2(std::max(values.high - values.low, 1e-6) / 65533.0)));
   slope = as_written(slope);
   return {slope, as_written(std::round(0.5 * (values.low + values.high) / slope) * slope)};
@@ -86,7 +86,8 @@ class SeriesWriter {
     spacing_mm_ = scene.lattice.spacing_mm();
     along_row_ = glm::dvec3(lps_from_voxel[0]) / spacing_mm_.x;
     along_column_ = glm::dvec3(lps_from_voxel[1]) / spacing_mm_.y;
-    // The rounding of single precision is allowed; ImageOrientationPatient keeps 13 decimals or more.
+    // The tolerance allows axes rounded to single precision. ImageOrientationPatient itself is written with
+    // at least 13 decimals.
     if (std::abs(glm::dot(along_row_, along_column_)) > 1e-6)
       throw InvalidInput("a DICOM slice's rows and columns must be perpendicular: resample the scene");
     if (scene.lattice.dims.x > 65535 || scene.lattice.dims.y > 65535)
@@ -144,14 +145,14 @@ class SeriesWriter {
   const char* storage() const {
     return is_secondary_ ? secondary_capture_storage : is_mr_ ? mr_image_storage : ct_image_storage;
   }
-  /// Only a declared unit: one that this program derived from the samples' values was not stated by the file.
+  /// Writes the unit only if the file declared it, not if this program derived it from the samples' values.
   std::string rescale_type() const {
     if (!scene_.declared_unit.empty()) return scene_.declared_unit;
     return scene_.meaning == Meaning::Hounsfield ? "HU" : "US";
   }
   std::string instance_uid(int k) const { return digest_.uid("slice " + std::to_string(k)); }
 
-  /// Every MR image must describe its acquisition (PS3.3, C.8.3.1); these values mean unknown.
+  /// Every MR image must describe its acquisition (PS3.3, C.8.3.1); these values mean that it is unknown.
   void put_acquisition(DicomAttributes& slice) const {
     slice.put(0x00080060, "CS", is_secondary_ ? scene_.modality : is_mr_ ? "MR" : "CT");
     if (is_secondary_) slice.put(0x00080064, "CS", "WSD");  // from a workstation (PS3.3, C.8.6.1)
@@ -167,7 +168,8 @@ class SeriesWriter {
       slice.put(tag, vr, "");
   }
 
-  /// Copies the source's acquisition and refers to the images from which the slice was made.
+  /// Copies the source's acquisition attributes and writes references to the images from which the slice was
+  /// made.
   void put_source(DicomAttributes& slice, const DicomSource& source, int k) const {
     const auto is_scanners = [](DicomTag tag) { return tag >= 0x00180020 && tag <= 0x00180fff; };
     for (const auto& [tag, text] : source.attributes)
@@ -176,7 +178,8 @@ class SeriesWriter {
     // If a body part is stated, an empty laterality would mean that the side is unknown (PS3.3, C.7.3.1).
     if (source.attributes.contains(0x00180015) && !source.attributes.contains(0x00200060))
       slice.remove(0x00200060);
-    // Adds 1000, so that the number differs from those of the scanner and viewers list the series separately.
+    // Adds 1000 to the source's series number, so that it differs from the scanner's numbers and viewers list
+    // the series separately.
     slice.put(0x00200011, "IS", std::to_string(source.series_number + 1000));
     const std::vector<DicomSource::Image> images = images_behind(source, scene_.lattice, k);
     if (images.empty()) return;
@@ -206,7 +209,8 @@ class SeriesWriter {
     slice.put(0x00281054, "LO", rescale_type());
   }
 
-  /// The window for viewers: bone and soft tissue, or all values.
+  /// The window in which viewers show the slices first: bone and soft tissue in Hounsfield units, else all
+  /// values.
   void put_window(DicomAttributes& slice) const {
     const bool is_hounsfield = scene_.meaning == Meaning::Hounsfield;
     const double centre = is_hounsfield ? 500.0 : 0.5 * (values_.low + values_.high);
@@ -254,8 +258,9 @@ bool is_slice_name(const std::string& name) {
   return name.starts_with("slice_") && name.ends_with(".dcm");
 }
 
-/// A folder of slices that is renamed into place when all are written. If the target folder exists, slices
-/// are staged inside it instead, because it may be another program's working directory or a mount point.
+/// A folder of slices that is renamed into place when all slices are written. If the target folder already
+/// exists, slices are staged inside it instead, because the folder may be a mount point or another program's
+/// working directory.
 class StagedSeries {
  public:
   explicit StagedSeries(const fs::path& folder)

@@ -27,18 +27,18 @@ using Items = std::vector<DicomAttributes>;
 
 constexpr const char* segmentation_storage = "1.2.840.10008.5.1.4.1.1.66.4";
 constexpr const char* label_map_storage = "1.2.840.10008.5.1.4.1.1.66.7";
-/// The fraction of a wholly filled pixel.
+/// The fraction stored for a wholly filled pixel.
 constexpr std::uint16_t most_fraction = 255;
 
 using Segments = std::span<const DicomSegment>;
 
-/// A plane of a segment that holds a voxel.
+/// A plane with at least one voxel of a segment.
 struct Plane {
   std::size_t segment;  ///< from 0
   int z;
 };
 
-/// The planes that hold a voxel, segment by segment, and the smallest rectangle that holds all voxels.
+/// The planes with at least one voxel, segment by segment, and the smallest rectangle around all voxels.
 struct Extent {
   std::vector<Plane> planes;
   glm::ivec2 low{0};
@@ -46,7 +46,7 @@ struct Extent {
   glm::ivec2 size_px() const { return high - low + 1; }
 };
 
-/// Adds every plane's words to the digest on the way.
+/// Collects the planes, and adds each plane's words to the digest.
 void add_planes(Segments segments, std::size_t segment, const Progress& progress, Extent& extent,
                 DicomDigest& digest) {
   const Octree& object = segments[segment].object;
@@ -100,7 +100,7 @@ void add_planes(const Lattice& lattice, const DicomFractions& segment, std::size
                        "' are all zero: choose an object that fills a part of a voxel");
 }
 
-/// The number of bytes of the frames' pixels. Throws Error (Geometry) if it is beyond DICOM's limit.
+/// The number of bytes in the pixels of all frames. Throws Error (Geometry) if it exceeds DICOM's limit.
 std::size_t pixel_bytes(const Extent& extent, unsigned bits) {
   const auto area =
       static_cast<std::uint64_t>(extent.size_px().x) * static_cast<std::uint64_t>(extent.size_px().y);
@@ -108,11 +108,12 @@ std::size_t pixel_bytes(const Extent& extent, unsigned bits) {
   if (bytes > 0xfffffffe)
     throw Error(ErrorCode::Geometry,
                 "the segmentation's " + std::to_string(extent.planes.size()) +
-                    " frames take more than DICOM's 4 GB: use larger voxels or a part of the object");
+                    " frames take more than DICOM's 4 GB: choose larger voxels or a part of the object");
   return static_cast<std::size_t>(bytes);
 }
 
-/// The frames' pixels without gaps between rows or frames, the first in the lowest bit (PS3.5, 8.1.1).
+/// The pixels of all frames, one bit each, without gaps between rows or frames; the first pixel in the lowest
+/// bit (PS3.5, 8.1.1).
 std::string packed_pixels(Segments segments, const Extent& extent, const Progress& progress) {
   std::string pixels(pixel_bytes(extent, 1), '\0');
   SliceBits slice;
@@ -128,7 +129,7 @@ std::string packed_pixels(Segments segments, const Extent& extent, const Progres
   return pixels;
 }
 
-/// Keeps one plane at each height, because all objects of a label map share its frame.
+/// Leaves one plane at each height, because all objects of a label map share one frame there.
 void share_planes(Extent& extent) {
   std::vector<Plane>& planes = extent.planes;
   std::sort(planes.begin(), planes.end(), [](const Plane& a, const Plane& b) { return a.z < b.z; });
@@ -137,8 +138,8 @@ void share_planes(Extent& extent) {
       planes.end());
 }
 
-/// The frames' pixels: the number of the object that holds each, 0 for none; two bytes each for more than 255
-/// objects.
+/// The pixels of all frames: each is the number of the object that contains it, 0 for none, in one byte, or
+/// in two if there are more than 255 objects.
 template <typename Number>
 std::string label_pixels(Segments segments, const Extent& extent, const Progress& progress) {
   std::string pixels(pixel_bytes(extent, 8 * sizeof(Number)), '\0');
@@ -166,7 +167,7 @@ std::string label_pixels(Segments segments, const Extent& extent, const Progress
   return pixels;
 }
 
-/// The frames' pixels, a byte each.
+/// The pixels of all frames as fractions, one byte each.
 std::string fraction_pixels(const Lattice& lattice, std::span<const DicomFractions> segments,
                             const Extent& extent) {
   std::string pixels;
@@ -269,8 +270,8 @@ void put_shared_groups(DicomAttributes& file, const glm::dmat3& axes, const glm:
   file.put_sequence(0x52009229, {shared});
 }
 
-/// The functional groups of one frame: its segment (none for a label map) and its place among the planes that
-/// have frames, both counted from 1.
+/// The functional groups of one frame. `segment` (none for a label map) and the frame's place among the
+/// planes with frames are counted from 1.
 DicomAttributes frame_groups(std::optional<std::uint16_t> segment, std::uint32_t place,
                              const glm::dvec3& first_mm, const std::vector<DicomSource::Image>& images) {
   DicomAttributes frame;
@@ -297,7 +298,7 @@ DicomAttributes frame_groups(std::optional<std::uint16_t> segment, std::uint32_t
   return frame;
 }
 
-/// The frames, and the images that any frame refers to.
+/// The items of all frames, and the images to which at least one frame refers.
 void put_frames(DicomAttributes& file, const Content& content, const std::optional<DicomSource>& source) {
   const Lattice& lattice = content.lattice;
   const Extent& extent = content.extent;
@@ -351,8 +352,8 @@ glm::dmat3 perpendicular_axes(const Lattice& lattice) {
   const glm::dvec3 edge_mm = lattice.spacing_mm();
   glm::dmat3 axes(lattice.lps_from_voxel);
   for (int i = 0; i < 3; ++i) axes[i] /= edge_mm[i];
-  // Decimal strings keep at least 13 digits. Rounding to single precision changes a right angle by less than
-  // this.
+  // Rounding to single precision changes the cosine of a right angle by less than this. Decimal strings have
+  // at least 13 digits and add almost no error.
   for (int i = 0; i < 3; ++i)
     if (std::abs(glm::dot(axes[i], axes[(i + 1) % 3])) > 1e-6)
       throw InvalidInput(
@@ -378,7 +379,7 @@ DicomAttributes segmentation(Content content, const DicomSegOptions& options) {
   return file;
 }
 
-/// Content without segments; its digest covers the data that all segments share.
+/// Content without segments. The digest already covers the data that all segments share.
 Content content_on(const Lattice& lattice, const DicomSegOptions& options) {
   perpendicular_axes(lattice);
   Content content{lattice};

@@ -16,10 +16,10 @@ namespace octotomy::voxel {
 
 /// How the voxels of several objects are stored.
 enum class DicomSegKind {
-  Binary,  ///< a frame of bits for each object and plane: objects may share voxels, and every reader supports
-           ///< it
-  LabelMap  ///< a frame of object numbers for each plane (Supplement 243): for many objects that share no
-            ///< voxel
+  /// A frame of bits for each object and plane; objects may share voxels, and every reader supports it.
+  Binary,
+  /// A frame of object numbers for each plane (Supplement 243); for many objects that share no voxel.
+  LabelMap
 };
 
 struct DicomSegOptions {
@@ -28,8 +28,8 @@ struct DicomSegOptions {
                                  ///< characters
   std::string series_description = "Octotomy";  ///< 1 to 64 characters
   /// The series that the object was made from. The segmentation copies its patient, study and frame of
-  /// reference, and each frame refers to the images from which it was made. None: a phantom in a study of its
-  /// own.
+  /// reference, and each frame refers to the images from which it was made. None, as for a phantom: a new
+  /// study.
   std::optional<DicomSource> source = std::nullopt;
   Progress progress = {};
 };
@@ -41,32 +41,34 @@ struct DicomSegment {
 };
 
 /// Writes an object as a DICOM segmentation (PS3.3, A.51): one binary segment; one frame for each plane of
-/// voxels along the universe's third axis that holds a voxel, cropped to the object. The voxels are the
-/// octree's own, not resampled to the source's lattice. Unique identifiers are computed from the content: the
-/// same object and options produce the same bytes. Written to a temporary file and renamed into place. Throws
-/// std::invalid_argument if the object is empty, the universe's axes are not perpendicular or a text is too
-/// long; Error (Geometry) if the frames take more than DICOM's 4 GB; Error (Resource or Input) with path and
-/// reason; Stopped. Cost: the planes' pixels; memory: two bits a pixel.
+/// voxels along the universe's third axis that contains a voxel of the object, cropped to the object. The
+/// frames have the octree's voxels and are not resampled to the source's lattice. Unique identifiers are
+/// computed from the content: the same object and options produce the same bytes. Written to a temporary file
+/// and renamed into place. Throws std::invalid_argument if the object is empty, the universe's axes are not
+/// perpendicular or a text is too long; Error (Geometry) if the frames take more than DICOM's 4 GB; Error
+/// (Resource or Input) with path and reason; Stopped. Cost: one pass over the planes' pixels; memory: two
+/// bits a pixel.
 void write_dicom_seg(const Octree& object, const std::filesystem::path& path,
                      const DicomSegOptions& options = {});
 
 /// Writes a segmentation of several named objects of one universe: segment i + 1 is segments[i], each with
-/// frames of its own, cropped to the rectangle around all; for a label map, one frame for each plane that
-/// holds a voxel of any object. On universe_on() of a scan's lattice each frame lies on a slice of the scan.
-/// Also throws std::invalid_argument for no segments, more than 65535 segments, or different universes; Error
-/// (Geometry) with both names, if objects of a label map share voxels.
+/// separate frames, cropped to the rectangle around all objects. A label map has one frame for each plane
+/// that contains a voxel of any object. On universe_on() of a scan's lattice each frame lies on a slice of
+/// the scan. Also throws std::invalid_argument for no segments, more than 65535 segments, or different
+/// universes; Error (Geometry) with both names, if objects of a label map share voxels.
 void write_dicom_seg(std::span<const DicomSegment> segments, const std::filesystem::path& path,
                      const DicomSegOptions& options = {});
 
 /// The share of each sample's voxel that an object fills.
 struct DicomFractions {
-  std::string label;                    ///< 1 to 64 characters
-  std::vector<std::uint8_t> fractions;  ///< of the lattice's samples, in their order: 255 is a whole voxel
+  std::string label;  ///< 1 to 64 characters
+  /// One for each sample of the lattice, x fastest; 255: the object fills the whole voxel.
+  std::vector<std::uint8_t> fractions;
 };
 
-/// Writes shares of voxels as a FRACTIONAL segmentation of the type OCCUPANCY, a byte a pixel, its frames as
-/// those of write_dicom_seg() on the planes of the lattice. Throws as write_dicom_seg(); also
-/// std::invalid_argument if a segment's number of fractions differs from the number of samples, or all
+/// Writes shares of voxels as a FRACTIONAL segmentation of the type OCCUPANCY, one byte a pixel. Its frames
+/// lie on the planes of the lattice and are chosen as by write_dicom_seg(). Throws as write_dicom_seg() does;
+/// also std::invalid_argument if a segment's number of fractions differs from the number of samples, or all
 /// fractions are zero.
 void write_dicom_fractions(const Lattice& lattice, std::span<const DicomFractions> segments,
                            const std::filesystem::path& path, const DicomSegOptions& options = {});

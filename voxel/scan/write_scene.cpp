@@ -15,7 +15,8 @@ std::uint64_t bytes_of_sample(const Scene& scene) {
   return std::visit([](const auto& samples) { return sizeof(samples[0]); }, scene.samples);
 }
 
-/// The data file of packed samples; none for formats whose samples are in the header's own file.
+/// The path of the data file for a header's compressed samples; none for formats that store samples in the
+/// header's file.
 std::optional<std::filesystem::path> data_file_beside(std::filesystem::path header) {
   const std::string extension = extension_of(header);
   if (extension == ".nhdr") return header.replace_extension(".raw.gz");
@@ -23,7 +24,7 @@ std::optional<std::filesystem::path> data_file_beside(std::filesystem::path head
   return std::nullopt;
 }
 
-/// The header path from which the `count`-th candidate for the data file's name is derived.
+/// The path of a header from which the `count`-th candidate for the data file's name is derived.
 std::filesystem::path header_of_try(const std::filesystem::path& path, int count) {
   if (count == 1) return path;
   return path.parent_path() /
@@ -98,7 +99,7 @@ void write_scene(const Scene& scene, const std::filesystem::path& path) {
   try {
     write_volume(scene, staged, *format);
   } catch (const Error& error) {
-    std::string reason = error.what();  // begins with the temporary name
+    std::string reason = error.what();  // the staged header's name begins with the temporary name
     if (reason.starts_with(staged.string())) reason.erase(0, staged.string().size());
     throw Error(error.code(), path.string() + reason);
   }

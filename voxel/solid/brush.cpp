@@ -17,15 +17,17 @@
 namespace octotomy::voxel {
 namespace {
 
-/// A convex polyhedron about the origin.
+/// A convex polyhedron around the origin, the shape of the brush.
 struct Dab {
   std::vector<HalfSpace> faces;
-  std::vector<std::array<std::size_t, 2>> edges;  ///< pairs of faces that share one
+  std::vector<std::array<std::size_t, 2>> edges;  ///< pairs of faces that share an edge
 };
 
-/// Distance of a ball's faces from its centre, in radii: the polyhedron has the ball's volume.
+/// Distance of the polyhedron's faces from its centre, in radii of the ball, so that it has the ball's
+/// volume.
 constexpr double ball_face = 0.9675583399663303;
-/// Distance of a slab's sides from its axis, in radii: 16 sides enclose the disc's area.
+/// Distance of the prism's 16 sides from its axis, in radii of the disc, so that they enclose the disc's
+/// area.
 constexpr double slab_side = 0.993537015401427;
 constexpr std::size_t slab_sides = 16;
 
@@ -83,9 +85,9 @@ Expression joined(std::vector<Expression> parts, const Join& join) {
   return parts.front();
 }
 
-/// The convex hull of the dab at both points, which may coincide.
+/// The convex hull of the brush's polyhedra at both points, which may coincide.
 Expression swept(const Dab& dab, const glm::dvec3& from_mm, const glm::dvec3& to_mm) {
-  // A cosine below this comes from rounding: the face is parallel to the segment.
+  // A cosine below this is a rounding error: the face is parallel to the segment.
   constexpr double parallel = 64.0 * std::numeric_limits<double>::epsilon();
   const double length_mm = glm::distance(from_mm, to_mm);
   const glm::dvec3 along = length_mm > 0.0 ? (to_mm - from_mm) / length_mm : glm::dvec3(0.0);
@@ -108,7 +110,8 @@ Expression swept(const Dab& dab, const glm::dvec3& from_mm, const glm::dvec3& to
 
 void check(const BrushStroke& stroke) {
   const auto positive = [](double mm) { return mm > 0.0 && std::isfinite(mm); };
-  if (stroke.points_mm.empty()) throw InvalidInput("a stroke of the brush has no point");
+  if (stroke.points_mm.empty())
+    throw InvalidInput("a stroke of the brush has no point: draw each stroke through at least one");
   if (!positive(stroke.radius_mm) || (stroke.slab && !positive(stroke.slab->thickness_mm)))
     throw InvalidInput("the brush's radius and thickness must be positive");
 }
@@ -116,7 +119,7 @@ void check(const BrushStroke& stroke) {
 }  // namespace
 
 Expression brush(const std::vector<BrushStroke>& strokes) {
-  if (strokes.empty()) throw InvalidInput("the brush has no stroke");
+  if (strokes.empty()) throw InvalidInput("the brush has no stroke: draw at least one");
   std::vector<Expression> parts;
   for (const BrushStroke& stroke : strokes) {
     check(stroke);

@@ -18,8 +18,9 @@ namespace {
 
 using EnteredBlock = ExpressionBlocks::EnteredBlock;
 
-// Blocks of this height and up, 256 voxels a side, are split among threads child by child: a child of 64
-// voxels a side that a boundary crosses takes ten to a hundred microseconds, far more than starting a task.
+// Blocks of at least this height, 256 voxels a side, are split among threads by their children. A child of 64
+// voxels a side that a boundary crosses takes ten to a hundred microseconds, far more than the start of a
+// task.
 constexpr int parallel_height = 4;
 
 class Combiner {
@@ -59,8 +60,8 @@ class Combiner {
     for (std::uint64_t rest = undecided; rest != 0; rest &= rest - 1)
       numbers[next++] = std::countr_zero(rest);
 
-    // If a node of an octree equals the child, returns that node, not yet retained. Otherwise evaluates the
-    // child into `children` and returns null.
+    // Evaluates a child. If the child equals a node of an operand's octree, returns that node, whose
+    // reference count is not yet raised. Otherwise stores the result in `children` and returns null.
     const auto child_block = [&](std::size_t slot, EnteredBlock& inner) -> const Node* {
       const Node* shared = blocks_.enter(block, numbers[slot], inner);
       if (shared == nullptr) children[slot] = evaluate(inner).detach();

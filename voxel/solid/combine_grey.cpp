@@ -13,8 +13,8 @@
 #include "voxel/space/error.h"
 #include "voxel/tree/octree_node.h"
 
-// Passes: 1 compute the expression's voxels as an octree; 2 collect its leaves by brick; 3 fill the bricks'
-// samples by the voxels' owners.
+// Passes: 1 compute the expression's voxels as an octree; 2 collect the octree's leaves by brick; 3 fill the
+// bricks with the samples of the voxels' owners.
 
 namespace octotomy::voxel {
 namespace {
@@ -37,7 +37,7 @@ void collect(BlockRef block, int height, const glm::ivec3& at, int limit, std::v
     into.push_back({at, block});
     return;
   }
-  const int side = 1 << (2 * (height - 3));  // of a child, in blocks
+  const int side = 1 << (2 * (height - 3));  // edge length of a child, in blocks
   for (int child = 0; child < 64; ++child)
     collect(block.child(child), height - 1, at + side * child_place(child), limit, into);
 }
@@ -57,9 +57,9 @@ GreyOctree combine_grey(const Universe& universe, const Expression& expression, 
   const double step = windows.empty() ? 1.0 : windows.front().grey.step();
   for (const Window& window : windows)
     if (window.grey.step() != step)
-      throw InvalidInput("grey octrees whose samples count in steps of " + std::to_string(step) + " and " +
+      throw InvalidInput("grey octrees whose samples have steps of " + std::to_string(step) + " and " +
                          std::to_string(window.grey.step()) +
-                         " cannot be combined: make both of whole numbers");
+                         " cannot be combined: make both octrees of integer samples");
   const std::int16_t background = rounded(options.background / step);
   const std::int16_t filled = rounded(options.filled / step);
   const auto sample = [&](const glm::ivec3& voxel) {

@@ -1,7 +1,8 @@
-// For each operation: 1 combine() computes the voxels wholly inside and the voxels touched; 2 for voxels
-// touched but not wholly inside, the bounds follow from the bounds of both operands. Source: Frechet,
-// "Généralisation du théorème des probabilités totales", 1935: a voxel takes the place of the probability
-// space, and a share that of a probability.
+// For each operation:
+// 1 combine() computes the voxels wholly inside and the voxels touched.
+// 2 For voxels that are touched but not wholly inside, the bounds are computed from those of both operands.
+// Source: Frechet, "Généralisation du théorème des probabilités totales", 1935: a voxel corresponds to the
+// probability space, and a share to a probability.
 #include "voxel/solid/combine_shares.h"
 
 #include <algorithm>
@@ -24,7 +25,7 @@ struct Bounds {
   int high = 0;
 };
 
-/// Looks up a bracket's bounds by voxel.
+/// Returns a bracket's bounds at a voxel.
 class Shares {
  public:
   explicit Shares(const ShareBracket& bracket) : bracket_(bracket) {
@@ -90,7 +91,8 @@ Bounds combined(Kind kind, const Bounds& a, const Bounds& b) {
 ShareBracket combined(Kind kind, const ShareBracket& a, const ShareBracket& b) {
   const Universe& universe = a.inside.universe();
   if (!(universe == b.inside.universe()))
-    throw InvalidInput("shares combine in one universe: digitise the operands in the same voxels");
+    throw InvalidInput(
+        "shares can only be combined in one universe: digitise the operands in the same voxels");
   using E = Expression;
   const E ia(a.inside), ta(a.touching), ib(b.inside), tb(b.touching);
   const auto make = [&](const E& inside, const E& touching) {
@@ -130,7 +132,7 @@ ShareBracket bracket_of(const PartialOctree& partial) {
 }
 
 ShareBracket combine_shares(const Expression& expression, const std::vector<ShareOperand>& operands) {
-  // Copies of an expression share its term, so the term's address identifies a symbol.
+  // Copies of an expression share the same term, so a term's address identifies a symbol.
   std::unordered_map<const Expression::Term*, const ShareBracket*> shares;
   for (const ShareOperand& operand : operands) shares.emplace(&operand.symbol.term(), &operand.shares);
   using Term = Expression::Term;
@@ -142,8 +144,7 @@ ShareBracket combine_shares(const Expression& expression, const std::vector<Shar
       },
       [](const Term& term, const ShareBracket& part) {
         if (term.kind == Kind::Moved)
-          throw InvalidInput(
-              "shares do not turn with a lattice: move the solid, then digitise it as partial");
+          throw InvalidInput("shares cannot be moved: move the solid, then digitise it as partial");
         return complement(part);
       },
       [](const Term& term, const ShareBracket& left, const ShareBracket& right) {

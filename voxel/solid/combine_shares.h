@@ -9,19 +9,19 @@
 
 namespace octotomy::voxel {
 
-/// For every voxel, bounds of the share of the voxel that a solid fills: at least `low` and at most `high`.
-/// The shares of two solids do not determine how the solids overlap within a voxel, so the share of their
-/// Boolean lies between two bounds. The bounds coincide in voxels wholly inside or outside, and in voxels
-/// that only one solid's boundary crosses.
+/// For every voxel, bounds of the share that a solid fills: at least `low` and at most `high`. The shares of
+/// two solids do not determine how the solids overlap within a voxel, so the share of their Boolean lies
+/// between two bounds. The bounds coincide in voxels wholly inside or outside, and in voxels that only one
+/// solid's boundary crosses.
 struct ShareBracket {
   Octree inside;    ///< filled for certain
   Octree touching;  ///< perhaps filled in part
   /// Bounds for the voxels of touching - inside, in tree order as PartialOctree::fractions.
-  /// PartialOctree::whole stands for a share of 1.
+  /// PartialOctree::whole represents a share of 1.
   std::vector<std::uint16_t> low, high;
 };
 
-/// The shares of a partial octree as exact bounds, low = high. Throws as check(PartialOctree).
+/// The shares of a partial octree as exact bounds, low = high. Throws as check(PartialOctree) does.
 ShareBracket bracket_of(const PartialOctree& partial);
 
 /// A leaf of an expression, and the shares that replace this leaf.
@@ -36,7 +36,8 @@ struct ShareOperand {
 /// two solids of known shares. They remain valid but become wider than necessary if an operand occurs twice
 /// or three boundaries cross one voxel. Exact except for the rounding of the shares to 1 / 65535. Throws
 /// std::invalid_argument if the universes differ, a leaf is none of the symbols, or the expression moves a
-/// part: shares cannot be carried to a rotated lattice. Cost: n log n of the operands' boundary voxels.
+/// part: shares cannot be transferred to a moved lattice. Cost: n log n for n boundary voxels of the
+/// operands.
 ShareBracket combine_shares(const Expression& expression, const std::vector<ShareOperand>& operands);
 
 /// Bounds of a volume, in cubic millimetres.
@@ -48,7 +49,7 @@ struct VolumeBracket {
 };
 VolumeBracket volume_mm3(const ShareBracket& bracket);
 
-/// The shares half-way between the bounds.
+/// For every voxel, the share half-way between its bounds.
 PartialOctree middle(const ShareBracket& bracket);
 
 }  // namespace octotomy::voxel

@@ -6,9 +6,9 @@
 #include "voxel/tree/octree_node.h"
 
 // Whether a cube of index space has parts inside and outside a solid. Decisions follow regular sets: a cube
-// is inside if no open part of it lies outside, and it meets the solid if an open part of it lies inside. So
-// a surface that only touches a cube from outside does not meet it, and replacing a solid by its complement
-// swaps the two answers exactly.
+// is inside if no open part of it lies outside, and it meets the solid if an open part of it lies inside. A
+// solid that only touches a cube from outside therefore does not meet it, and replacing a solid by its
+// complement swaps the two answers exactly.
 
 namespace octotomy::voxel {
 
@@ -24,8 +24,8 @@ struct Cube {
 };
 
 /// Whether open parts of a cube lie inside and outside a solid. Conservative: `in` may be wrongly true unless
-/// `sure_in` is set, and `out` unless `sure_out` is. The operators combine solids. Where the surfaces of both
-/// run through the cube, the result may stay undecided.
+/// `sure_in` is set, and `out` may be unless `sure_out` is set. The operators combine the answers for two
+/// solids. If the surfaces of both cross the cube, the result may remain undecided.
 struct Meets {
   bool in = true;
   bool out = true;
@@ -33,7 +33,7 @@ struct Meets {
   bool sure_out = false;
 
   static Meets exactly(bool in, bool out) { return {in, out, in, out}; }
-  /// Converts a block status that is exact if Full or Empty and conservative if Partial.
+  /// Converts a block's status. Full and Empty are exact; Partial is conservative.
   static Meets of(Status status) {
     return status == Status::Partial ? Meets{} : exactly(status == Status::Full, status == Status::Empty);
   }
@@ -67,8 +67,8 @@ struct Sheets {
   double off_voxels = 0.0;  ///< bounds the distance between the surface and its tangent within the cube
 };
 
-/// The share of the cube [-half, half]^3 on the inner side of a plane. Source: Scardovelli and Zaleski, J.
-/// Computational Physics 164, 2000, eq. 2-4.
+/// The share, 0..1, of the cube [-half, half]^3 that lies on the inner side of a plane. Source: Scardovelli
+/// and Zaleski, J. Computational Physics 164, 2000, eq. 2-4.
 double share_below(const Tangent& tangent, double half);
 
 }  // namespace octotomy::voxel

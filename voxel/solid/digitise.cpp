@@ -26,7 +26,7 @@ struct Leaf {
   std::uint64_t touching = 0;
 };
 
-// The cube of side^3 voxels from `first` on.
+// The cube of side^3 voxels whose lowest voxel is `first`.
 Cube cube_at(const glm::ivec3& first, int side) {
   return {glm::dvec3(first) + 0.5 * (side - 1), 0.5 * side};
 }
@@ -64,7 +64,8 @@ TargetExpression target_of(const Universe& universe, const Expression& solid) {
   TargetExpression target(postfix_of(solid, universe), universe);
   for (const PostfixExpression::Operand& operand : target.postfix().operands)
     if (std::holds_alternative<Window>(*operand.leaf))
-      throw InvalidInput("a window of samples has no shape within a voxel: combine() it, then digitise");
+      throw InvalidInput(
+          "a window of samples has no shape within a voxel: apply combine() to it, then digitise the result");
   return target;
 }
 

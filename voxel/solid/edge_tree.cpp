@@ -1,5 +1,5 @@
 // Steps: 1 build boxes over runs of each polygon's edges, halved along the polygon; 2 build boxes over whole
-// polygons, halved across the longer side of the box around the polygons' middles. Queries open only the
+// polygons, halved across the longer side of the box around the polygons' middles. Queries examine only the
 // boxes near the point. A run of edges that lies wholly beyond the ray's start is crossed an odd number of
 // times if its ends lie on different sides of the ray. A whole polygon there is crossed an even number of
 // times. Boxes include the rounding of points computed on the edges, so skipping a box cannot change a

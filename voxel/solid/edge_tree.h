@@ -11,31 +11,31 @@ namespace octotomy::voxel {
 using Edge = std::array<glm::dvec2, 2>;
 
 /// A tree of boxes over the edges of closed polygons in a plane, so that a query at a point does not visit
-/// all edges. Results equal those computed over all edges, to the bit. Building costs n log n and takes about
-/// 50 bytes an edge. A query costs about log n on contours; edges whose boxes overlap at the point are
+/// all edges. Results have the same bits as those computed over all edges. Building costs n log n and takes
+/// about 50 bytes an edge. A query costs about log n on contours; edges whose boxes overlap at the point are
 /// visited one by one.
 class EdgeTree {
  public:
-  /// The closing edges are implied; a polygon without points has none.
+  /// The polygons' closing edges are implied; a polygon without points has no edges.
   explicit EdgeTree(const std::vector<std::vector<glm::dvec2>>& polygons_mm);
 
   /// The square of the point's distance from the nearest edge, by square_to_segment(); infinity without
   /// edges.
   double square_to(const glm::dvec2& p_mm) const;
-  /// Whether the point is inside by the even-odd rule, as contains() in region_mask.h.
+  /// Whether the point is inside by the even-odd rule, with the same results as contains() in region_mask.h.
   bool contains(const glm::dvec2& p_mm) const;
-  /// Edges that decide which points of a rectangle are inside, and where the region's border meets the
-  /// rectangle. These are the polygons' edges near the rectangle, and upright edges at larger x, each of
-  /// which replaces a whole run of edges. A ray from the rectangle towards growing x crosses the polygons and
-  /// these edges equally often, modulo two.
+  /// Edges that suffice to determine which points of a rectangle are inside, and where the region's border
+  /// meets the rectangle. These are the polygons' edges near the rectangle, and upright edges at larger x,
+  /// each of which replaces a whole run of edges. A ray from the rectangle towards growing x crosses the
+  /// polygons and these edges equally often, modulo two.
   std::vector<Edge> edges_about(const glm::dvec2& low_mm, const glm::dvec2& high_mm) const;
 
   /// The largest absolute coordinate; 0 without edges.
   double farthest_mm() const;
 
-  /// Calls visit(from, to, number), in no particular order, for all edges that meet a rectangle and some
-  /// others near it. Numbers follow the polygons' order, each polygon's closing edge first; a polygon of n
-  /// points takes n + 1 numbers.
+  /// Calls visit(from, to, number), in no particular order, for all edges that meet a rectangle and for some
+  /// others near it. Numbers ascend in the polygons' order, each polygon's closing edge first; a polygon of n
+  /// points uses n + 1 numbers.
   template <typename Visit>
   void visit(const glm::dvec2& low_mm, const glm::dvec2& high_mm, const Visit& visit_edge) const {
     if (!nodes_.empty()) visit_node(0, low_mm, high_mm, visit_edge);
@@ -85,9 +85,10 @@ class EdgeTree {
     visit_node(node.second, low_mm, high_mm, visit_edge);
   }
 
-  std::vector<glm::dvec2> points_;  ///< polygon after polygon; each polygon's last point also precedes its
-                                    ///< first
-  std::vector<Node> nodes_;         ///< a parent before its children
+  /// Points of all polygons, one polygon after the other; each polygon's last point is also stored before its
+  /// first.
+  std::vector<glm::dvec2> points_;
+  std::vector<Node> nodes_;  ///< a parent before its children
 };
 
 }  // namespace octotomy::voxel

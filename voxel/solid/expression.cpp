@@ -16,7 +16,7 @@
 namespace octotomy::voxel {
 namespace {
 
-// Whether the matrix is finite and its last row 0 0 0 1.
+// Whether all entries of the matrix are finite and its last row is 0 0 0 1.
 bool is_affine(const glm::dmat4& matrix) {
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 4; ++row)
@@ -25,14 +25,14 @@ bool is_affine(const glm::dmat4& matrix) {
   return true;
 }
 
-// Whether the matrix is affine and keeps lengths. It is rigid if its determinant is also positive.
+// Whether the matrix is affine and preserves lengths. It is rigid if its determinant is also positive.
 bool is_affine_isometry(const glm::dmat4& matrix) {
   return is_affine(matrix) && is_isometry(glm::dmat3(matrix));
 }
 
-// Whether the map has an inverse beyond rounding: the volume of the columns' parallelepiped, relative to that
-// of a box with their lengths. In a singular matrix the determinant is a sum of six products that cancel, so
-// that a few roundings of the box's volume remain.
+// Whether the map has an inverse. Compares the volume of the parallelepiped of the columns with that of a box
+// with the columns' lengths as edges. The determinant of a singular matrix is a sum of six products that
+// cancel except for a few rounding errors, which are relative to the box's volume.
 bool has_inverse(const glm::dmat3& map) {
   const double box = glm::length(map[0]) * glm::length(map[1]) * glm::length(map[2]);
   const double volume = std::abs(glm::determinant(map));
@@ -40,8 +40,8 @@ bool has_inverse(const glm::dmat3& map) {
          std::isfinite(1.0 / volume);
 }
 
-// Every rule passes what it recognised to a callback, so that one parser serves evaluation and the list of
-// names.
+// Every rule of the grammar passes its result to a callback, so that one parser serves both for evaluation
+// and for the list of names.
 template <typename Value, typename Object, typename Moved, typename Apply, typename Complement>
 class Parser {
  public:
@@ -61,7 +61,8 @@ class Parser {
 
  private:
   static constexpr std::string_view operators = "|^&-";
-  // Deeper than any plan nests, and far below what would exhaust the stack.
+  // The deepest nesting that is accepted: deeper than in any plan, and far below the depth that exhausts the
+  // stack.
   static constexpr int max_nesting = 200;
 
   Value binary(std::size_t strength) {
@@ -129,7 +130,7 @@ class Parser {
   }
 
   [[noreturn]] void fail(const std::string& reason) const {
-    // Only the part of a long text around the error is quoted.
+    // Of a long text only the part around the error is quoted.
     constexpr std::size_t most_quoted = 200;
     const bool whole = text_.size() <= most_quoted;
     const std::size_t from = whole ? 0 : std::max(at_, most_quoted / 2) - most_quoted / 2;
@@ -165,7 +166,8 @@ Expression::Term::~Term() {
   while (!open.empty()) {
     const std::shared_ptr<const Term> last = std::move(open.back());
     open.pop_back();
-    // Allowed because every term is created as a non-const Term, and this one has no other owner.
+    // Removing const is allowed, because every term is created as a non-const Term and this one has no other
+    // owner.
     auto& term = const_cast<Term&>(*last);
     take(term.left);
     take(term.right);
@@ -206,7 +208,7 @@ Expression moved(const Expression& a, const glm::dmat4& moved_from_still) {
 
 Expression reflected(const Expression& a, const glm::dmat4& mirrored_from_still) {
   if (!is_affine_isometry(mirrored_from_still) || glm::determinant(glm::dmat3(mirrored_from_still)) > 0.0)
-    throw InvalidInput("a reflection must keep lengths and exchange left and right");
+    throw InvalidInput("a reflection must preserve lengths and reverse orientation");
   return carried(a, mirrored_from_still);
 }
 
@@ -258,8 +260,8 @@ Expression parse_expression(std::string_view text, const Names& names) {
 
 namespace {
 
-// How strongly a kind binds, as in the grammar. An operand that binds less than its place requires gets
-// parentheses.
+// How strongly a kind of term binds, as in the grammar. An operand that binds less strongly than its place
+// requires gets parentheses.
 int strength(Expression::Kind kind) {
   switch (kind) {
     case Expression::Kind::Or:
@@ -287,7 +289,7 @@ struct Unprinted {
 }  // namespace
 
 std::string print_expression(const Expression& expression, const Labels& labels) {
-  for_each_term(expression, [](const MetTerm&) {});  // throws if there are too many leaves
+  for_each_term(expression, [](const MetTerm&) {});  // throws if the expression has too many leaves
   std::string printed;
   std::vector<Unprinted> rest{{&expression.term()}};
   while (!rest.empty()) {

@@ -19,8 +19,8 @@
 
 namespace octotomy::voxel {
 
-/// The voxels of a grey octree whose samples lie in low..high, both included. The limits count steps of its
-/// samples.
+/// The voxels of a grey octree whose samples lie in low..high, both included. The limits are in steps of the
+/// octree's samples.
 struct Window {
   GreyOctree grey;
   double low = 0.0;
@@ -34,8 +34,8 @@ inline Window window_of(const GreyOctree& grey, double low,
   return window;
 }
 
-/// A Boolean expression of objects under affine maps: pure data, cheap to copy. combine(), digitise() and
-/// renderers evaluate it.
+/// A Boolean expression of objects under affine maps. It is immutable data and cheap to copy. combine(),
+/// digitise() and renderers evaluate it.
 class Expression {
  public:
   enum class Kind { Leaf, And, Or, Minus, Xor, Not, Moved };
@@ -50,11 +50,11 @@ class Expression {
     Term() = default;
     Term(const Term&) = delete;
     Term& operator=(const Term&) = delete;
-    ~Term();  ///< iterative: deep terms cannot exhaust the stack
+    ~Term();  ///< destroys terms iteratively, so that deep terms cannot exhaust the stack
   };
 
-  /// A leaf. Each constructor throws std::invalid_argument as check() of its type: for a mask without
-  /// polygons, a length that is not positive, or an axis that is not a unit vector.
+  /// An expression of a single object. Each constructor throws std::invalid_argument as check() of its type
+  /// does: for a mask without polygons, a length that is not positive, or an axis that is not a unit vector.
   Expression(Octree octree) : Expression(Leaf(std::move(octree))) {}
   Expression(Window window) : Expression(Leaf(std::move(window))) {}
   Expression(RegionMask mask) : Expression(Leaf(std::move(mask))) {}
@@ -72,18 +72,18 @@ class Expression {
   friend Expression operator-(const Expression& a, const Expression& b) { return {Kind::Minus, a, b}; }
   friend Expression operator^(const Expression& a, const Expression& b) { return {Kind::Xor, a, b}; }
   friend Expression operator~(const Expression& a);
-  /// The expression carried by a rigid motion, LPS to LPS. Throws std::invalid_argument if the matrix is not
+  /// The expression after a rigid motion, LPS to LPS. Throws std::invalid_argument if the matrix is not
   /// rigid.
   friend Expression moved(const Expression& a, const glm::dmat4& moved_from_still);
   /// The expression's mirror image: the matrix is a reflection, LPS to LPS. Throws std::invalid_argument if
   /// the matrix is not a reflection.
   friend Expression reflected(const Expression& a, const glm::dmat4& mirrored_from_still);
-  /// The expression under any affine map with an inverse, LPS to LPS: moved, reflected, scaled or sheared.
-  /// The value at a point is the operand's value at the point's origin under the map. Throws
-  /// std::invalid_argument if an entry is not finite, the last row is not 0 0 0 1, or the map has no inverse.
+  /// The expression after any affine map with an inverse, LPS to LPS: moved, reflected, scaled or sheared. A
+  /// point is in the result if its preimage under the map is in the operand. Throws std::invalid_argument if
+  /// an entry is not finite, the last row is not 0 0 0 1, or the map has no inverse.
   friend Expression carried(const Expression& a, const glm::dmat4& carried_from_still);
 
-  /// A part of another expression, shared with it. Precondition: not null.
+  /// A part of another expression, whose memory it shares. Precondition: not null.
   explicit Expression(std::shared_ptr<const Term> term) : term_(std::move(term)) {}
 
   const Term& term() const { return *term_; }
@@ -98,7 +98,8 @@ Expression moved(const Expression& a, const glm::dmat4& moved_from_still);
 Expression reflected(const Expression& a, const glm::dmat4& mirrored_from_still);
 Expression carried(const Expression& a, const glm::dmat4& carried_from_still);
 
-/// Rotation by degrees about an axis through a point, right-handed, then a translation; LPS millimetres.
+/// A right-handed rotation in degrees about an axis through a point, followed by a translation; LPS
+/// millimetres.
 struct Motion {
   glm::dvec3 translate_mm{0.0};
   double degrees = 0.0;
@@ -111,7 +112,8 @@ glm::dmat4 moved_from_still(const Motion& motion);
 /// Look-ups for the names in an expression's text. Each throws InvalidInput for an unknown name.
 struct Names {
   std::function<Expression(std::string_view name)> object;
-  std::function<glm::dmat4(std::string_view name)> motion;  ///< may be empty: `move` is then an error
+  /// May be empty; `move` in the text is then an error.
+  std::function<glm::dmat4(std::string_view name)> motion;
 };
 
 /// Parses `a & b`, `a | b`, `a - b`, `a ^ b`, `~a`, `move(a, m)` and parentheses. As in Python, `~` binds
@@ -125,12 +127,12 @@ struct Labels {
   std::function<std::string(const Expression::Leaf& leaf)> object;
   std::function<std::string(const glm::dmat4& moved_from_still)> motion;
 };
-/// The expression as text with as few parentheses as possible. Parsing it with names that invert the labels
-/// yields the same expression, term by term.
+/// The expression as text with as few parentheses as possible. If names that are the inverse of the labels
+/// are used, parsing this text yields the same expression, term by term.
 std::string print_expression(const Expression& expression, const Labels& labels);
 
-/// The names of the objects in an expression's text, each once, in order of first use. Throws as
-/// parse_expression().
+/// The names of the objects in an expression's text, each once, in the order of first use. Throws as
+/// parse_expression() does.
 std::vector<std::string> names_in(std::string_view text);
 
 }  // namespace octotomy::voxel

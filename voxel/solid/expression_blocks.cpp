@@ -53,7 +53,8 @@ struct Reduced {
   }
 };
 
-// Adds to an operand's cover the leaves whose words are empty or full. Returns false if there are none.
+// Adds the leaves whose words are empty or full to an operand's cover. Returns false if there are no such
+// leaves.
 bool settle(Cover& cover, const std::array<std::uint64_t, 64>& words, std::uint64_t wanted) {
   const std::uint64_t open = wanted & cover.undecided();
   std::uint64_t full = 0, empty = 0;
@@ -153,11 +154,12 @@ void ExpressionBlocks::ask_words(EnteredBlock& block, std::uint64_t wanted) cons
   std::uint64_t open = wanted & block.cover.undecided();
   for (std::size_t i = 0; i < operands_.size() && open != 0; ++i) {
     fetch_words(i, open, block);
-    // Words of an aligned octree's Partial node need no settle(): a node stores empty and full leaves apart.
+    // settle() is not needed for words of an aligned octree's Partial node, because its empty and full leaves
+    // have no words.
     if (i + 1 == operands_.size() || block.operations[i].node != nullptr ||
         !settle(block.covers[i], block.operand_words[i], open))
       continue;
-    // Leaves that the words fetched so far decide need no words of the other operands.
+    // If the words fetched so far determine a leaf, the other operands' words of this leaf are not needed.
     const Cover settled = run_covers(block);
     block.cover.full |= open & settled.full;
     block.cover.some &= settled.some | ~open;

@@ -18,7 +18,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// Replaces the expression's windows by windows on the lattices of their scans, where no sample was
+/// Replaces the expression's windows by windows on the lattices of their scans, on which no sample was
 /// interpolated.
 Expression on_scan_lattices(const Expression& expression) {
   using Kind = Expression::Kind;
@@ -43,7 +43,7 @@ Expression on_scan_lattices(const Expression& expression) {
 double value_below(const Scene& frame) {
   const double low = range(frame).low, below = std::floor(low) - 1.0;
   if (std::holds_alternative<FloatSamples>(frame.samples)) {
-    // From 2^24 on, floats are further apart than 1.
+    // From 2^24 on, neighbouring floats differ by more than 1.
     constexpr float lowest = -std::numeric_limits<float>::max();
     if (static_cast<float>(low) > lowest)
       return std::min(static_cast<float>(below), std::nextafter(static_cast<float>(low), lowest));
@@ -59,8 +59,8 @@ double value_below(const Scene& frame) {
   return below;
 }
 
-/// Throws unless a sample can have the value. With a step above 0 samples are 16-bit multiples of the step; a
-/// step of 0 allows any finite value.
+/// Throws unless a sample can have the value. If the step is above 0, samples are 16-bit multiples of the
+/// step; if it is 0, any finite value is allowed.
 void need_sample(double value, double step, const std::string& of) {
   const double steps = step > 0.0 ? value / step : 0.0;
   if (std::isfinite(value) && steps >= -32768.0 && steps <= 32767.0) return;
@@ -88,10 +88,9 @@ ExpressionScan expression_scan(const Scene& frame, const GreyOctree& of_frame, c
       whole_voxel_offset(glm::inverse(own.universe().lps_from_voxel) * frame.lattice.lps_from_voxel);
   if (!offset || glm::any(glm::lessThan(*offset, glm::ivec3(0))) ||
       glm::any(glm::greaterThan(*offset + dims, glm::ivec3(own.universe().side()))))
-    throw Error(
-        ErrorCode::Input,
-        "the scan reaches out of the plan's universe, or has more samples along an axis than an octree "
-        "can: crop it, or average it down");
+    throw Error(ErrorCode::Input,
+                "the scan extends beyond the plan's universe, or has too many samples along an axis for an "
+                "octree: crop it, or average it down");
   ExpressionScan made{frame};
   made.hole = options.hole ? *options.hole : frame.padding ? *frame.padding : value_below(frame);
   if (!options.hole) made.scene.padding = made.hole;
@@ -133,7 +132,8 @@ ExpressionScan expression_scan(const Scene& frame, const GreyOctree& of_frame, c
               if (is_held) owned = owners.at(voxel, glm::dvec3(voxel));
               if (is_held && !owned) ++filled_here;
               const std::int16_t steps = owned ? in_steps(owned->in_steps) : filled_steps;
-              // A sample that equals the frame's own sample in steps keeps the frame's bits.
+              // A sample that, in steps, equals the frame's sample at the same place keeps the bits of the
+              // frame's sample.
               const bool is_measured = own.scan().contains(voxel);
               if (is_held && is_measured && own.sample(voxel) == steps) continue;
               if (!is_held && !is_measured && frame.padding) continue;

@@ -9,16 +9,17 @@
 #include "voxel/solid/operand_frame.h"
 #include "voxel/solid/term_walk.h"
 
-// Source: thesis 7.2 for grey operands. A walk collects the windows with their motions, their signs and the
-// operands of unions that must contain a voxel that the window owns. at() tests the windows in this order.
+// Source: thesis 7.2 for grey operands. A walk collects the windows in reading order, with their motions,
+// their signs and the operands of unions that must contain every voxel owned by the window. at() tests the
+// windows in this order.
 
 namespace octotomy::voxel {
 namespace {
 
 using TermPointer = std::shared_ptr<const Expression::Term>;
 
-// An operand's voxels in the target. A source within the operand gives samples only in these voxels, or only
-// outside them if the operand is under an odd number of complements.
+// An operand's voxels in the target. A source within the operand supplies samples only in these voxels or, if
+// the operand is under an odd number of complements, only outside them.
 struct Owner {
   Octree voxels;
   bool inside = true;
@@ -28,12 +29,12 @@ struct Owner {
 struct Source {
   const Window* window = nullptr;
   glm::dmat4 source_from_target{1.0};
-  std::optional<glm::ivec3> offset;  ///< if source_from_target is a translation by whole voxels
-  bool positive = true;              ///< under an even number of complements
+  std::optional<glm::ivec3> offset;  ///< set if source_from_target is a translation by whole voxels
+  bool positive = true;              ///< whether it is under an even number of complements
   std::vector<std::shared_ptr<const Owner>> owners;
 };
 
-// Whether a voxel may be in a term because of one operand alone. A complement exchanges And and Or (De
+// Whether a voxel may be in a term because it is in only one operand. A complement exchanges And and Or (De
 // Morgan).
 bool is_alternative(Expression::Kind kind, bool positive) {
   using Kind = Expression::Kind;
@@ -41,8 +42,8 @@ bool is_alternative(Expression::Kind kind, bool positive) {
   return kind == Kind::And || kind == Kind::Minus;
 }
 
-// Whether the term is a leaf or itself a union; under an odd number of complements, an intersection. The
-// term's voxels then need no test: a window is tested by its samples, and a union's operands by their own
+// Whether the term is a leaf or a union or, under an odd number of complements, an intersection. Voxels need
+// not be tested for such a term: windows are tested by their samples, and a union's operands by their own
 // voxels.
 bool owns_itself(const Expression::Term& term, bool positive) {
   using Kind = Expression::Kind;
@@ -51,7 +52,7 @@ bool owns_itself(const Expression::Term& term, bool positive) {
   return at->kind == Kind::Leaf || at->kind == (positive ? Kind::Or : Kind::And);
 }
 
-// A part of an expression under the motions that stand around it, outermost first.
+// A part of an expression after the motions that enclose it, which are given outermost first.
 Expression placed(TermPointer part, const std::vector<glm::dmat4>& around) {
   Expression expression{std::move(part)};
   for (auto motion = around.rbegin(); motion != around.rend(); ++motion)
@@ -78,7 +79,7 @@ class SourceWalk {
         }
         leave();
       }
-      // A leaf is visited once, the other terms before and after their operands.
+      // A leaf is visited once, other terms are visited before and after their operands.
       if (turns && (!met.before || met.term.kind == Kind::Leaf)) positive_ = !positive_;
     });
     return std::move(found_);
@@ -86,9 +87,9 @@ class SourceWalk {
 
  private:
   using Kind = Expression::Kind;
-  // A term between its two visits.
+  // The state of a term between its two visits.
   struct Open {
-    TermPointer alternative;  // none if its voxels need no test
+    TermPointer alternative;  // null if the term's voxels need not be tested
     bool positive = true;
     std::size_t first_source = 0;
   };
@@ -136,8 +137,8 @@ class SourceWalk {
   std::vector<Source> found_;
   std::vector<glm::dmat4> motions_{glm::dmat4(1.0)};  // products, from outermost
   std::vector<glm::dmat4> around_;                    // the factors
-  std::vector<TermPointer> next_{nullptr};  // Open::alternative of each term not yet visited, in the order of
-                                            // for_each_term()'s stack
+  // Open::alternative of each term not yet visited, in the order of for_each_term()'s stack.
+  std::vector<TermPointer> next_{nullptr};
   std::vector<Open> open_;
   bool positive_ = true;
 };
@@ -168,8 +169,8 @@ Expression all_samples(const GreyOctree& grey, const glm::dmat4& moved_from_stil
   return moved_from_still == glm::dmat4(1.0) ? samples : carried(samples, moved_from_still);
 }
 
-// The right side of the & contains all of space, so the intersection has the voxels of `voxels`. The window
-// of `samples` comes after the windows of `voxels` in reading order and is tested by its own samples.
+// The right side of the & contains all of space, so the intersection has exactly the voxels of `voxels`. In
+// reading order the window of `samples` comes after the windows of `voxels`; it is tested by its own samples.
 Expression with_samples(const Expression& voxels, const Expression& samples) {
   return voxels & (samples | ~Expression(Octree::empty({})));
 }
@@ -189,8 +190,8 @@ std::vector<Window> positive_windows(const Expression& expression) {
   bool positive = true;
   for_each_term(expression, [&](const MetTerm& met) {
     if (met.term.kind != Kind::Leaf) {
-      // A walk meets a complement before its operands and again after them, so the second meeting restores
-      // the sign.
+      // A walk visits a complement before its operand and again after it, so the second visit restores the
+      // sign.
       if (met.subtracted != (met.term.kind == Kind::Not)) positive = !positive;
     } else if (const auto* window = std::get_if<Window>(&*met.term.leaf)) {
       if (positive != met.subtracted) found.push_back(*window);

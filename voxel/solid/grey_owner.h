@@ -10,7 +10,7 @@
 
 namespace octotomy::voxel {
 
-/// A sample in the steps of its grey octree.
+/// A sample, as a multiple of the step of its grey octree.
 struct OwnedSample {
   double in_steps = 0.0;
   double step = 1.0;
@@ -18,50 +18,51 @@ struct OwnedSample {
   double value() const { return step * in_steps; }
 };
 
-/// An expression whose windows give samples.
+/// An expression whose windows supply samples.
 struct SampleSource {
   Expression expression;
-  std::optional<Octree> voxels = {};  ///< its windows own only these; none: no limit
-  /// Only windows whose samples count in this step give samples; other windows only limit the voxels. None:
-  /// all windows give samples.
+  std::optional<Octree> voxels = {};  ///< the windows own no voxels outside these; none: no limit
+  /// Only windows whose samples have this step supply samples; other windows only limit the voxels. None: all
+  /// windows supply samples.
   std::optional<double> step = {};
 };
 
-/// All samples of a scan, under a rigid motion or reflection of LPS onto itself.
+/// A window that contains all samples of a scan, after a rigid motion or reflection of LPS.
 Expression all_samples(const GreyOctree& grey, const glm::dmat4& moved_from_still = glm::dmat4(1.0));
 
-/// Adds samples to `voxels` and keeps its voxels. `samples` is a window under motions: where no window of
-/// `voxels` owns a voxel, the window's sample is used if there is one. For voxels that were computed from a
-/// scan and stored as an octree.
+/// Adds samples to `voxels` without changing its voxels. `samples` is a window under motions. A voxel that no
+/// window of `voxels` owns gets this window's sample, if there is one. Used for voxels that were computed
+/// from a scan and stored as an octree.
 Expression with_samples(const Expression& voxels, const Expression& samples);
 /// For a term made by with_samples(), the term of its `voxels`; otherwise the term itself.
 const Expression::Term& before_samples(const Expression::Term& term);
 
-/// The windows of an expression that give samples to the voxels that they contain: windows under an even
-/// number of complements and right sides of a minus. Throws as for_each_term().
+/// The windows of an expression that supply samples to the voxels that they contain: those under an even
+/// number of complements and right sides of a minus. Throws as for_each_term() does.
 std::vector<Window> positive_windows(const Expression& expression);
 
 /// Computes samples of expressions at single positions, without building a scan. The owner of a voxel is the
 /// first window, in the order of the expressions and in reading order within each, that contains the voxel
 /// and is not under a complement or to the right of a minus; if there is none, the first window whose
-/// complement contains the voxel. Of a union's operands only those that contain the voxel own it. Value
-/// semantics: copies share.
+/// complement contains the voxel. Of a union's operands only those that contain the voxel own it. Copies
+/// share their data.
 class GreyOwners {
  public:
-  /// Precondition: the sources' voxels are of the universe. Cost: combine() for each operand of a union that
-  /// holds windows and is neither a window nor a union itself. Memory: these octrees.
+  /// Precondition: the sources' `voxels` have this universe. Cost: combine() for each operand of a union that
+  /// contains windows and is neither a window nor a union. Memory: the octrees of these operands.
   GreyOwners(const Universe& universe, const std::vector<SampleSource>& sources,
              const Resampling& resampling = {});
 
-  /// The sample at p_voxel, a position in voxels of the universe, of the window that owns `voxel`: moved with
-  /// it and interpolated in its own samples' frame. None if no window owns the voxel.
+  /// The sample at p_voxel, a position in voxels of the universe, of the window that owns `voxel`. The
+  /// position is mapped back by the window's motions and interpolated between the window's samples. None if
+  /// no window owns the voxel.
   std::optional<OwnedSample> at(const glm::ivec3& voxel, const glm::dvec3& p_voxel) const;
 
   const Universe& universe() const;
-  /// All windows in their order.
+  /// All windows in the order in which they are tested.
   std::vector<Window> windows() const;
-  /// Whether both certainly return the same samples: one universe, the same voxels and the same terms in
-  /// memory. Windows and their motions that were created separately are compared by value.
+  /// Whether both certainly return the same samples: they have one universe, the same voxels and the same
+  /// terms in memory. Windows and their motions that were created separately are compared by value.
   bool is_same(const GreyOwners& other) const;
 
  private:

@@ -27,7 +27,7 @@ double share_at(const glm::dvec3& from_mm, double reach_mm) {
 
 void check(const std::vector<LandmarkShift>& landmarks, double reach_mm) {
   const auto is_finite = [](const glm::dvec3& p) { return std::isfinite(p.x + p.y + p.z); };
-  if (landmarks.empty()) throw InvalidInput("no landmark moves the object: add one");
+  if (landmarks.empty()) throw InvalidInput("the list of landmarks is empty: add at least one");
   if (!(reach_mm > 0.0) || !std::isfinite(reach_mm))
     throw InvalidInput("the landmarks' reach must be above 0 mm, not " + std::to_string(reach_mm) + " mm");
   for (std::size_t i = 0; i < landmarks.size(); ++i)
@@ -35,7 +35,7 @@ void check(const std::vector<LandmarkShift>& landmarks, double reach_mm) {
       throw InvalidInput("landmark " + std::to_string(i + 1) + " or its displacement is not finite");
 }
 
-/// The field of displacements, and the way back.
+/// The field of displacements u, and the search for the origin x of a point x + u(x).
 class Shifts {
  public:
   Shifts(const std::vector<LandmarkShift>& landmarks, double reach_mm)
@@ -48,7 +48,7 @@ class Shifts {
         for (std::size_t k = 0; k < j; ++k) rest -= root[i][k] * root[j][k];
         if (i == j && !(rest > 0.0))
           throw InvalidInput("landmark " + std::to_string(i + 1) +
-                             " coincides with another one: place it apart");
+                             " coincides with another one: move or remove it");
         root[i][j] = i == j ? std::sqrt(rest) : rest / root[j][j];
       }
     for (std::size_t i = 0; i < count; ++i) {
@@ -60,7 +60,7 @@ class Shifts {
       for (std::size_t k = i + 1; k < count; ++k) weights_mm_[i] -= root[k][i] * weights_mm_[k];
       weights_mm_[i] /= root[i][i];
     }
-    // Wendland's function is at most 1.
+    // Wendland's function is at most 1, so the sum of the weights' lengths bounds the displacement.
     for (const glm::dvec3& weight : weights_mm_) farthest_mm_ += glm::length(weight);
   }
 
@@ -81,7 +81,7 @@ class Shifts {
   }
 
   glm::dvec3 origin_mm(const glm::dvec3& p_mm) const {
-    // A displacement that changes by 0.95 mm per mm comes to rest within 500 rounds.
+    // If the displacement changes by at most 0.95 mm per mm, the iteration converges within 500 rounds.
     constexpr int most_rounds = 500;
     constexpr double rest_mm = 1e-9;
     glm::dvec3 x = p_mm - at(p_mm);
@@ -92,7 +92,7 @@ class Shifts {
     }
     throw Error(ErrorCode::Geometry, "the displacements fold the tissue at (" + std::to_string(p_mm.x) +
                                          ", " + std::to_string(p_mm.y) + ", " + std::to_string(p_mm.z) +
-                                         ") mm: let them reach farther");
+                                         ") mm: choose a larger reach, or smaller displacements");
   }
 
  private:
@@ -147,7 +147,7 @@ Octree warped_by_landmarks(const Octree& still, const Expression& expression,
   };
   return octree_of_blocks(universe, [&](const glm::ivec3& block) {
     shared.one_more();
-    // The box of the voxels' centres; a lattice may be turned against LPS.
+    // The box around the voxels' centres in LPS, because the lattice may be turned against LPS.
     glm::dvec3 low_mm(1e300), high_mm(-1e300);
     for (int corner = 0; corner < 8; ++corner) {
       const glm::ivec3 end(corner & 1, (corner >> 1) & 1, (corner >> 2) & 1);

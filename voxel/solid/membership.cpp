@@ -5,8 +5,8 @@
 
 namespace octotomy::voxel {
 
-// The target lattice is the patient frame itself, with voxels of 1 mm. Its depth of 0 makes it differ from
-// every scan's universe, so windows are interpolated.
+// The target lattice is the patient frame itself, with voxels of 1 mm. Its depth is 0, so that it differs
+// from every scan's universe and windows are interpolated.
 struct Membership::Known {
   Known(const Universe& universe, Expression asked)
       : expression(std::move(asked)),

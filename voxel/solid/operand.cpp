@@ -10,9 +10,9 @@
 namespace octotomy::voxel {
 namespace {
 
-// Bounds the rounding error of f over a universe: a dot product of four terms of at most 2^12 times the
-// gradient. A walk must not decide a block if rounding could change the answer at one of its voxels; the
-// result would then depend on the tree's shape.
+// A bound of the rounding error of f over a universe. f is a scalar product of four terms, each at most 2^12
+// times the gradient. A walk must not decide a block if rounding could change the answer at one of its
+// voxels; the result would then depend on the tree's shape.
 double rounding_slack(const Linear& f) {
   const double largest = (1 << Universe::max_depth) *
                              (std::abs(f.gradient.x) + std::abs(f.gradient.y) + std::abs(f.gradient.z)) +
@@ -61,8 +61,7 @@ Operand operand_of(const PostfixExpression::Operand& operand, const Universe& ta
       const glm::dmat4 source_from_target = source(octree.universe());
       if (const std::optional<glm::ivec3> offset = whole_voxel_offset(source_from_target))
         return ShiftedOctreeOperand(octree, *offset);
-      // A window contains the points whose nearest sample belongs to its scan, so the rule Half is never
-      // applied to the scan.
+      // A point belongs to a scan if its nearest sample does, so the rule Half is not applied to scans.
       if (resampling.voxels == Resampling::Voxels::Half && !operand.is_scan)
         return HalfOctreeOperand(octree, source_from_target);
       return SampledOctreeOperand(octree, source_from_target);
@@ -131,7 +130,7 @@ bool contains(const Operand& operand, const glm::dvec3& p_voxel) {
   return std::visit(
       [&](const auto& o) {
         if constexpr (requires { o.contains(p_voxel); }) return o.contains(p_voxel);
-        assert(!"the operand has no answer about a point");
+        assert(!"the operand cannot be evaluated at a point");
         return false;
       },
       operand);

@@ -15,16 +15,16 @@
 // Operands in the form that a walk over a target universe uses. Positions are the target's voxel indices. An
 // operand answers three queries: whether a cube has parts inside and outside (meets), whether a point is
 // inside (contains), and which voxels of a leaf have their centre inside (words; D3). The answer about a cube
-// may be undecided; the others are exact. Operands that can answer faster for a block's 64 children or for
-// leaves have their own cover() and words().
+// may be undecided; the others are exact. Some operand types have their own cover() and words(), which are
+// faster for a block's 64 children or for leaves.
 
 namespace octotomy::voxel {
 
-/// A block of the target: 64 children of `child_side` voxels a side, from voxel `origin` on. A child's cube
-/// extends `margin` voxels beyond the centres of its voxels.
+/// A block of the target: 64 children, each `child_side` voxels a side. `origin` is the block's lowest voxel.
+/// A child's cube extends `margin` voxels beyond the centres of its voxels.
 struct TargetBlock {
-  /// Covers the voxel centres and their rounding: coordinates of up to 2^36 voxels are rounded to 2^-16 of a
-  /// voxel.
+  /// The margin for tests of voxel centres: it covers their rounding, because coordinates of up to 2^36
+  /// voxels are rounded to 2^-16 of a voxel.
   static constexpr double centres = 0x1p-16;
   static constexpr double cuboids = 0.5;  ///< covers whole voxels
 
@@ -57,7 +57,7 @@ struct Linear {
   double operator()(const glm::dvec3& v) const { return glm::dot(gradient, v) + constant; }
 };
 
-/// The intersection of regions' back-projections.
+/// The intersection of the back-projections of several regions.
 class MaskOperand {
  public:
   MaskOperand(const RegionMask& mask, const glm::dmat4& still_from_target);
@@ -70,13 +70,13 @@ class MaskOperand {
  private:
   struct Projected {
     EdgeTree edges;
-    Linear u, v;  ///< coordinates in the view, in millimetres
+    Linear u, v;  ///< coordinates in the view in millimetres, as functions of target voxels
     LocalFrame frame() const;
   };
   std::vector<Projected> regions_;
 };
 
-/// A volume between regions on parallel slices.
+/// The volume interpolated between regions on parallel slices.
 class SliceMaskOperand {
  public:
   SliceMaskOperand(const SliceMask& mask, const glm::dmat4& still_from_target);
@@ -85,7 +85,8 @@ class SliceMaskOperand {
 
  private:
   SliceDistance distance_;
-  Linear u_, v_, w_;  ///< coordinates in the view and along the slices, in millimetres
+  /// Coordinates in the view and across the slices in millimetres, as functions of target voxels.
+  Linear u_, v_, w_;
 };
 
 /// A grey octree's window on the target's own lattice.
@@ -100,7 +101,7 @@ class WindowOperand {
   Window16 window_;
 };
 
-/// An octree under a translation by whole voxels: nothing is sampled, words are shifted into place.
+/// An octree under a translation by whole voxels: words are shifted into place, without sampling.
 class ShiftedOctreeOperand {
  public:
   /// Target voxel t is the octree's voxel t + source_offset.
@@ -132,8 +133,8 @@ class SampledOctreeOperand {
 
   const Octree* octree_;
   glm::dmat4 source_from_target_;
-  /// Offsets from a leaf's first voxel to each of its voxels, in the source's voxels, fixed point; and their
-  /// bounds.
+  /// Offsets from a leaf's first voxel to each of its voxels, in voxels of the source as fixed-point numbers;
+  /// and the bounds of these offsets.
   std::array<Offsets, 3> offsets_;
   glm::ivec3 lowest_{0}, highest_{0};
 };
@@ -149,13 +150,14 @@ class HalfOctreeOperand {
  private:
   const Octree* octree_;
   glm::dmat4 source_from_target_;
-  std::array<glm::dvec3, 125> points_;  ///< offsets from a voxel's centre, in the source
-  glm::dvec3 reach_{0.0};               ///< largest offset along each axis
+  /// Offsets of the points from a voxel's centre, in voxels of the source.
+  std::array<glm::dvec3, 125> points_;
+  glm::dvec3 reach_{0.0};  ///< largest offset of a point along each axis
 };
 
 /// A grey octree's window on another lattice or under a motion: samples on the scan's own lattice are
-/// interpolated, then compared with the window. Under a translation by whole voxels every centre has a sample
-/// of its own, and words are shifted into place.
+/// interpolated, then compared with the window. Under a translation by whole voxels every centre lies at a
+/// sample, and words are shifted into place.
 class SampledWindowOperand {
  public:
   SampledWindowOperand(const Window& window, const glm::dmat4& still_from_target,
@@ -190,11 +192,12 @@ using Operand =
                  WindowOperand, SampledWindowOperand, MaskOperand, SliceMaskOperand, HalfSpaceOperand,
                  BallOperand, BoxOperand, CylinderOperand, TorusOperand>;
 
-/// The operand for a walk over `target`. It refers to the expression, which must outlive it.
+/// The operand for a walk over `target`. The expression must outlive it.
 Operand operand_of(const PostfixExpression::Operand& operand, const Universe& target,
                    const Resampling& resampling);
 
-/// The status of a block's children. Children of 4 voxels a side may be left undecided for words().
+/// The status of a block's children. Children of 4 voxels a side may remain undecided; words() computes
+/// these.
 Cover cover(const Operand& operand, const TargetBlock& block);
 void words(const Operand& operand, const WantedLeaves& leaves);
 /// Precondition of meets(), contains() and sheets(): the operand is no WindowOperand and no
@@ -202,7 +205,7 @@ void words(const Operand& operand, const WantedLeaves& leaves);
 Meets meets(const Operand& operand, const Cube& cube);
 bool contains(const Operand& operand, const glm::dvec3& p_voxel);
 /// The operand's surfaces within a cube. Precondition: its surface cuts the cube. An operand without tangents
-/// returns two surfaces with a zero gradient, so that the cube is split further and then counted by its
+/// returns two surfaces with a zero gradient; callers then split the cube further and finally count it by its
 /// centre.
 Sheets sheets(const Operand& operand, const Cube& cube);
 

@@ -27,7 +27,7 @@
 namespace octotomy::voxel {
 namespace {
 
-// A direction shorter than 2^-40 of the vectors from which it was computed comes from rounding.
+// A direction that is shorter than 2^-40 of the vectors from which it was computed is a rounding error.
 constexpr double vanishing = 0x1p-40;
 
 glm::dvec3 corner(int number) {
@@ -38,10 +38,10 @@ double square(double x) {
   return x * x;
 }
 
-// Least |c + columns t|^2 over all t with coordinates from -1 to 1.
+// The least value of |c + columns t|^2 over all t with coordinates from -1 to 1.
 double nearest_square(const glm::dmat3& columns, const glm::dvec3& c) {
-  // Each coordinate is fixed at an end or free. The function is convex, so its minimum is the least value at
-  // the feasible stationary points.
+  // Tries all combinations in which each coordinate is free or fixed at an end. The function is convex, so
+  // its minimum is the least value at those stationary points that lie within the range.
   double least = std::numeric_limits<double>::infinity();
   for (int face = 0; face < 27; ++face) {
     const std::array<int, 3> state{face % 3 - 1, (face / 3) % 3 - 1, face / 9 - 1};
@@ -54,7 +54,8 @@ double nearest_square(const glm::dmat3& columns, const glm::dvec3& c) {
       else
         fixed += static_cast<double>(state[static_cast<std::size_t>(i)]) * columns[i];
     }
-    // Normal equations of the free coordinates, solved as a 3 x 3 system with the others held at zero.
+    // The normal equations of the free coordinates, as a 3 x 3 system in which the other coordinates are
+    // zero.
     glm::dmat3 normal(1.0);
     glm::dvec3 right(0.0);
     for (int i = 0; i < count; ++i) {
@@ -76,7 +77,7 @@ struct CornerSquares {
   double most = 0.0;
 };
 
-// Squares of the least and the largest distance of the corners from the origin.
+// The squares of the least and of the largest distance of a parallelepiped's corners from the origin.
 CornerSquares corner_squares(const glm::dmat3& columns, const glm::dvec3& c) {
   CornerSquares squares;
   for (int number = 0; number < 8; ++number) {
@@ -87,13 +88,14 @@ CornerSquares corner_squares(const glm::dmat3& columns, const glm::dvec3& c) {
   return squares;
 }
 
-// Whether the parallelepiped comes nearer to the origin than a radius. The centre or a corner within the
-// radius proves it; a plane across the direction to the centre disproves it. Other cases, and those within
-// rounding, are decided by nearest_square().
+// Whether a point of the parallelepiped is nearer to the origin than a radius. The centre or a corner within
+// the radius proves it; a plane across the direction to the centre disproves it. Other cases, and those too
+// close to the radius for rounding, are decided by nearest_square().
 bool comes_within(double radius, const glm::dmat3& columns, const glm::dvec3& c, double nearest_corner2) {
   const double centre2 = glm::dot(c, c), radius2 = square(radius);
   if (std::min(centre2, nearest_corner2) < radius2 * (1.0 - vanishing)) return true;
-  double along = centre2;  // least projection on the direction to the centre, times the centre's distance
+  // The least projection on the direction to the centre, multiplied by the centre's distance.
+  double along = centre2;
   for (int i = 0; i < 3; ++i) along -= std::abs(glm::dot(columns[i], c));
   if (along > radius * std::sqrt(centre2) + vanishing * centre2) return false;
   return nearest_square(columns, c) < radius2;
@@ -103,8 +105,8 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) {
   return a.x * b.y - a.y * b.x;
 }
 
-// A convex polygon, counter-clockwise. A cube clipped by two planes has at most 8 corners between the planes,
-// and 6 points where its edges cross each plane.
+// A convex polygon, counter-clockwise. The capacity suffices for a cube clipped by two planes: at most 8
+// corners lie between the planes, and at most 6 edges cross each plane.
 struct Polygon {
   std::array<glm::dvec2, 48> points;
   int count = 0;
@@ -131,7 +133,7 @@ Polygon hull_of(Polygon cloud) {
   return hull;
 }
 
-// Limits of a solid along its frame's third axis.
+// The limits of a solid along the third axis of its frame.
 struct Range {
   double low_mm = -std::numeric_limits<double>::infinity();
   double high_mm = std::numeric_limits<double>::infinity();
@@ -171,7 +173,7 @@ SweptCube swept_cube(const LocalFrame& local, const Range& range, const Cube& cu
   return result;
 }
 
-// Least distance of the origin from a convex polygon; zero within.
+// The distance of the origin from a convex polygon; zero inside.
 double nearest(const Polygon& hull) {
   assert(hull.count >= 3);
   bool within = true;
@@ -208,8 +210,9 @@ bool runs_through(const glm::dvec2& a, const glm::dvec2& b, const Polygon& hull)
   return true;
 }
 
-// Visits all edges that may run through the outline, and some others. The rounding error of runs_through() is
-// a few units in the last place of the largest coordinate; the outline's box is widened by far more.
+// Visits all edges that may cross the outline's interior, and some others. The rounding error of
+// runs_through() is a few units in the last place of the largest coordinate; the outline's box is widened by
+// far more.
 template <typename Visit>
 void visit_about(const EdgeTree& edges, const Polygon& outline, const Visit& visit) {
   glm::dvec2 low = outline[0], high = low;
@@ -284,7 +287,7 @@ LocalFrame frame_of(const Ellipsoid& ellipsoid, const glm::dmat4& still_from_tar
   return frame_of(unit_from_still, ellipsoid.centre_mm, still_from_target);
 }
 
-// Unit vector from a cylinder's first end to its second.
+// The unit vector from a cylinder's first end to its second.
 glm::dvec3 axis_of(const Cylinder& cylinder) {
   return (cylinder.to_mm - cylinder.from_mm) / glm::distance(cylinder.from_mm, cylinder.to_mm);
 }
@@ -296,7 +299,7 @@ double share_below(const Tangent& tangent, double half) {
   glm::dvec3 m = glm::abs(tangent.gradient);
   const double sum = m.x + m.y + m.z;
   if (sum == 0.0) return tangent.value <= 0.0 ? 1.0 : 0.0;
-  // Position of the plane between the innermost corner, 0, and the opposite one, 1.
+  // The plane's position on the way from the innermost corner, 0, to the opposite corner, 1.
   const double alpha = 0.5 - tangent.value / (2.0 * half * sum);
   if (alpha <= 0.0) return 0.0;
   if (alpha >= 1.0) return 1.0;
@@ -304,8 +307,9 @@ double share_below(const Tangent& tangent, double half) {
   if (m.x > m.y) std::swap(m.x, m.y);
   if (m.y > m.z) std::swap(m.y, m.z);
   if (m.x > m.y) std::swap(m.x, m.y);
-  // The cubic cases divide a difference, in which digits cancel, by m.x. Below the square root of the
-  // machine's epsilon the plane counts as parallel to that axis, which changes the share by less than m.x.
+  // In the cubic cases a difference in which digits cancel is divided by m.x. If m.x is below the square root
+  // of the machine's epsilon, the plane counts as parallel to that axis, which changes the share by less than
+  // m.x.
   if (m.x < 0x1p-26) m.x = 0.0;
   const double a = std::min(alpha, 1.0 - alpha);
   const double pair = m.x + m.y;
@@ -411,7 +415,7 @@ Meets BoxOperand::meets(const Cube& cube) const {
   if (straight_) return Meets::exactly(true, true);
   const glm::dmat3 columns = local_.map * cube.half;
   const auto separates = [&](const glm::dvec3& way, double size) {
-    // The cross product of parallel edges is zero and gives no axis.
+    // The cross product of parallel edges is zero and defines no axis.
     if (glm::dot(way, way) <= square(vanishing * size)) return false;
     const double box = glm::dot(half_mm_, glm::abs(way));
     const double reach = std::abs(glm::dot(columns[0], way)) + std::abs(glm::dot(columns[1], way)) +
@@ -504,14 +508,15 @@ Sheets MaskOperand::sheets(const Cube& cube) const {
     visit_about(projected.edges, outline,
                 [&](const glm::dvec2& a, const glm::dvec2& b, std::uint32_t number) {
                   if (!runs_through(a, b, outline)) return;
-                  // An edge's end inside the outline is a corner of the region, where the neighbouring edge
-                  // adds a surface.
+                  // If an end of an edge is inside the outline, a corner of the region is, and the
+                  // neighbouring edge adds another surface.
                   sheets.count += 1 + strictly_within(a, outline) + strictly_within(b, outline);
                   // If several edges qualify, the last in the polygons' order supplies the tangent.
                   if (taken && *taken > number) return;
                   taken = number;
                   const glm::dvec2 way = glm::normalize(glm::dvec2(b.y - a.y, a.x - b.x));
-                  // Whether the outline's middle is inside decides which side of the edge is inside.
+                  // The inner side of the edge is determined by whether the outline's middle is inside the
+                  // region.
                   const glm::dvec2 probe = middle(outline);
                   const double at_probe = glm::dot(way, probe - a);
                   const double sign = (at_probe <= 0.0) == projected.edges.contains(probe) ? 1.0 : -1.0;
@@ -566,7 +571,7 @@ Sheets TorusOperand::sheets(const Cube& cube) const {
   glm::dvec3 way(0, 0, 1);
   if (length > 0.0 && across > 0.0)
     way = glm::dvec3(c.x / across * from_ring.x, c.y / across * from_ring.x, from_ring.y) / length;
-  // The smallest radius of curvature is the tube's or that of the hole's rim.
+  // The smallest radius of curvature is the tube's radius or that of the hole.
   const double bend_mm = std::min(tube_radius_mm_, ring_radius_mm_ - tube_radius_mm_);
   return {1,
           {glm::transpose(local_.map) * way, length - tube_radius_mm_},

@@ -9,11 +9,12 @@
 #include "voxel/solid/operand.h"
 #include "voxel/tree/octree_node.h"
 
-// Shared by the operands' sources: children and voxels of a block, and bounds of linear maps over a cube.
+// Shared by the sources of the operands: loops over a block's children and voxels, and bounds of linear maps
+// over a cube.
 
 namespace octotomy::voxel {
 
-/// Cover of a block from the meets() of each child's cube.
+/// The cover of a block, computed by meets() for the cube of each child.
 template <typename ChildMeets>
 Cover cover_of_children(const TargetBlock& block, const ChildMeets& child_meets) {
   Cover cover;
@@ -26,7 +27,7 @@ Cover cover_of_children(const TargetBlock& block, const ChildMeets& child_meets)
   return cover;
 }
 
-/// Writes the words of the wanted leaves; `leaf(first_voxel)` computes a leaf's word.
+/// Computes the words of the wanted leaves. `leaf(first_voxel)` returns a leaf's word.
 template <typename Leaf>
 void for_each_wanted(const WantedLeaves& leaves, const Leaf& leaf) {
   for (std::uint64_t rest = leaves.wanted; rest != 0; rest &= rest - 1) {
@@ -35,7 +36,7 @@ void for_each_wanted(const WantedLeaves& leaves, const Leaf& leaf) {
   }
 }
 
-/// Writes the words of the wanted leaves; `inside` returns whether a voxel's centre is inside.
+/// Computes the words of the wanted leaves. `inside` returns whether a voxel's centre is inside.
 template <typename Inside>
 void for_each_wanted_voxel(const WantedLeaves& leaves, const Inside& inside) {
   for_each_wanted(leaves, [&](const glm::ivec3& origin) {
@@ -46,9 +47,9 @@ void for_each_wanted_voxel(const WantedLeaves& leaves, const Inside& inside) {
   });
 }
 
-/// Bounds how far f differs, over a cube, from its value at the centre, rounding included. A walk must not
-/// decide a block if rounding could change the answer at one of its voxels; otherwise the result would depend
-/// on the tree's shape.
+/// A bound for the difference between f in a cube and f at the cube's centre, rounding included. A walk must
+/// not decide a block if rounding could change the answer at one of its voxels; otherwise the result would
+/// depend on the tree's shape.
 double reach(const Linear& f, double half);
 
 /// component(): row `row` of an affine map. along(): the map's image projected onto a direction, minus
@@ -67,7 +68,7 @@ inline ImageBox image_of(const glm::dmat4& map, const Cube& cube) {
   return {p - half, p + half};
 }
 
-/// The voxel that contains a point.
+/// The voxel that contains a point in index space.
 inline glm::ivec3 nearest_voxel(const glm::dvec3& p_voxel) {
   return glm::ivec3(glm::floor(p_voxel + 0.5));
 }

@@ -13,12 +13,12 @@
 namespace octotomy::voxel {
 namespace {
 
-// Range of the samples in a box of voxels, from the ranges of blocks of at least 16 voxels a side; may be too
-// wide.
+// The range of the samples in a box of voxels, from the stored ranges of blocks of at least 16 voxels a side,
+// so it may be too wide.
 MinMax range_within(const GreyOctree& grey, const VoxelBox& box) {
   const int last = grey.universe().side() - 1;
   const VoxelBox clipped{glm::clamp(box.low, 0, last), glm::clamp(box.high, 0, last)};
-  // The least height at which the box spans at most four blocks an axis, which bounds the work.
+  // The least height at which the box spans at most four blocks along each axis, which bounds the work.
   int height = 2;
   const glm::ivec3 extent = clipped.high - clipped.low;
   while ((std::max({extent.x, extent.y, extent.z}) >> (2 * height)) > 2) ++height;
@@ -48,7 +48,7 @@ double value_at(const GreyOctree& grey, const glm::dvec3& position, Interpolatio
                                                 : interpolate(grey, position, interpolation);
 }
 
-// The samples around one leaf, copied together from up to 4 leaves an axis.
+// A copy of the samples around one leaf, from up to 4 leaves along each axis.
 class NearSamples {
  public:
   static constexpr int leaves = 4;
@@ -95,8 +95,8 @@ class NearSamples {
         }
   }
 
-  // The value at a position of the source. Linear returns none if one of its samples equals the background,
-  // as samples beyond the scan do: these must not be mixed with measured ones.
+  // The value at a position of the source. Linear interpolation returns none if one of its samples equals the
+  // background. Samples beyond the scan do, and must not be mixed with measured ones.
   std::optional<double> interpolate(const glm::dvec3& position, Interpolation interpolation,
                                     std::int16_t background) const {
     if (interpolation == Interpolation::Linear) return trilinear(position, background);

@@ -41,7 +41,7 @@ bool within_reach(const Edge& edge, const Patch& patch) {
 }
 
 /// The edges that decide which points of a patch are inside: edges that rays from the patch may cross, and
-/// level edges that meet the patch, which no ray crosses. They suffice for every part of the patch too.
+/// level edges that meet the patch, which no ray crosses. They also suffice for every part of the patch.
 std::vector<Edge> edges_about(const EdgeTree& tree, const Patch& patch) {
   std::vector<Edge> edges = tree.edges_about(patch.centre - patch.half, patch.centre + patch.half);
   std::erase_if(edges, [&](const Edge& edge) {
@@ -60,10 +60,10 @@ Status status_of(const std::vector<Edge>& edges, const Patch& patch) {
   return inside ? Status::Full : Status::Empty;
 }
 
-/// A number for each child of a block or each voxel of a leaf.
+/// One number for each child of a block, or for each voxel of a leaf.
 using Values = std::array<double, 64>;
 
-/// Values of f at the places first + step (x, y, z) of children or voxels.
+/// The values of f at the positions first + step * (x, y, z) of children or voxels.
 OCTOTOMY_VECTOR_CLONES void values_at(const Linear& f, const glm::dvec3& first, double step, Values& values) {
   double along_x[4], along_y[4], along_z[4];
   for (int i = 0; i < 4; ++i) {
@@ -71,15 +71,16 @@ OCTOTOMY_VECTOR_CLONES void values_at(const Linear& f, const glm::dvec3& first, 
     along_y[i] = f.gradient.y * (first.y + i * step);
     along_z[i] = f.gradient.z * (first.z + i * step);
   }
-  // Summed in Linear's order, so that a voxel on an edge is on the same side for every caller.
+  // Terms are added in the same order as in Linear, so that a voxel on an edge is on the same side for every
+  // caller.
   double* to = values.data();
   for (int z = 0; z < 4; ++z)
     for (int y = 0; y < 4; ++y, to += 4)
       for (int x = 0; x < 4; ++x) to[x] = along_x[x] + along_y[y] + along_z[z] + f.constant;
 }
 
-/// Adds to each place's count whether the ray from it crosses the edge: crosses_ray_from() without a branch.
-/// Precondition: the edge is not level.
+/// Adds 1 to the count of each place from which the ray crosses the edge: crosses_ray_from() without a
+/// branch. Precondition: the edge is not level.
 OCTOTOMY_VECTOR_CLONES void count_crossings(const Edge& edge, const Values& u, const Values& v,
                                             Values& counts) {
   const auto [a, b] = edge;
@@ -93,7 +94,7 @@ OCTOTOMY_VECTOR_CLONES void count_crossings(const Edge& edge, const Values& u, c
   }
 }
 
-/// Adds to each place's count whether the edge meets the patch about it: meets_rectangle() without a branch.
+/// Adds to the count of each place whose patch the edge meets: meets_rectangle() without a branch.
 OCTOTOMY_VECTOR_CLONES void count_meetings(const Edge& edge, const glm::dvec2& half, const Values& u,
                                            const Values& v, Values& counts) {
   const auto [a, b] = edge;
@@ -109,7 +110,7 @@ OCTOTOMY_VECTOR_CLONES void count_meetings(const Edge& edge, const glm::dvec2& h
   }
 }
 
-/// The places whose count has a bit of `bits` set. Precondition: counts are below 2^31.
+/// A mask of the places whose count has at least one bit of `bits` set. Precondition: counts are below 2^31.
 OCTOTOMY_VECTOR_CLONES std::uint64_t places_of(const Values& counts, std::int32_t bits) {
   std::array<std::uint8_t, 64> set;
   for (std::size_t i = 0; i < counts.size(); ++i)

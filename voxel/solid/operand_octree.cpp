@@ -33,11 +33,11 @@ void ShiftedOctreeOperand::words(const WantedLeaves& leaves) const {
 
 namespace {
 
-// Fixed point within a region of 32 voxels an axis: 5 bits of voxels and 24 bits of fraction stay below the
-// sign bit.
+// Fixed-point numbers within a region of 32 voxels along each axis: 5 bits for voxels and 24 bits for the
+// fraction lie below the sign bit.
 constexpr int fraction_bits = 24;
 
-// Exceeds the error of a base plus an offset, each rounded by at most half a unit.
+// More than the error of the sum of a base and an offset, each of which is rounded by at most half a unit.
 const double fixed_slack = std::ldexp(1.0, 1 - fraction_bits);
 
 std::int32_t fixed(double voxels) {
@@ -53,7 +53,7 @@ glm::ivec3 fixed(const glm::dvec3& p) {
 /// region.
 OCTOTOMY_VECTOR_CLONES std::uint64_t looked_up(const std::uint64_t* words, const glm::ivec3& base,
                                                const std::array<std::array<std::int32_t, 64>, 3>& offsets) {
-  // The places are computed first, because that arithmetic vectorises; the look-ups follow.
+  // The positions are computed before the look-ups, because the compiler vectorises this arithmetic.
   std::array<std::uint64_t, 64> place;
   for (std::size_t i = 0; i < 64; ++i) {
     const auto x = static_cast<std::uint32_t>(base.x + offsets[0][i]) >> fraction_bits;
@@ -73,8 +73,8 @@ OCTOTOMY_VECTOR_CLONES std::uint64_t looked_up(const std::uint64_t* words, const
 SampledOctreeOperand::SampledOctreeOperand(const Octree& octree, const glm::dmat4& source_from_target)
     : octree_(&octree), source_from_target_(source_from_target) {
   const glm::dmat3 linear(source_from_target);
-  // A source much finer than the target exceeds the fixed point's range; words() then does not use the
-  // offsets.
+  // If the source is much finer than the target, offsets exceed the range of the fixed-point numbers; words()
+  // then does not use them.
   const double longest = std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])});
   if (longest > 4.0) return;
   for (int voxel = 0; voxel < 64; ++voxel) {

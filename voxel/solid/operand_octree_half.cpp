@@ -9,13 +9,13 @@
 namespace octotomy::voxel {
 namespace {
 
-// Odd, so that no voxel has exactly half of its points inside. With 4, a face parallel to the grid would
-// split the points evenly in one position out of four; counting such voxels as inside would grow an object by
-// an eighth of a voxel at every move.
+// The number of points along a voxel's edge. It is odd so that no voxel has exactly half of its points
+// inside. With 4, a face parallel to the grid would split the points evenly in one position out of four;
+// counting such voxels as inside would grow an object by an eighth of a voxel at every move.
 constexpr int points_an_axis = 5;
 
-// Voxels of the source in which the points of a cube's voxels may lie. Precondition: the cube contains the
-// voxels' centres.
+// The range of source voxels that may contain points of the voxels in a cube. Precondition: the cube contains
+// these voxels' centres.
 VoxelBox reached(const glm::dmat4& source_from_target, const Cube& cube) {
   const ImageBox box = image_of(source_from_target, {cube.centre, cube.half + 0.5});
   return {nearest_voxel(box.low), nearest_voxel(box.high)};
@@ -57,7 +57,7 @@ void HalfOctreeOperand::words(const WantedLeaves& leaves) const {
       return ((region.word(leaf.x, leaf.y, leaf.z) >> child_index(bit.x, bit.y, bit.z)) & 1) != 0;
     };
     // For most voxels all source voxels within reach are inside, or all are outside. A few look-ups then
-    // replace one per point.
+    // replace one look-up per point.
     const auto agreed = [&](const glm::ivec3& low, const glm::ivec3& high, bool inside) {
       for (int z = low.z; z <= high.z; ++z)
         for (int y = low.y; y <= high.y; ++y)

@@ -7,8 +7,8 @@
 #include "voxel/solid/cube.h"
 #include "voxel/solid/primitive.h"
 
-// Primitives as operands of a walk. Each decides a cube by a closed form in double precision; only for a
-// torus whose axis is oblique to the lattice is the answer a bound. `still_from_target` maps the target's
+// Primitives as operands of a walk. Each tests a cube by a closed form in double precision. Only for a torus
+// whose axis is oblique to the lattice, the answer is conservative. `still_from_target` maps the target's
 // voxel indices to the primitive's LPS millimetres before its motion. Sources: operand_closed_form.cpp.
 
 namespace octotomy::voxel {
@@ -38,9 +38,9 @@ class BallOperand {
 
   LocalFrame local_;
   double radius_;
-  bool orthogonal_;               ///< the edges of a voxel are at right angles in the ball's frame
-  glm::dmat3 edges_from_local_;   ///< if orthogonal: to the directions of the edges
-  glm::dvec3 edge_lengths_{0.0};  ///< if orthogonal: in the ball's frame
+  bool orthogonal_;               ///< whether a voxel's edges are at right angles in the ball's frame
+  glm::dmat3 edges_from_local_;   ///< only if orthogonal: maps to the directions of the edges
+  glm::dvec3 edge_lengths_{0.0};  ///< only if orthogonal: lengths of a voxel's edges in the ball's frame
 };
 
 class HalfSpaceOperand {
@@ -70,8 +70,8 @@ class BoxOperand {
 
   LocalFrame local_;
   glm::dvec3 half_mm_;
-  glm::dvec3 reach_mm_;  ///< of a cube with a half edge of 1, along the box's axes
-  bool straight_;        ///< each edge of a voxel runs along an axis of the box
+  glm::dvec3 reach_mm_;  ///< half extents, along the box's axes, of a cube with a half edge of 1
+  bool straight_;        ///< whether each edge of a voxel is parallel to an axis of the box
 };
 
 /// The frame's third axis is the cylinder's; its origin is the cylinder's first end.
@@ -104,7 +104,7 @@ class TorusOperand {
 
   LocalFrame local_;
   double ring_radius_mm_, tube_radius_mm_;
-  bool upright_;  ///< each edge of a voxel runs along the torus's axis or across it
+  bool upright_;  ///< whether each edge of a voxel is parallel or perpendicular to the torus's axis
 };
 
 }  // namespace octotomy::voxel

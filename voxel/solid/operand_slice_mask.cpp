@@ -6,9 +6,10 @@ namespace octotomy::voxel {
 
 namespace {
 
-/// Shifts positions off borders that run through voxel centres. The shift exceeds the rounding of coordinates
-/// and is smaller than the precision of any border. Such a centre is inside if the region continues towards
-/// growing u, v or position, so that it counts once among regions that share the border.
+/// A small shift that moves positions off borders that run through voxel centres. The shift exceeds the
+/// rounding of coordinates and is smaller than the precision of any border. A centre on a border is then
+/// inside if the region continues towards growing u, v or position, so that it belongs to exactly one of two
+/// regions that share the border.
 constexpr double off_border_mm = 0x1p-20;
 
 }  // namespace

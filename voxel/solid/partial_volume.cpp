@@ -23,8 +23,8 @@ constexpr int block_side = 16;
 constexpr int corner_side = block_side + 1;
 constexpr int lines_an_axis = 4;
 
-// Length of the part of 0..1 in which a value that changes linearly from `from` to `to` lies in the window.
-// Free of branches, so that the compiler vectorises it.
+// A value changes linearly from `from` at 0 to `to` at 1. Returns the length of the part of 0..1 in which it
+// lies in the window. There are no branches, so that the compiler vectorises the function.
 double length_within(double from, double to, double low, double high) {
   const double first = from > to ? to : from;
   const double last = from > to ? from : to;
@@ -36,7 +36,8 @@ double length_within(double from, double to, double low, double high) {
 
 constexpr int line_count = lines_an_axis * lines_an_axis;
 
-// Values at the ends of a cell's lines along z, and the length of each line's part in the window.
+// The values at both ends of each of a cell's lines along z, and the length of each line's part in the
+// window.
 struct Lines {
   std::array<double, line_count> from, to, length;
 };
@@ -71,7 +72,7 @@ OCTOTOMY_VECTOR_CLONES void find_cell_ranges(const Corners& corners, Corners& lo
     }
 }
 
-// The corners x + 2y + 4z of a cell that belong to the scan.
+// A mask of a cell's corners that belong to the scan; corner number x + 2y + 4z.
 using CornerBits = std::uint8_t;
 constexpr CornerBits all_corners = 0xff;
 
@@ -97,7 +98,7 @@ class BlockSum {
  public:
   explicit BlockSum(const Window& window) : grey_(window.grey), low_(window.low), high_(window.high) {}
 
-  // Volume of the window in block number `block`, -1 and up, in voxels.
+  // The volume of the window, in voxels, in the block with index `block`, whose coordinates are -1 or more.
   double operator()(const glm::ivec3& block) const {
     const MinMax range = range_around(block);
     if (range.high < low_ || range.low > high_) return 0.0;
@@ -128,7 +129,8 @@ class BlockSum {
     return static_cast<std::size_t>(x + corner_side * (y + corner_side * z));
   }
 
-  // Range of the samples at the corners of a block's cells: its own voxels and the first of the next blocks.
+  // The range of the samples at the corners of a block's cells: the block's voxels and the first voxels of
+  // the next blocks.
   MinMax range_around(const glm::ivec3& block) const {
     const int blocks = (grey_.universe().side() + block_side - 1) / block_side;
     MinMax range{grey_.background(), grey_.background()};
@@ -147,8 +149,8 @@ class BlockSum {
     return range;
   }
 
-  // Copies up to four samples of a brick at a time. The last corner of a row is the first sample of the next
-  // brick.
+  // Copies the corners' samples, up to four of a brick at a time. The last corner of a row is the first
+  // sample of the next brick.
   void fetch(const glm::ivec3& block, Corners& corners) const {
     const int blocks = (grey_.universe().side() + block_side - 1) / block_side;
     for (int next = 0; next < 8; ++next) {

@@ -8,7 +8,7 @@
 namespace octotomy::voxel {
 
 /// The area that a closed polygon encloses, positive if counter-clockwise; the closing edge is implied.
-/// Computed relative to the first point, so that a polygon far from the origin loses no digits.
+/// Computed relative to the first point, so that no digits are lost if the polygon is far from the origin.
 inline double signed_area(const std::vector<glm::dvec2>& polygon) {
   double twice = 0.0;
   for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++) {
@@ -19,7 +19,7 @@ inline double signed_area(const std::vector<glm::dvec2>& polygon) {
   return 0.5 * twice;
 }
 
-/// Square of the distance of a point from a segment, whose ends may coincide.
+/// The square of the distance between a point and a segment, whose ends may coincide.
 inline double square_to_segment(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
   const glm::dvec2 along = b - a;
   const double square = glm::dot(along, along);

@@ -41,7 +41,7 @@ Measures measures_of(const Polygon& polygon) {
   return measures;
 }
 
-/// The rounding to allow for a polygon: `rounding_mm`, but at most a thousandth of its size.
+/// The tolerance for a polygon: `rounding_mm`, but at most a thousandth of the polygon's size.
 double rounding_of(const Measures& measures, double rounding_mm) {
   return std::min(rounding_mm, 1e-3 * measures.size_mm());
 }
@@ -55,7 +55,7 @@ bool lies_along(const Polygon& polygon, const EdgeTree& edges, double distance_m
                      [&](const glm::dvec2& p) { return edges.square_to(p) <= distance_mm * distance_mm; });
 }
 
-/// The polygons' trees, each built at its first use.
+/// The edge trees of the polygons, each built at its first use.
 class Trees {
  public:
   explicit Trees(const std::vector<Polygon>& polygons) : polygons_(polygons), trees_(polygons.size()) {}
@@ -74,7 +74,7 @@ double turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p) {
   return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
 }
 
-/// The point where two edges cross inside both; none if they only touch.
+/// The point at which two edges cross in the interior of both; none if they only touch.
 std::optional<glm::dvec2> crossing_of(const Edge& a, const Edge& b) {
   const double from = turn(a[0], a[1], b[0]), to = turn(a[0], a[1], b[1]);
   if (!((from < 0.0 && to > 0.0) || (from > 0.0 && to < 0.0))) return std::nullopt;
@@ -82,7 +82,7 @@ std::optional<glm::dvec2> crossing_of(const Edge& a, const Edge& b) {
   return b[0] + from / (from - to) * (b[1] - b[0]);
 }
 
-/// Whether two edges come within a distance of each other.
+/// Whether the distance between two edges is at most a limit.
 bool touch(const Edge& a, const Edge& b, double distance_mm) {
   const double square = distance_mm * distance_mm;
   return square_to_segment(a[0], b[0], b[1]) <= square || square_to_segment(a[1], b[0], b[1]) <= square ||
@@ -101,7 +101,7 @@ class Crossings {
         asked_(polygons.size(), polygons.size()) {
     for (const Polygon& polygon : polygons) {
       measures_.push_back(measures_of(polygon));
-      // Edges are numbered as in EdgeTree: a polygon of n points takes n + 1 numbers.
+      // Edges are numbered as in EdgeTree, where a polygon of n points uses n + 1 numbers.
       first_.push_back(edge_count_);
       if (!polygon.empty()) edge_count_ += polygon.size() + 1;
     }
@@ -148,15 +148,15 @@ class Crossings {
     }
   }
 
-  /// Whether two polygons were compared already. An earlier polygon without crossings was compared with all
-  /// that it touches.
+  /// Whether two polygons were compared already. A polygon that was examined earlier and has no crossings was
+  /// compared with all polygons that it touches.
   bool is_asked(std::size_t number, std::size_t other) const {
     return asked_[other] == number || (other < number && !at_[other]);
   }
 
   void ask_pair(std::size_t number, std::size_t other, const Edge& touching) {
     asked_[other] = number;
-    // Testing the polygon of fewer points first settles most pairs that only touch.
+    // The polygon with fewer points is tested first, because this decides most pairs that only touch.
     const auto [few, many] = polygons_[number].size() < polygons_[other].size() ? std::pair(number, other)
                                                                                 : std::pair(other, number);
     if (!is_on_both_sides(few, many) || !is_on_both_sides(many, few)) return;
@@ -188,8 +188,8 @@ class Crossings {
     return is_inside && is_outside;
   }
 
-  /// Positions where other edges may meet an edge, from 0 to 1 along it, ascending. Empty for an edge shorter
-  /// than the rounding.
+  /// Positions along an edge, from 0 to 1 and ascending, at which other edges may meet it; 0 and 1 included.
+  /// Empty if the edge is shorter than the rounding.
   void part_at_touches(const Edge& one, const EdgeTree& others, double margin_mm,
                        std::vector<double>& parts) {
     parts.clear();
@@ -211,8 +211,8 @@ class Crossings {
     std::sort(parts.begin(), parts.end());
   }
 
-  /// Cumulative areas and lengths along the polygon, which give the area and length of any loop in constant
-  /// time.
+  /// Cumulative areas and lengths along the polygon, from which the area and length of any loop are computed
+  /// in constant time.
   void begin_sums(const Polygon& polygon) {
     twice_areas_.assign(1, 0.0);
     lengths_.assign(1, 0.0);
@@ -243,8 +243,8 @@ class Crossings {
     if ((twice_loop > 0.0) == (twice_rest > 0.0) || is_side_by_side(polygon, a, b, *met)) at_[number] = *met;
   }
 
-  /// Whether two loops of opposite directions lie outside each other, unlike the hole of a keyhole. Each call
-  /// costs a pass over the polygon, so after `most_walked` calls loops count as holes.
+  /// Whether two loops of opposite directions lie outside each other, unlike a keyhole and its hole. Each
+  /// call costs a pass over the polygon, so after `most_walked` calls all such loops count as holes.
   bool is_side_by_side(const Polygon& polygon, std::size_t a, std::size_t b, const glm::dvec2& met) {
     constexpr int most_walked = 16;
     if (++loops_walked_ > most_walked) return false;
@@ -268,8 +268,10 @@ class Crossings {
   std::vector<Measures> measures_;
   std::vector<std::size_t> first_;  ///< number of each polygon's first edge
   std::size_t edge_count_ = 0, pairs_left_ = 0;
-  std::vector<std::optional<glm::dvec2>> at_;  ///< for each polygon that crosses, a point near the crossing
-  std::vector<std::size_t> asked_;             ///< for each polygon, the last one compared with it
+  /// For each polygon with a crossing, a point near the crossing.
+  std::vector<std::optional<glm::dvec2>> at_;
+  /// For each polygon, the number of the last one compared with it.
+  std::vector<std::size_t> asked_;
   std::vector<double> twice_areas_, lengths_;
   int loops_walked_ = 0;
 };
@@ -281,7 +283,7 @@ std::vector<std::size_t> repeated_polygons(const std::vector<Polygon>& polygons_
   std::vector<std::size_t> repeated;
   std::vector<Measures> measures;
   Trees trees(polygons_mm);
-  // Incommensurable weights: different bounds rarely have equal sums.
+  // The weights are incommensurable, so that different bounds rarely have equal sums.
   const auto sum_of = [](const Measures& of) {
     return of.low.x + 1.2720196 * of.low.y + 1.4142136 * of.high.x + 1.6180340 * of.high.y;
   };
@@ -293,7 +295,7 @@ std::vector<std::size_t> repeated_polygons(const std::vector<Polygon>& polygons_
     const Measures& of = measures.back();
     const double off_mm = rounding_of(of, rounding_mm);
     const double sum = sum_of(of);
-    // Moving a line by the rounding changes the area by no more than a strip along it.
+    // If a line moves by the rounding, the area changes by at most that of a strip along the line.
     const auto is_same = [&](const auto& near) {
       const Measures& other = measures[near.second];
       return within(of.low, other.low, off_mm) && within(of.high, other.high, off_mm) &&

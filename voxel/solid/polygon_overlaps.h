@@ -5,35 +5,36 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-// Finds polygons in one plane for which the even-odd rule yields another region than was drawn: repeated and
-// crossing polygons. Nested polygons and keyholes are not reported.
+// Finds polygons in one plane for which the even-odd rule yields a region other than the one drawn: repeated
+// and crossing polygons. Nested polygons and keyholes are not reported.
 namespace octotomy::voxel {
 
-/// Ascending numbers of the polygons that repeat an earlier one: the points of each lie within the rounding
-/// of the other's edges, for any first point and direction. `rounding_mm` is the largest error of a
-/// coordinate; a polygon smaller than 1000 times that uses a thousandth of its size. Precondition: all
-/// coordinates are finite. Cost: n log n in the points, plus one comparison per pair of polygons that share
-/// bounds, area and centre.
+/// The numbers, ascending, of the polygons that repeat an earlier one: the points of each are within the
+/// rounding of the other's edges. First point and direction may differ. `rounding_mm` is the largest error of
+/// a coordinate; for a polygon smaller than 1000 times this error, a thousandth of its size is used instead.
+/// Precondition: all coordinates are finite. Cost: n log n in the points, plus one comparison per pair of
+/// polygons that share bounds, area and centre.
 std::vector<std::size_t> repeated_polygons(const std::vector<std::vector<glm::dvec2>>& polygons_mm,
                                            double rounding_mm);
 
 /// A polygon that crosses another, or itself.
 struct CrossingPolygon {
   std::size_t polygon = 0;
-  glm::dvec2 at_mm{0.0};  ///< on its line, near a crossing
+  glm::dvec2 at_mm{0.0};  ///< a point on the polygon, near a crossing
 };
 
 struct CrossingPolygons {
   std::vector<CrossingPolygon> all;  ///< each polygon once, ascending
-  bool is_complete = true;           ///< false if the search stopped at its limit, with some pairs of edges
-                                     ///< unchecked
+  /// False if the search stopped at its limit, with some pairs of edges unchecked.
+  bool is_complete = true;
 };
 
-/// Polygons that cross another: each of the two has a part inside and a part outside the other, both farther
-/// than the rounding from its line. Also polygons that cross themselves, by enclosing a part twice or as a
-/// figure of eight. `rounding_mm` and preconditions as in repeated_polygons(); the caller first removes the
-/// polygons that repeated_polygons() returns. Cost: n log n in the edges where few of their boxes overlap.
-/// The search stops early, with `is_complete` false, after a fixed number of pairs of edges per edge.
+/// The polygons that cross another one, and those that cross themselves. Of two crossing polygons each has a
+/// part inside and a part outside the other, both farther than the rounding from the other's line. A polygon
+/// that crosses itself encloses a part twice or is a figure of eight. `rounding_mm` and preconditions as in
+/// repeated_polygons(); the caller first removes the polygons that repeated_polygons() returns. Cost: n log n
+/// in the edges if few of their boxes overlap. The search stops early, with `is_complete` false, after a
+/// fixed number of pairs of edges per edge.
 CrossingPolygons crossing_polygons(const std::vector<std::vector<glm::dvec2>>& polygons_mm,
                                    double rounding_mm);
 

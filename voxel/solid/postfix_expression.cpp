@@ -35,8 +35,8 @@ Code code_of(Kind kind) {
   return Code::Push;
 }
 
-/// Builds the steps and omits redundant ones: a value joined again to a chain of | or & that already contains
-/// it, or subtracted again. Equal values have equal numbers.
+/// Builds the steps without redundant ones. A step is redundant if its value is already part of the chain of
+/// | or &, or was already subtracted in the chain. Equal values have equal numbers.
 class Layout {
  public:
   explicit Layout(std::vector<PostfixExpression::Step>& steps) : steps_(steps) {}
@@ -77,7 +77,7 @@ class Layout {
   struct Entry {
     std::size_t first_step = 0;
     std::uint32_t number = 0;
-    Code row = Code::Push;                      ///< operator of the chain that ends in this value
+    Code row = Code::Push;                      ///< operator of the chain whose result this value is
     std::unordered_set<std::uint32_t> members;  ///< numbers of the values joined or subtracted in the chain
   };
 

@@ -12,7 +12,7 @@ namespace octotomy::voxel {
 
 /// Three-valued status of 64 children at once: those of `full` are Full, those outside `some` are Empty, the
 /// others undecided. Precondition: full is a subset of some. Operators follow Kleene's three-valued logic,
-/// bit by bit: exact for children that both sides decide.
+/// bit by bit. They are exact for children that are decided on both sides.
 struct Cover {
   std::uint64_t full = 0;
   std::uint64_t some = 0;
@@ -33,8 +33,9 @@ struct PostfixExpression {
   struct Operand {
     const Expression::Leaf* leaf = nullptr;  ///< owned by the expression
     glm::dmat4 moved_from_still{1.0};        ///< LPS to LPS
-    bool still = true;                       ///< under no motion other than the identity
-    bool is_scan = false;                    ///< the scan of a window, pushed right after the window
+    bool still = true;                       ///< whether all motions above it are the identity
+    /// Whether it is the scan of a window, which is pushed right after the window.
+    bool is_scan = false;
   };
   enum class Code : std::uint8_t { Push, And, Or, Minus, Xor, Not };
   struct Step {
@@ -42,12 +43,12 @@ struct PostfixExpression {
     std::uint32_t operand = 0;  ///< Push only
   };
   std::vector<Operand> operands;
-  std::vector<std::shared_ptr<const Expression::Leaf>> scans;  ///< leaves of the operands that are scans
+  std::vector<std::shared_ptr<const Expression::Leaf>> scans;  ///< the leaves of operands with `is_scan`
   std::vector<Step> steps;
   std::size_t stack_size = 0;  ///< largest number of values on run()'s stack
 
-  /// Evaluates the expression over any type that has the operators. `value(i)` returns operand i; `stack` has
-  /// room for stack_size values.
+  /// Evaluates the expression over any type that has the operators. `value(i)` returns operand i.
+  /// Precondition: `stack` has room for stack_size values.
   template <typename Value, typename Get>
   Value run(const Get& value, Value* stack) const {
     Value* top = stack;
@@ -78,11 +79,11 @@ struct PostfixExpression {
   }
 };
 
-/// The result refers to the expression's leaves; the expression must outlive it. A leaf that occurs
-/// repeatedly under the same motion becomes one operand. A repeated leaf adds no step to a chain of | or &
-/// that already contains it, or from which it was already subtracted. A window becomes an intersection with
-/// its scan. Exception: a window at rest on the lattice of `target` that excludes the background contains no
-/// voxel beyond the scan anyway. Throws as for_each_term().
+/// Converts an expression to postfix form. The result refers to the expression's leaves, so the expression
+/// must outlive it. A leaf that occurs repeatedly under the same motion becomes one operand. A repeated leaf
+/// adds no step to a chain of | or & that already contains it, or from which it was already subtracted. A
+/// window becomes an intersection with its scan. Exception: a window at rest on the lattice of `target` that
+/// excludes the background contains no voxel beyond the scan anyway. Throws as for_each_term() does.
 PostfixExpression postfix_of(const Expression& expression, const std::optional<Universe>& target = {});
 
 }  // namespace octotomy::voxel

@@ -19,9 +19,10 @@ bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// A product of a few rotations has columns orthonormal to a few units in the last place; numbers read from
-// text with nine digits are accurate to 1e-9. A scale or shear that moves points by a micrometre over 300 mm
-// is 3e-6. The square root of epsilon, 1.5e-8, lies between the two.
+// The tolerance for orthonormal columns. The columns of a product of a few rotations deviate by a few units
+// in the last place; numbers read from text with nine digits are accurate to 1e-9. A scale or shear that
+// moves points 300 mm away by a micrometre is 3e-6. The square root of epsilon, 1.5e-8, lies between these
+// values.
 double unit_slack() {
   return std::sqrt(std::numeric_limits<double>::epsilon());
 }

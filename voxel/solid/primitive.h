@@ -7,8 +7,8 @@
 
 namespace octotomy::voxel {
 
-// Solids with closed forms, in LPS millimetres, boundary included. `lps_from_axes` is a rotation from the
-// solid's own axes to LPS. An axis-aligned box is Box (lattice.h).
+// Solids with closed forms, in LPS millimetres. The boundary belongs to the solid. `lps_from_axes` is a
+// rotation from the solid's own axes to LPS. An axis-aligned box is Box (lattice.h).
 
 /// The points p with normal . p <= offset_mm; the normal, a unit vector, points outward.
 struct HalfSpace {
@@ -35,7 +35,7 @@ struct Cylinder {
   glm::dvec3 to_mm{0, 0, 1};
   double radius_mm = 1.0;
 };
-/// A ring: the points within tube_radius_mm of a circle.
+/// A ring: the points at most tube_radius_mm from a circle.
 struct Torus {
   glm::dvec3 centre_mm{0.0};
   glm::dvec3 axis{0, 0, 1};  ///< unit
@@ -43,7 +43,7 @@ struct Torus {
   double tube_radius_mm = 1.0;
 };
 
-/// Each throws std::invalid_argument that names the fault: a number that is not finite, a length that is not
+/// Each throws std::invalid_argument with the fault: a number that is not finite, a length that is not
 /// positive, an axis that is no unit vector, axes that are not at right angles, a tube as wide as its ring.
 void check(const HalfSpace& half_space);
 void check(const Sphere& sphere);
@@ -53,7 +53,7 @@ void check(const OrientedBox& box);
 void check(const Cylinder& cylinder);
 void check(const Torus& torus);
 
-/// Whether a matrix keeps lengths: a rotation, or one with a reflection.
+/// Whether a matrix preserves lengths: a rotation, or a rotation combined with a reflection.
 bool is_isometry(const glm::dmat3& matrix);
 
 }  // namespace octotomy::voxel

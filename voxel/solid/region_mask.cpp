@@ -11,8 +11,8 @@
 namespace octotomy::voxel {
 namespace {
 
-/// Twice the sum of the absolute areas of the triangles from the first point: zero only if all points lie on
-/// a line.
+/// Twice the sum of the absolute areas of the triangles between the first point and each edge. It is zero
+/// only if all points lie on a line.
 double covered_area(const std::vector<glm::dvec2>& polygon) {
   double area = 0.0;
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
@@ -37,7 +37,7 @@ void check(const RegionMask& mask) {
       for (const glm::dvec2& point : polygon)
         if (!std::isfinite(point.x) || !std::isfinite(point.y))
           throw InvalidInput(which + " has a coordinate that is not a finite number");
-      // The signed areas of a self-crossing polygon's loops may cancel although it encloses both.
+      // Absolute areas are used, because the signed areas of a self-crossing polygon's loops may cancel.
       if (covered_area(polygon) == 0.0) throw InvalidInput(which + " encloses no area");
     }
   }

@@ -5,11 +5,11 @@
 
 namespace octotomy::voxel {
 
-/// Resamples operands that do not lie on the target's lattice: operands under a motion, and operands of
-/// another universe.
+/// How operands are resampled that do not lie on the target's lattice: operands under a motion, and operands
+/// of another universe.
 struct Resampling {
-  /// Voxels of the target that an octree fills: voxels whose centre the octree contains (D3), or voxels at
-  /// least half filled by it (D4), counted on a grid of 5 x 5 x 5 points a voxel.
+  /// Which voxels of the target an octree fills: voxels whose centre is in the octree (D3), or voxels at
+  /// least half of which is in the octree (D4), counted on a grid of 5 x 5 x 5 points a voxel.
   enum class Voxels { Centre, Half };
   Voxels voxels = Voxels::Centre;
   /// Interpolation between a grey octree's samples, before they are compared with its window.

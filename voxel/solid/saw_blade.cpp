@@ -11,7 +11,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// A view along the direction, with arbitrary other axes.
+/// A view along the saw's direction, with arbitrary other axes.
 View view_along(const glm::dvec3& direction) {
   View view;
   view.look = glm::normalize(direction);
@@ -25,26 +25,29 @@ View view_along(const glm::dvec3& direction) {
   return view;
 }
 
-/// Intersection of two lines a half kerf beside two pieces: on the bisector of their normals.
+/// The corner where the sides of two pieces meet, each half a kerf beside its piece. It lies on the bisector
+/// of the pieces' normals.
 glm::dvec2 mitre(const glm::dvec2& before, const glm::dvec2& after, double half_kerf_mm) {
   const glm::dvec2 sum = before + after;
   const double square = glm::dot(sum, sum);
-  // A zero sum, up to the rounding of unit vectors, means that the pieces run in opposite directions.
+  // If the sum is zero except for rounding errors, the pieces run in opposite directions.
   if (!(square > 64.0 * std::numeric_limits<double>::epsilon()))
-    throw InvalidInput("the saw's line turns back on itself: leave out the point where it does");
+    throw InvalidInput("the saw's line turns back on itself: remove the point where it turns");
   return sum * (2.0 * half_kerf_mm / square);
 }
 
 }  // namespace
 
 RegionMask saw_blade_sides(const SawLine& saw) {
-  if (!(glm::length(saw.direction) > 0.0)) throw InvalidInput("the saw has no direction");
+  if (!(glm::length(saw.direction) > 0.0))
+    throw InvalidInput("the saw has no direction: its vector must not be (0, 0, 0)");
   const View view = view_along(saw.direction);
   std::vector<glm::dvec2> line;
   for (const glm::dvec3& p_mm : saw.line_mm)
     if (const glm::dvec2 q = view.project(p_mm); line.empty() || q != line.back()) line.push_back(q);
   if (line.size() < 2)
-    throw InvalidInput("the saw's line needs two points that lie apart as seen along its direction");
+    throw InvalidInput(
+        "the saw's line needs two points that do not coincide as seen along the saw's direction");
   const auto normal = [&](std::size_t piece) {
     const glm::dvec2 along = glm::normalize(line[piece + 1] - line[piece]);
     return glm::dvec2(along.y, -along.x);

@@ -37,8 +37,8 @@ void check(const SliceMask& mask) {
     }
   }
   if (!drawn) throw InvalidInput("no slice of the mask has a polygon");
-  // Two slices may lie this close, where a part ends. If all slices of a stack do, their positions are in
-  // another unit than mm.
+  // Two slices may lie closer than this where a part ends. If all slices of a stack do, their positions are
+  // probably not in mm.
   constexpr double least_span_mm = 0.01;
   if (mask.slices.back().position_mm - mask.slices.front().position_mm < least_span_mm)
     throw InvalidInput("slice 1 to slice " + std::to_string(mask.slices.size()) +
@@ -55,8 +55,8 @@ double SliceDistance::distance_mm(std::size_t slice, const glm::dvec2& p_mm) con
   return edges_[slice].contains(p_mm) ? -distance : distance;
 }
 
-// Bounds over a stretch of the gap after slice `below`, at one point of the plane, from the distances to the
-// two slices' outlines there.
+// Bounds of the interpolated distance at one point of the plane, over a stretch of the gap after slice
+// `below`. `at_a` and `at_b` are the point's distances to the outlines of the two slices.
 SliceDistance::Bounds SliceDistance::in_gap(std::size_t below, double at_a, double at_b,
                                             const Stretch& stretch) const {
   const auto [from_mm, to_mm] = stretch;
@@ -102,7 +102,7 @@ SliceDistance::Bounds SliceDistance::operator()(const glm::dvec2& p_mm, double p
   const auto take = [&](const Bounds& part) {
     bounds = {std::min(bounds.low, part.low), std::max(bounds.high, part.high)};
   };
-  // Visits the slices from the last one before the stretch to the first one behind it, as far as they exist.
+  // Visits the slices from the last one before the stretch, if there is one, to the first one behind it.
   std::size_t below = static_cast<std::size_t>(
       std::lower_bound(slices.begin(), slices.end(), from_mm,
                        [](const SliceMask::Slice& slice, double mm) { return slice.position_mm < mm; }) -
@@ -118,7 +118,7 @@ SliceDistance::Bounds SliceDistance::operator()(const glm::dvec2& p_mm, double p
     at_below = at_above;
   }
   if (to_mm > last_mm) take({at_below, at_below});
-  // A distance changes by no more than the point moves.
+  // If the point moves within the plane, its distance changes by at most the length of the movement.
   bounds.low -= in_plane_mm;
   bounds.high += in_plane_mm;
   if (from_mm < lowest_mm || to_mm > highest_mm) bounds.high = outside_mm;

@@ -9,7 +9,7 @@
 namespace octotomy::voxel {
 namespace {
 
-// The children, of 2^child_log2 voxels a side, that a box of the block's voxels overlaps.
+// The children, each 2^child_log2 voxels a side, that a box overlaps. The box is in voxels of the block.
 std::uint64_t children_within(const VoxelBox& box, int child_log2) {
   assert(glm::all(glm::greaterThanEqual(box.low, glm::ivec3(0))) &&
          glm::all(glm::lessThan(box.high >> child_log2, glm::ivec3(4))));
@@ -28,7 +28,7 @@ std::uint64_t children_within(const VoxelBox& box, int child_log2) {
   return within;
 }
 
-// Status of a box of voxels, relative to the block that holds it.
+// The status of a box of voxels, whose coordinates are relative to the block around it.
 Status status_within(BlockRef block, int height, const VoxelBox& box) {
   assert(glm::all(glm::lessThanEqual(box.low, box.high)));
   const Node* node = block.node();

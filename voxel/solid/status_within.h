@@ -6,7 +6,7 @@
 
 namespace octotomy::voxel {
 
-/// Status of a box of voxels of the octree's lattice. The box may extend beyond the universe, where all
+/// The status of a box of voxels of the octree's lattice. The box may extend beyond the universe, where all
 /// voxels are Empty. Cost: the nodes along the box's faces; stops as soon as the status is Partial.
 Status status_within(const Octree& octree, const VoxelBox& box);
 

@@ -8,10 +8,11 @@
 namespace octotomy::voxel {
 namespace {
 
-// The share of a cube that lies inside. Surfaces that cross the cube are combined as independent.
+// The share of a cube that lies inside. If the surfaces of two solids cross the cube, their shares are
+// combined as if they were independent.
 struct Share {
   double share = 0.0;
-  int sheets = 0;  ///< 0: the share is exactly 0 or 1
+  int sheets = 0;  ///< number of surfaces that cross the cube; 0: the share is exactly 0 or 1
   double off_voxels = 0.0;
 
   friend Share operator~(const Share& a) { return {1.0 - a.share, a.sheets, a.off_voxels}; }

@@ -7,20 +7,19 @@
 #include "voxel/solid/expression.h"
 #include "voxel/space/error.h"
 
-// Walks over the terms of an expression. They keep their own stack: an expression may be nested as deep as
+// Walks over the terms of an expression. They do not recurse, so an expression may be nested as deep as
 // memory allows.
 
 namespace octotomy::voxel {
 
-/// A walk meets a term before its operands and again after them; it meets a leaf once, before.
+/// A visit to a term: before its operands or after them. A leaf is visited once, with `before` set.
 struct MetTerm {
   const Expression::Term& term;
   bool before;      ///< before the operands
-  bool subtracted;  ///< the right operand of a minus
+  bool subtracted;  ///< whether the term is the right operand of a minus
 };
 
-/// Largest number of leaves that a walk visits. Repeated ones count: a part that occurs twice is walked
-/// twice.
+/// The largest number of leaves that a walk visits. A part that occurs twice is visited and counted twice.
 inline constexpr std::size_t most_leaves = std::size_t{1} << 22;
 
 /// Calls `met` for every term in reading order. Throws Error with the code Input if the expression has
@@ -47,8 +46,9 @@ void for_each_term(const Expression& expression, const Met& met) {
   }
 }
 
-/// Evaluates an expression from its leaves up: `leaf(term)`, `one(term, value)` for a complement or a motion,
-/// `two(term, left, right)` for the others. Throws as for_each_term().
+/// Evaluates an expression from its leaves up. `leaf(term)` returns a leaf's value, `one(term, value)` that
+/// of a complement or a motion, `two(term, left, right)` that of any other term. Throws as for_each_term()
+/// does.
 template <typename Value, typename Leaf, typename One, typename Two>
 Value evaluate_terms(const Expression& expression, const Leaf& leaf, const One& one, const Two& two) {
   std::vector<Value> values;

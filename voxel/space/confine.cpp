@@ -27,7 +27,7 @@ constexpr std::uint32_t architecture = 0;
 
 /// Calls that are refused.
 constexpr std::array refused{
-    // Programs, other processes and their memory.
+    // Calls that start programs or act on other processes and their memory.
     SYS_execve,
     SYS_execveat,
     SYS_ptrace,
@@ -37,7 +37,7 @@ constexpr std::array refused{
     SYS_pidfd_open,
     SYS_pidfd_getfd,
     SYS_pidfd_send_signal,
-    // The network and other programs' sockets.
+    // Calls for the network and for sockets of other programs.
     SYS_socket,
     SYS_socketpair,
     SYS_connect,
@@ -54,7 +54,7 @@ constexpr std::array refused{
     SYS_setns,
     SYS_mknodat,
     SYS_open_by_handle_at,
-    // Rights, the kernel's own interfaces and the machine.
+    // Calls that change rights, kernel interfaces or the machine.
     SYS_setuid,
     SYS_setgid,
     SYS_setresuid,
@@ -86,8 +86,8 @@ constexpr sock_filter step(std::uint16_t code, std::uint32_t value, std::uint8_t
 }
 
 /// A filter of system calls in classic BPF. Refuses every call of another architecture, and the calls
-/// listed above. Also refuses clone without CLONE_THREAD, which makes a process. clone3 fails as if it did
-/// not exist, so that the C library uses clone instead.
+/// listed above. Also refuses clone without CLONE_THREAD, which would start a process. clone3 fails as if it
+/// did not exist, so that the C library uses clone instead.
 bool filter_calls() {
   constexpr std::uint32_t refuse = SECCOMP_RET_ERRNO | EPERM;
   constexpr std::uint32_t clone_thread = 0x00010000;
@@ -113,8 +113,8 @@ bool filter_calls() {
   return prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
 }
 
-/// Forbids changes of files except below one folder. Empty folders can still be removed, so that the
-/// process can remove its own.
+/// Forbids changes of files except below one folder. Empty folders can still be removed anywhere, so that the
+/// process can remove the folder itself.
 bool keep_files(const std::filesystem::path& writable) {
   landlock_ruleset_attr rules{};
   rules.handled_access_fs =

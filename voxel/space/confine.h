@@ -5,11 +5,11 @@
 
 namespace octotomy::voxel {
 
-/// Forbids this process, and all processes that it starts, everything that decoding untrusted bytes never
-/// needs, as far as the system supports it: new programs and processes, sockets, tracing, and other kernel
-/// interfaces (seccomp); and changes of files outside of `writable` (Landlock, Linux 5.13 and later).
-/// Threads, memory, open files and reading stay allowed. Refused calls fail with EPERM or EACCES. Cannot be
-/// undone. Returns whether seccomp and Landlock are both in force.
+/// Forbids this process and its children what decoding untrusted bytes does not need, as far as the system
+/// supports it: new programs and processes, sockets, tracing, and other kernel interfaces (seccomp); and
+/// changes of files outside of `writable` (Landlock, Linux 5.13 and later). Threads, memory, open files and
+/// reading remain allowed. Refused calls fail with EPERM or EACCES. This cannot be undone. Returns whether
+/// seccomp and Landlock are both in force.
 bool confine(const std::filesystem::path& writable) noexcept;
 
 }  // namespace octotomy::voxel

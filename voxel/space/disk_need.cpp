@@ -15,7 +15,8 @@
 namespace octotomy::voxel {
 namespace {
 
-/// `f_type` of the file systems that keep every byte of a file: ext2 to ext4, XFS, tmpfs, FAT, exFAT.
+/// `f_type` of the file systems on which a file takes at least its size: ext2 to ext4, XFS, tmpfs, FAT,
+/// exFAT.
 constexpr std::array<std::int64_t, 5> plain_kinds{0xef53, 0x58465342, 0x01021994, 0x4d44, 0x2011bab0};
 
 std::string bytes_text(std::uint64_t bytes) {
@@ -34,7 +35,7 @@ std::optional<std::uint64_t> free_disk(const std::filesystem::path& folder) {
   const auto type = static_cast<std::int64_t>(kind.f_type) & 0xffffffff;
   if (std::find(plain_kinds.begin(), plain_kinds.end(), type) == plain_kinds.end() || disk.f_blocks == 0)
     return std::nullopt;
-  // Blocks reserved for the superuser are free for the superuser only.
+  // Blocks that are reserved for the superuser count as free only for the superuser.
   return std::uint64_t{::geteuid() == 0 ? disk.f_bfree : disk.f_bavail} * disk.f_frsize;
 }
 

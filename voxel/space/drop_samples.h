@@ -5,8 +5,8 @@
 
 namespace octotomy::voxel {
 
-/// Frees the memory of a scene's samples. Clearing them does the same, but in callers that are compiled
-/// without optimisation the destruction then visits every sample.
+/// Frees the memory of a scene's samples. If a caller that is compiled without optimisation cleared the
+/// samples itself, their destruction would visit every sample.
 void drop_samples(Scene& scene);
 
 }  // namespace octotomy::voxel

@@ -7,10 +7,10 @@
 
 namespace octotomy::voxel {
 
-/// The kind of an error. Exit statuses follow from it, never from a message.
+/// The kind of an error. Exit statuses are derived only from it, not from messages.
 enum class ErrorCode {
   Input,      ///< data or text from outside is wrong
-  Geometry,   ///< the data are sound, but the operation has no answer on them
+  Geometry,   ///< the data are valid, but the operation has no result for them
   Cancelled,  ///< a stop token was set
   Resource,   ///< memory, disk or time ran out, or a child process failed
 };
@@ -25,25 +25,25 @@ class Error : public std::runtime_error {
   ErrorCode code_;
 };
 
-/// Thrown after a stop token was set.
+/// Thrown by work that ended early because a stop token was set.
 struct Stopped : Error {
   explicit Stopped(const std::string& message) : Error(ErrorCode::Cancelled, message) {}
 };
 
 /// Thrown for a wrong value or wrong data that may come from outside the program. The message states the
-/// fault and, if it helps, the remedy. A plain std::invalid_argument, in contrast, reports a mistake of the
-/// caller, who broke a precondition that no outside value can break.
+/// fault and, if it helps, the remedy. A plain std::invalid_argument, in contrast, reports a broken
+/// precondition that no outside value can break, so a mistake in the calling code.
 struct InvalidInput : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// Thrown for a size that may come from outside the program if the function's result would be too large.
+/// Thrown if the result would be too large for a size that may come from outside the program.
 struct TooLarge : std::length_error {
   using std::length_error::length_error;
 };
 
-/// The code of a failed system call: Resource if memory, the disk or one of their limits is exhausted,
-/// otherwise Input.
+/// The code for the error number of a failed system call: Resource if memory, the disk or one of their limits
+/// is exhausted, otherwise Input.
 inline ErrorCode code_of_errno(int number) {
   return number == ENOSPC || number == EDQUOT || number == EFBIG || number == EIO || number == ENOMEM ||
                  number == EMFILE

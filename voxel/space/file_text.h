@@ -10,7 +10,7 @@
 
 #include "voxel/space/error.h"
 
-// Error messages, file access and text comparison for the readers and writers of files.
+// Error messages, file access and text functions for the readers and writers of files.
 namespace octotomy::voxel {
 
 /// Throws Error with the file and the reason.
@@ -35,7 +35,7 @@ inline std::ifstream opened(const std::filesystem::path& path) {
   return in;
 }
 
-/// All bytes of a file; none if it cannot be read. Throws as opened().
+/// All bytes of a file; none if it cannot be read. Throws as opened() does.
 inline std::string file_bytes(const std::filesystem::path& path) {
   std::ifstream in = opened(path);
   return {std::istreambuf_iterator<char>(in), {}};

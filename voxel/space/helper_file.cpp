@@ -30,7 +30,7 @@ std::vector<fs::path> folders() {
 }
 
 /// Throws if another user could have put the file there or everyone may change it. The owner of the running
-/// program is trusted already.
+/// program is trusted, because that program already runs.
 void need_trusted(const fs::path& file) {
   struct stat program {};
   const bool is_known = ::stat("/proc/self/exe", &program) == 0;
@@ -40,10 +40,9 @@ void need_trusted(const fs::path& file) {
     const bool is_ours =
         found.st_uid == 0 || found.st_uid == ::geteuid() || (is_known && found.st_uid == program.st_uid);
     if (!is_ours || (found.st_mode & S_IWOTH) != 0)
-      throw Error(ErrorCode::Resource,
-                  path.string() +
-                      ": others may write there, so it is not started: remove that permission, or "
-                      "install Octotomy again");
+      throw Error(ErrorCode::Resource, path.string() +
+                                           ": others may write there, so it is not started: remove that "
+                                           "permission, or install Octotomy again");
   }
 }
 
@@ -63,8 +62,9 @@ fs::path helper_file(const std::string& name) {
     }
     places += (places.empty() ? "" : ", ") + folder.string();
   }
-  throw Error(ErrorCode::Resource, name + " is missing in " + places +
-                                       ": set OCTOTOMY_HELPERS to the folder that holds it, or install it");
+  throw Error(ErrorCode::Resource,
+              name + " is missing in " + places +
+                  ": set OCTOTOMY_HELPERS to the folder that contains it, or install it");
 }
 
 }  // namespace octotomy::voxel

@@ -2,7 +2,7 @@
 #pragma once
 
 // To be included before ITK's headers. Debian's ITK recognises only the compiler with which it was built;
-// these are the results that its detection would give for clang.
+// these are the results that its detection would have for clang.
 #if defined(__clang__)
 #define ITK_COMPILER_DETECTION_H
 #define ITK_NOEXCEPT noexcept

@@ -12,9 +12,9 @@
 
 namespace octotomy::voxel {
 
-/// An allocator for arrays of many megabytes. Elements constructed without a value stay uninitialised, so
+/// An allocator for arrays of many megabytes. Elements constructed without a value remain uninitialised, so
 /// that the threads that fill an array are the first to touch it. Requests huge pages: a page fault per 4 KiB
-/// takes longer than filling the page, and in scattered reads the address translation of small pages takes
+/// takes longer than filling the page, and for scattered reads the address translation of small pages takes
 /// longer than the read. Arrays that do not fit into memory lie in files, see allocate_large().
 template <typename Value>
 struct LargeAllocator {
@@ -43,7 +43,7 @@ struct LargeAllocator {
   }
   template <typename Other>
   void construct(Other* at) {
-    ::new (static_cast<void*>(at)) Other;  // without (), so the element stays uninitialised
+    ::new (static_cast<void*>(at)) Other;  // without parentheses, so that the element remains uninitialised
   }
   template <typename Other, typename... Arguments>
   void construct(Other* at, Arguments&&... arguments) {

@@ -11,8 +11,9 @@
 namespace octotomy::voxel {
 namespace {
 
-// Converting a plan's millimetres to voxel indices rounds numbers below 2^12 a few times: 1e-12 of a voxel. A
-// translation that is not meant to be by whole voxels differs from whole voxels by far more than a millionth.
+// The tolerance in voxels for translations by whole voxels. Converting millimetres to voxel indices rounds
+// numbers below 2^12 a few times, an error of 1e-12 of a voxel. A translation that is not meant to be by
+// whole voxels deviates from one by far more than a millionth.
 constexpr double whole_voxel_tolerance = 1e-6;
 
 }  // namespace
@@ -72,7 +73,7 @@ Universe universe_around(const Box& box, double voxel_mm) {
     throw InvalidInput("a universe's voxels need a positive edge, not " + std::to_string(voxel_mm) + " mm");
   const glm::dvec3 extent_mm = box.high_mm - box.low_mm;
   const double longest_mm = std::max(extent_mm.x, std::max(extent_mm.y, extent_mm.z));
-  // An extent of a whole number of voxels, up to rounding, must not need another level.
+  // If an extent is a whole number of voxels except for rounding errors, it must not lead to another level.
   const double voxels = longest_mm / voxel_mm * (1.0 - 4.0 * std::numeric_limits<double>::epsilon());
   Universe universe;
   universe.depth = 2;
@@ -101,7 +102,7 @@ std::optional<glm::ivec3> whole_voxel_offset(const glm::dmat4& source_from_targe
     const double nearest = std::floor(constant + 0.5);
     if (stray.x + stray.y + stray.z + std::abs(constant - nearest) > whole_voxel_tolerance)
       return std::nullopt;
-    // An offset beyond every universe is useless and may not fit into an int.
+    // An offset larger than every universe is useless and may exceed the range of int.
     if (!(std::abs(nearest) < 1 << 30)) return std::nullopt;
     offset[row] = static_cast<int>(nearest);
   }

@@ -53,13 +53,13 @@ struct Universe {
   bool operator==(const Universe&) const = default;
 };
 
-/// The smallest axis-aligned universe of cubic voxels that contains the box and shares its centre. Throws
-/// std::invalid_argument if voxel_mm is not positive and finite, std::length_error if it would take more than
-/// 2^Universe::max_depth voxels a side.
+/// The smallest axis-aligned universe of cubic voxels that contains the box and has the same centre. Throws
+/// std::invalid_argument if voxel_mm is not positive and finite, std::length_error if the universe would need
+/// more than 2^Universe::max_depth voxels a side.
 Universe universe_around(const Box& box, double voxel_mm);
 
-/// The offset from a target's voxel indices to the source's if the map is a translation by whole voxels;
-/// otherwise none.
+/// The offset to add to the target's voxel indices to get the source's, if the map is a translation by whole
+/// voxels; otherwise none.
 std::optional<glm::ivec3> whole_voxel_offset(const glm::dmat4& source_from_target);
 
 }  // namespace octotomy::voxel

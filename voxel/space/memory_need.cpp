@@ -72,7 +72,7 @@ std::uint64_t bytes_of(const std::filesystem::path& path, std::uint64_t sample_c
 
 void limit_memory(std::uint64_t bytes) {
   limit_bytes = bytes;
-  // Room for threads' stacks and for memory that is reserved and never touched.
+  // Additional address space for threads' stacks and for memory that is reserved but never touched.
   const std::uint64_t slack = (std::uint64_t{256} << 20) + bytes / 4;
   set_data_limit(bytes < no_memory_limit - slack ? bytes + slack : no_memory_limit);
 }
@@ -105,7 +105,7 @@ void need_memory(const std::filesystem::path& path, std::uint64_t sample_count, 
   if (needed <= free) return;
   refuse(path,
          what + " take " + gigabytes(needed) + " of memory, " + gigabytes(free) +
-             " are free: crop it or take wider spacings or larger voxels, or raise --memory",
+             " are free: crop it, choose wider spacings or larger voxels, or raise --memory",
          ErrorCode::Resource);
 }
 

@@ -24,7 +24,7 @@ inline std::string shown(std::string text) {
   return text;
 }
 
-/// The first `most` names, and the number of the others.
+/// The first `most` names, followed by the number of the other names.
 inline std::string listed(const std::vector<std::string>& names, std::size_t most = 8) {
   std::string text;
   for (std::size_t i = 0; i < std::min(names.size(), most); ++i) text += (i == 0 ? "" : ", ") + names[i];

@@ -8,10 +8,11 @@
 
 namespace octotomy::voxel {
 
-/// Progress report and stop of long work. Only the thread of the working function calls `report`.
+/// Progress reports of long work, and requests to stop it. Only the thread of the working function calls
+/// `report`.
 struct Progress {
   std::stop_token stop;
-  std::function<void(double fraction)> report;  ///< 0 to 1; may be empty
+  std::function<void(double fraction)> report;  ///< receives the fraction done, 0 to 1; may be empty
 
   /// Reports the fraction done. Throws Stopped if the stop token is set.
   void at(double fraction) const {

@@ -5,9 +5,9 @@
 
 namespace octotomy::voxel {
 
-/// Discards all output to standard error during its lifetime, for calls into libraries that print errors
-/// which they also return. Only one exists at a time in the process; constructing another waits. Throws
-/// nothing: if standard error cannot be redirected, it stays as it is.
+/// Discards all output to standard error during its lifetime, for calls into libraries that print errors in
+/// addition to returning them. Only one object exists at a time in the process; the constructor of another
+/// one waits. Throws nothing: if standard error cannot be redirected, it is not changed.
 class QuietErrors {
  public:
   QuietErrors();

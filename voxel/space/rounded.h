@@ -9,7 +9,7 @@ namespace octotomy::voxel {
 /// A number to three significant digits for messages: "0.0123", "6.04", "5", "1880"; "not a number" and
 /// "infinitely many" for values that are not finite.
 std::string rounded(double value);
-/// A place to whole millimetres: "(12, -80, 44)".
+/// A position rounded to whole millimetres: "(12, -80, 44)".
 std::string rounded(const glm::dvec3& p_mm);
 
 }  // namespace octotomy::voxel

@@ -44,10 +44,11 @@ std::string unit(const Scene& scene) {
 std::optional<SliceRange> slices_inside(const Lattice& lattice, const Hole& hole) {
   const glm::dvec3 step_mm(lattice.lps_from_voxel[2]);
   const double along_mm = glm::dot(step_mm, hole.normal);
-  // A lattice whose slices are tilted by more than 0.8 degrees against the slab has no slice within it.
+  // The limit is the cosine of 0.8 degrees. If the slices of a lattice are tilted against the slab by more
+  // than this angle, none of them lies wholly inside the slab.
   if (!(std::abs(along_mm) > 0.9999 * glm::length(step_mm))) return std::nullopt;
   const double start_mm = glm::dot(glm::dvec3(lattice.lps_from_voxel[3]), hole.normal);
-  // A slice within a hundredth of a step of an image is that image.
+  // A slice within a hundredth of a step from an image counts as this image, which was measured.
   double low = (hole.low_mm - start_mm) / along_mm, high = (hole.high_mm - start_mm) / along_mm;
   if (low > high) std::swap(low, high);
   const double first = std::max(std::floor(low + 0.01) + 1.0, 0.0);
@@ -71,11 +72,11 @@ void check(const Scene& scene) {
     for (int row = 0; row < 4; ++row)
       if (!std::isfinite(lattice.lps_from_voxel[column][row]))
         throw InvalidInput(scene.source + ": the lattice's position is not finite");
-  const glm::dvec3 spacing_mm = lattice.spacing_mm();  // checked too, because the squares of large steps
-                                                       // overflow before the steps do
+  // The spacing is checked too, because the squares of large steps overflow before the steps do.
+  const glm::dvec3 spacing_mm = lattice.spacing_mm();
   if (!std::isfinite(spacing_mm.x + spacing_mm.y + spacing_mm.z) ||
       !glm::all(glm::greaterThan(spacing_mm, glm::dvec3(0.0))))
-    throw InvalidInput(scene.source + ": the lattice's spacing is no length in millimetres");
+    throw InvalidInput(scene.source + ": the lattice's spacing is not a finite length in millimetres");
 }
 
 double interpolate(const Scene& scene, const glm::dvec3& p_voxel) {

@@ -14,13 +14,13 @@
 
 namespace octotomy::voxel {
 
-/// Meaning of the sample values.
+/// The meaning of the sample values: Hounsfield units, numbers without a known unit, or labels of objects.
 enum class Meaning { Hounsfield, Raw, Label };
 
-/// Ordered by severity, so that the maximum of several verdicts is the gravest.
+/// The verdict of a check. Verdicts are ordered by severity, so that the maximum of several is the gravest.
 enum class Verdict { Pass, Warn, Fail };
 
-/// One line of a scan's audit: the check, its verdict, the finding and its treatment.
+/// One line of a scan's audit: the check, its verdict, and in `detail` what was found and how it was treated.
 struct Finding {
   std::string check;
   Verdict verdict = Verdict::Pass;
@@ -28,12 +28,13 @@ struct Finding {
   std::vector<std::string> files = {};  ///< the files concerned, relative to the scan's folder
 };
 
-/// A slab between two neighbouring images that are further apart than the others. No image measured its
-/// inside, so samples there are interpolated. Its position stays valid when a scene is cropped or resampled.
+/// A slab between two neighbouring images that are further apart than the others. No image was measured
+/// inside the slab, so samples there are interpolated. The slab's position remains valid if a scene is
+/// cropped or resampled.
 struct Hole {
-  glm::dvec3 normal{0, 0, 1};  ///< of the images, a unit vector in LPS
-  double low_mm = 0.0;         ///< p . normal of the image below
-  double high_mm = 0.0;        ///< p . normal of the image above
+  glm::dvec3 normal{0, 0, 1};  ///< normal of the images, a unit vector in LPS
+  double low_mm = 0.0;         ///< position of the image below: p . normal for its points p
+  double high_mm = 0.0;        ///< position of the image above
 
   double length_mm() const { return high_mm - low_mm; }
 };
@@ -44,16 +45,17 @@ using Int16Samples = Samples<std::int16_t>;
 using FloatSamples = Samples<float>;
 
 /// Patient, study and frame of reference as DICOM states them, in UTF-8 without padding; empty if not stated.
-/// A scan has one study and one frame; a structure set lists all that it refers to.
+/// A scan has one study and one frame of reference; for a structure set, all to which it refers are listed.
 struct Identity {
   std::string patient_id, patient_name;
   std::vector<std::string> study_uids, frame_uids;
   std::string id_issuer = {};   ///< issuer of patient_id, which is unique only among this issuer's numbers
   std::string birth_date = {};  ///< YYYYMMDD
   std::string sex = {};         ///< M, F or O
-  std::string series_uid = {};  ///< of a scan that was read from a DICOM series
-  std::vector<std::string> referred_series_uids = {};  ///< of a structure set: the series it was drawn on
-  std::string study_date = {};                         ///< YYYYMMDD
+  std::string series_uid = {};  ///< series from which a scan was read; empty for other files
+  /// For a structure set, the series on which it was drawn.
+  std::vector<std::string> referred_series_uids = {};
+  std::string study_date = {};  ///< YYYYMMDD
 };
 
 /// Samples on a lattice, x fastest.
@@ -66,11 +68,11 @@ struct Scene {
   std::vector<Finding> audit;
   std::vector<Hole> holes = {};  ///< from the lowest on
   Identity identity = {};
-  /// For a label map with overlapping labels: maps each number that stands for several labels to those
+  /// For a label map with overlapping labels: maps each number that represents several labels to these
   /// labels, in ascending order.
   std::map<int, std::vector<int>> overlaps = {};
-  /// The sample value where the scanner measured nothing; below every measured one. No interpolation may mix
-  /// it with a measurement. None: every sample is a measured one.
+  /// The sample value where the scanner measured nothing; below every measured sample. Interpolation must not
+  /// mix it with measurements. None: every sample was measured.
   std::optional<double> padding = {};
   /// The samples' unit as a DICOM file declares it: "HU", "US" (unspecified), "OD", "BQML", "GY". Empty if no
   /// unit is declared, which for a CT means HU (PS3.3, C.8.2.1).
@@ -80,17 +82,17 @@ struct Scene {
 /// A window's lower bound, raised above the padding, so that no window contains unmeasured samples.
 double above_padding(const Scene& scene, double low);
 
-/// First and last slice of a lattice whose centres lie inside a hole.
+/// A range of slices of a lattice, both ends included.
 struct SliceRange {
   int first = 0;
   int last = 0;
 };
-/// None if no slice's centre lies inside the hole, or the lattice's slices are not parallel to the hole's
-/// images.
+/// The slices of a lattice whose centres lie inside a hole. None if there are no such slices, or if the
+/// lattice's slices are not parallel to the hole's images.
 std::optional<SliceRange> slices_inside(const Lattice& lattice, const Hole& hole);
 
-/// Smallest and largest measured sample; the padding itself if nothing was measured. Precondition: the scene
-/// is not empty.
+/// The smallest and the largest measured sample; both are the padding if no sample was measured.
+/// Precondition: the scene is not empty.
 struct Range {
   double low = 0.0;
   double high = 0.0;
@@ -100,13 +102,13 @@ Range range(const Scene& scene);
 /// The unit to print after a sample value: "HU" or "1".
 std::string unit(const Scene& scene);
 
-/// Throws std::invalid_argument if the number of samples is not the lattice's, or if the lattice is empty,
-/// singular or not finite.
+/// Throws std::invalid_argument if the number of samples does not match the lattice, or if the lattice is
+/// empty, singular or not finite.
 void check(const Scene& scene);
 
-/// The sample at a position in index space by trilinear interpolation. Positions outside take the nearest
-/// border sample. Returns the padding if any sample involved is padding. Precondition: the scene passes
-/// check().
+/// The sample at a position in index space by trilinear interpolation. Positions outside get the value at the
+/// nearest position of the border. Returns the padding if any sample involved is padding. Precondition: the
+/// scene passes check().
 double interpolate(const Scene& scene, const glm::dvec3& p_voxel);
 
 }  // namespace octotomy::voxel

@@ -9,14 +9,16 @@
 
 namespace octotomy::voxel {
 
-/// Progress of one part of the work, whose 0 to 1 is reported as `from` to `to` of the whole.
+/// The progress of one part of the work: its fractions 0 to 1 are reported as `from` to `to` of the whole
+/// work.
 inline Progress part_of(const Progress& whole, double from, double to) {
   if (!whole.report) return {whole.stop, {}};
   return {whole.stop,
           [report = whole.report, from, to](double fraction) { report(from + (to - from) * fraction); }};
 }
 
-/// Progress of equal pieces that several threads work on. Only the thread that constructed it reports.
+/// The progress of work in equal pieces on several threads. Only the thread that constructed the object
+/// reports.
 class SharedProgress {
  public:
   SharedProgress(const Progress& progress, std::size_t pieces) : progress_(progress), pieces_(pieces) {}

@@ -19,7 +19,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// The actions on open files at the start of a process.
+/// The file descriptors that a started process opens, duplicates and closes.
 class FileActions {
  public:
   explicit FileActions(const Spawn& program) {
@@ -43,7 +43,7 @@ class FileActions {
   posix_spawn_file_actions_t actions_{};
 };
 
-/// The signals and the group of the started process.
+/// The signal settings and the process group of a started process.
 class Attributes {
  public:
   explicit Attributes(const Spawn& program) {

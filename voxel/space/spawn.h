@@ -15,8 +15,9 @@ namespace octotomy::voxel {
 struct Spawn {
   std::vector<std::string> words = {};  ///< the program, found by PATH if it has no slash, and its arguments
   std::optional<int> in = {}, out = {}, errors = {};
-  bool has_environment = true;  ///< false: it starts without variables
-  bool has_own_group = false;   ///< false: it gets the signals of our terminal
+  bool has_environment = true;  ///< whether it inherits the environment; if not, it has no variables
+  /// Whether it has a separate process group; if not, it receives our terminal's signals.
+  bool has_own_group = false;
 };
 
 /// Starts the program and returns its process. The program inherits no other open file, no blocked signal,
@@ -24,9 +25,9 @@ struct Spawn {
 /// std::system_error with the program's name.
 pid_t spawn(const Spawn& program);
 
-/// Waits for the end of a child and returns its status as waitpid() reports it. Calls `look` every
-/// `look_every` until then; `look` may send signals. Throws std::system_error if `child` is not a child of
-/// this process.
+/// Waits for the end of a child and returns its status as waitpid() reports it. Until then `look`, which may
+/// send signals, is called at intervals of `look_every`. Throws std::system_error if `child` is not a child
+/// of this process.
 int wait_for_end(pid_t child, std::chrono::milliseconds look_every, const std::function<void()>& look);
 
 }  // namespace octotomy::voxel

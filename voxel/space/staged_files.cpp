@@ -28,7 +28,7 @@ struct Move {
   fs::path staged, target;
 };
 
-/// Checks that the target may be replaced, and copies its permissions to the staged file.
+/// Checks that a target may be replaced, and copies the target's permissions to the staged file.
 void need_replaceable(const fs::path& target, const fs::path& staged) {
   struct stat of_old {};
   if (::lstat(target.c_str(), &of_old) != 0) return;
@@ -39,7 +39,8 @@ void need_replaceable(const fs::path& target, const fs::path& staged) {
   if (!is_folder) ::chmod(staged.c_str(), of_old.st_mode & 07777);
 }
 
-/// Moves a staged file or folder next to its target, which may lie on another disk behind a link.
+/// Moves a staged file or folder into a folder beside its target, which may lie on another disk behind a
+/// link.
 void bring(Move& move, std::list<StagedFiles>& folders) {
   const StagedFiles& there = folders.emplace_back(move.target.parent_path());
   const fs::path staged = there.folder() / move.target.filename();
@@ -51,8 +52,8 @@ void bring(Move& move, std::list<StagedFiles>& folders) {
   move.staged = staged;
 }
 
-/// A second hard link to a file that is replaced, from which the old file can be restored. Nothing is
-/// restored on a file system that has or allows no hard links.
+/// A second hard link to a file that is replaced, from which the old file can be restored. If the file system
+/// does not support hard links, the old file cannot be restored.
 class OldFile {
  public:
   explicit OldFile(const Move& move) : target_(move.target), kept_(move.staged.string() + ".old") {
@@ -71,7 +72,7 @@ class OldFile {
   bool was_there_ = false;
 };
 
-/// Renames all files into place, or none.
+/// Renames all files into place. If one fails, undoes the others.
 void rename_all(std::vector<Move>& moves) {
   for (const Move& move : moves) need_replaceable(move.target, move.staged);
   std::list<StagedFiles> elsewhere;
@@ -99,7 +100,7 @@ std::vector<fs::path> names_in(const fs::path& folder, const fs::path& last) {
   return names;
 }
 
-/// A path without a redundant "/" or "/." at its end.
+/// A path after removal of a redundant "/" or "/." at its end.
 fs::path without_end(fs::path path) {
   while (path.has_relative_path() && (!path.has_filename() || path.filename() == "."))
     path = path.parent_path();

@@ -7,10 +7,10 @@
 
 namespace octotomy::voxel {
 
-/// Reads a representation's text from left to right. Every error names the position.
+/// Reads the text of a code from left to right. Every error message states the position.
 class TextCursor {
  public:
-  /// `what` is the text's kind, with which error messages begin: "treecode".
+  /// `what` is the kind of text, such as "treecode", with which error messages begin.
   TextCursor(std::string_view what, std::string_view text) : what_(what), text_(text) {}
 
   std::size_t position() const { return position_; }
@@ -25,13 +25,13 @@ class TextCursor {
   void expect(std::string_view expected);
   /// Reads a decimal number, at most `largest`.
   std::uint64_t number(std::uint64_t largest);
-  /// Throws unless only spaces follow.
+  /// Throws unless only spaces and line ends follow.
   void expect_end();
 
   /// Throws std::invalid_argument: "treecode, character 12: ...", counted from one.
   [[noreturn]] void refuse(const std::string& why) const { refuse_at(position_, why); }
   [[noreturn]] void refuse_at(std::size_t position, const std::string& why) const;
-  /// Throws as refuse(); the message names the expected text and the character that stands there.
+  /// Throws as refuse() does; the message states the expected text and the character found at the position.
   [[noreturn]] void refuse_unexpected(const std::string& expected) const;
 
  private:

@@ -1,6 +1,6 @@
-// Owners hold a lock on their folder. A folder is created, then locked. In between, remove_abandoned() of
-// another process may take the lock and remove the folder. So the owner checks after locking that the folder
-// still exists, and otherwise creates another one.
+// The owner of a folder holds a lock on it. A folder is created first and locked afterwards. In between,
+// remove_abandoned() in another process may lock and remove the folder. After locking, the owner therefore
+// checks that the folder still exists, and otherwise creates another one.
 #include "voxel/space/unfinished_folder.h"
 
 #include <algorithm>
@@ -24,14 +24,14 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t letter_count = 6;
-/// Suffix of a folder's name while it is emptied. The folder is renamed first, so that no thread writes into
-/// it meanwhile.
+/// Suffix of a folder's name while the folder is being emptied. It is renamed before, so that no thread
+/// writes into it.
 constexpr const char* leaving = "~";
 
 /// The folders of this process; never destroyed, since threads may outlive main(). The mutex is held while a
-/// folder is created or removed: if two threads empty the same folder, one fails at an entry that the other
-/// removed and leaves the rest. Recursive, because an allocation that fails meanwhile may end the process on
-/// the same thread.
+/// folder is created or removed: if two threads emptied the same folder, one would fail at an entry that the
+/// other has removed, and leave the rest. It is recursive, because an allocation that fails while it is held
+/// may end the process on the same thread.
 struct Folders {
   std::recursive_timed_mutex mutex;
   std::vector<fs::path> paths;
@@ -52,17 +52,17 @@ void forget(const fs::path& path) {
   std::erase(folders().paths, path);
 }
 
-/// Precondition: this thread holds the lock of folders().
+/// Precondition: the calling thread holds the mutex of folders().
 void remove_folder(const fs::path& path) {
   std::error_code ignored;
   const fs::path gone = path.string() + leaving;
   fs::rename(path, gone, ignored);
   fs::remove_all(gone, ignored);
-  fs::remove_all(path, ignored);  // removes the folder if it could not be renamed
+  fs::remove_all(path, ignored);  // removes the folder under its old name if it could not be renamed
 }
 
-/// Ignores exceptions: a folder that cannot be removed stays hidden or marked as unfinished until the next
-/// run removes it.
+/// Ignores exceptions: a folder that cannot be removed remains, hidden or marked as unfinished, until the
+/// next run removes it.
 template <typename Work>
 void quietly(const Work& work) {
   try {
@@ -72,7 +72,8 @@ void quietly(const Work& work) {
   }
 }
 
-/// Locks a folder and returns its descriptor; -1 if it was removed meanwhile or there are no locks.
+/// Locks a folder and returns its descriptor; -1 if the folder no longer exists or the file system has no
+/// locks.
 int locked(const fs::path& path, int how) {
   const int file = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   if (file < 0) return -1;
@@ -91,7 +92,7 @@ UnfinishedFolder::UnfinishedFolder(const fs::path& beside, const std::string& pr
       if (mkdtemp(name.data()) == nullptr)
         throw Error(code_of_errno(errno),
                     beside.string() + ": cannot be written to: " + std::generic_category().message(errno) +
-                        "; choose a folder that exists and is yours");
+                        "; choose an existing folder in which you may write");
       folders().paths.emplace_back(name);
     }
     path_ = name;
@@ -166,7 +167,7 @@ void remove_unfinished() noexcept {
   // or removes a folder.
   const bool settled = names_mutex().try_lock_for(std::chrono::milliseconds(100));
   static_cast<void>(settled);
-  if (!folders().mutex.try_lock_for(std::chrono::seconds(10))) return;  // the next run removes what is left
+  if (!folders().mutex.try_lock_for(std::chrono::seconds(10))) return;  // the next run removes the others
   for (const fs::path& path : folders().paths) quietly([&path] { remove_folder(path); });
   for (const auto* undo : folders().undone_at_end) quietly(*undo);
 }

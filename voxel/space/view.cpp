@@ -54,7 +54,8 @@ View parse_view(const std::string& text) {
   const double azimuth = azimuth_deg * std::numbers::pi / 180.0;
   const double elevation = elevation_deg * std::numbers::pi / 180.0;
   const double level = std::cos(elevation);
-  // The observer stands at -look: in front (y < 0) at azimuth 0, at the patient's left (x > 0) at 90 degrees.
+  // The observer is in the direction -look: in front of the patient (y < 0) at azimuth 0, at the patient's
+  // left (x > 0) at 90 degrees.
   const glm::dvec3 look(-std::sin(azimuth) * level, std::cos(azimuth) * level, -std::sin(elevation));
   const glm::dvec3 up(-std::sin(azimuth) * std::sin(elevation), std::cos(azimuth) * std::sin(elevation),
                       level);
@@ -64,7 +65,7 @@ View parse_view(const std::string& text) {
 std::array<View, 2> stereo_pair(const View& view, double between_deg) {
   assert(std::isfinite(between_deg));
   const double half = 0.5 * between_deg * std::numbers::pi / 180.0;
-  // The left eye stands at the observer's left, so that it looks a little to the right.
+  // The left eye is at the observer's left, so it looks slightly to the right.
   const auto turned = [&](double angle) {
     return looking(std::cos(angle) * view.look + std::sin(angle) * view.right, view.up);
   };

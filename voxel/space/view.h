@@ -23,11 +23,11 @@ bool is_frame(const View& view);
 
 /// A named view (anterior, posterior, left, right, superior, inferior) or "AZ,EL" in degrees: from anterior,
 /// azimuth turns the observer towards the patient's left, elevation raises the observer. Throws
-/// std::invalid_argument with the text and the valid names.
+/// std::invalid_argument with the text and the valid forms.
 View parse_view(const std::string& text);
 
 /// The views of the left and the right eye: the observer is turned about `up` by half of `between_deg` to
-/// each side. Precondition: finite.
+/// each side. Precondition: `between_deg` is finite.
 std::array<View, 2> stereo_pair(const View& view, double between_deg);
 
 }  // namespace octotomy::voxel

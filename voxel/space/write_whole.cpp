@@ -10,7 +10,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// Writes the bytes to `path`; errors name the file as `named`.
+/// Writes the bytes to `path`. Error messages refer to the file as `named`.
 void write_as(const std::filesystem::path& path, const std::filesystem::path& named,
               const std::string& bytes) {
   errno = 0;

@@ -44,7 +44,7 @@ void fill_rows(BlockGrid& grid, const FillRow& fill) {
   });
 }
 
-// A FillRow from `make`, which returns one block.
+// Makes a FillRow from `make`, which returns a single block.
 template <typename Make>
 FillRow block_by_block(const Make& make) {
   return [&make](const glm::ivec3& first, std::span<BlockRef> row) {
@@ -85,7 +85,7 @@ Octree octree_of_grid(const Universe& universe, const glm::ivec3& dims, const Fi
   return {universe, Block::adopt(grid.blocks.front())};
 }
 
-// The part of a block of `height` at `origin` that lies in the box low..high.
+// The voxels of the box low..high within a block of `height` at `origin`, as a block.
 Block block_of_box(int height, const glm::ivec3& origin, const glm::ivec3& low, const glm::ivec3& high) {
   const glm::ivec3 last = origin + (1 << (2 * height)) - 1;
   if (glm::any(glm::greaterThan(low, last)) || glm::any(glm::lessThan(high, origin))) return {};
@@ -150,7 +150,7 @@ Octree octree_of_window(const Universe& universe, const Scene& scene, double low
     return (static_cast<std::size_t>(z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(y)) *
            static_cast<std::size_t>(dims.x);
   };
-  // Samples are read in whole rows, in the order in which they lie in memory.
+  // Samples are read in whole rows, in memory order.
   const auto build = [&](const auto& row_bits) {
     return octree_of_grid(universe, (dims + 15) / 16, [&](const glm::ivec3& first, std::span<BlockRef> row) {
       const glm::ivec3 origin = first * 16;

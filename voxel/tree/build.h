@@ -17,15 +17,15 @@ namespace octotomy::voxel {
 Octree octree_of_window(const Universe& universe, const Scene& scene, double low, double high);
 
 /// The octree whose 16 x 16 x 16 blocks `make` returns. `make` is called once for every such block of the
-/// universe, from several threads, with the block's number along each axis, and returns the block in the form
-/// of make_leaf_block(). Voxels beyond the universe must be empty.
+/// universe, from several threads, with the block's number along each axis. It returns the block as made by
+/// make_leaf_block(). Voxels beyond the universe must be empty.
 Octree octree_of_blocks(const Universe& universe, const std::function<Block(const glm::ivec3& block)>& make);
 
 /// A block of height 2 as rows of 16 voxels: the row at (y, z) is number y + 16 z, and bit x is voxel x.
 using BlockRows = std::array<std::uint16_t, 256>;
 Block leaf_block_of_rows(const BlockRows& rows);
 
-/// The voxels of the box low..high, both included, that lie in the universe.
+/// The object that consists of those voxels of the box low..high, both included, that lie in the universe.
 Octree octree_of_box(const Universe& universe, const glm::ivec3& low, const glm::ivec3& high);
 
 }  // namespace octotomy::voxel

@@ -9,9 +9,9 @@
 
 namespace octotomy::voxel {
 
-/// A row of a slice as bits indexed by corner. Bit i of `ahead` is the voxel after corner i of the word; bit
-/// i of `behind` is the voxel before that corner. Rows outside the universe are empty. A row has one more
-/// corner than it has voxels; the last corner may need a further word.
+/// A row of a slice, as bits whose index is that of a corner. Bit i of `ahead` is the voxel after corner i of
+/// the word; bit i of `behind` is the voxel before that corner. Rows outside the universe are empty. A row
+/// has one more corner than it has voxels; the last corner may need a further word.
 struct RowBits {
   const std::uint64_t* words = nullptr;
   int count = 0;
@@ -26,8 +26,9 @@ inline RowBits row_of(const SliceBits* slice, int y) {
 }
 
 /// Calls visit(x, y, pattern) for the corners between two slices whose eight voxels are not all alike, y by
-/// y. Corner (x, y) is the lower one of voxel (x, y) of `above`. Bit x + 2y + 4z of the pattern is voxel (x,
-/// y, z) of the eight. A slice outside the universe is null. Cost: one step per 64 corners, and one per call.
+/// y. Corner (x, y) is the lowest corner of voxel (x, y) of `above`. Bit x + 2y + 4z of the pattern is voxel
+/// (x, y, z) of the eight. A slice outside the universe is null. Cost: one step per 64 corners, and one per
+/// call of `visit`.
 template <typename Visit>
 void for_each_corner(const SliceBits* below, const SliceBits* above, int side, const Visit& visit) {
   assert((below == nullptr || below->side == side) && (above == nullptr || above->side == side));

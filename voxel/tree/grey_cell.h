@@ -10,9 +10,9 @@
 
 namespace octotomy::voxel {
 
-/// Trilinear samples and differences of a grey octree, in its steps, at positions in voxels. Caches the
-/// corners of the last cell, because a ray takes several steps in one cell. Refers to the octree. For one
-/// thread.
+/// Computes trilinear samples and differences of a grey octree, in the octree's steps, at positions in
+/// voxels. Caches the corners of the last cell, because a ray takes several steps in one cell. Refers to the
+/// octree, which must outlive it. To be used by one thread at a time.
 class GreyCell {
  public:
   explicit GreyCell(const GreyOctree& grey) : grey_(grey) {}
@@ -22,8 +22,8 @@ class GreyCell {
     return trilinear(corners_, p - glm::dvec3(cell_));
   }
 
-  /// Central differences over two voxels along each axis, positive towards lower samples, trilinear between
-  /// voxels.
+  /// Central differences over two voxels along each axis, interpolated trilinearly between voxels. A
+  /// component is positive if samples fall along its axis.
   glm::dvec3 outward(const glm::dvec3& p) {
     enter(p);
     if (!differences_known_) {

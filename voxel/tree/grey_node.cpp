@@ -64,7 +64,8 @@ class WindowCounter {
 MinMax range_of_node(const GreyOctree& grey, const glm::ivec3& origin, int side_log2) {
   if (side_log2 <= 1) return range_of_samples(grey, origin, 1 << side_log2);
   const bool is_block = side_log2 % 2 == 0;
-  const int height = side_log2 / 2;  // of the block, or of the eight blocks that form the node
+  // Range of the samples of the block, or of the eight blocks that form the node.
+  const int height = side_log2 / 2;
   MinMax range = range_of_block(grey, origin, height);
   for (int number = 1; number < (is_block ? 1 : 8); ++number)
     range.widen(range_of_block(grey, origin + (octant(number) << (2 * height)), height));

@@ -14,7 +14,7 @@ namespace octotomy::voxel {
 /// scan; otherwise Partial. Refers to its grey octree, which must outlive it.
 class GreyNode {
  public:
-  /// An Empty root without an octree.
+  /// Constructs an Empty root without an octree.
   GreyNode() = default;
   static GreyNode root(const GreyOctree& grey, Window16 window);
 
@@ -29,15 +29,16 @@ class GreyNode {
   const GreyOctree* grey_ = nullptr;
   Window16 window_;
   glm::ivec3 origin_{0};
-  LogicalNode scan_;  ///< the same node of the scan's octree
+  LogicalNode scan_;  ///< this node in the octree of the scan's voxels
   Status status_ = Status::Empty;
 };
 
-/// Range of the samples of a node. Cost: up to eight blocks' ranges, or a few samples.
+/// The range of a node's samples, in steps of the octree. Cost: reads up to eight blocks' ranges, or a few
+/// samples.
 MinMax range_of_node(const GreyOctree& grey, const glm::ivec3& origin, int side_log2);
 
 /// Levels 1..n of the min-max octree, its nodes counted by their status in a window. A node whose samples are
-/// all alike has no children. Cost: one pass over the bricks that are not all alike.
+/// all equal has no children. Cost: one pass over the bricks whose samples are not all equal.
 std::vector<LevelCount> level_counts(const GreyOctree& grey, Window16 window);
 
 }  // namespace octotomy::voxel

@@ -116,7 +116,7 @@ const GreyOctree& GreyOctree::on_scan_lattice() const {
 double grey_step(const Scene& scene) {
   const auto* samples = std::get_if<FloatSamples>(&scene.samples);
   if (samples == nullptr) return 1.0;
-  bool fit = true;  // whole numbers of 16 bits
+  bool fit = true;  // integers that fit into 16 bits
   double most = 0.0;
   for (const float sample : *samples) {
     const auto value = static_cast<double>(sample);
@@ -134,7 +134,7 @@ GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int
                           const Progress& progress) {
   check(scene);
   GreyOctreeBuild build(universe, scene, background, grey_step(scene));
-  // Every report waits for all threads, so there are at most 50.
+  // Every progress report waits for all threads, so there are at most 50 reports.
   const int slices = scene.lattice.dims.z, reports = progress.report ? std::min(slices, 50) : 1;
   for (int i = 1; i <= reports; ++i) {
     build.add(slices * i / reports);
@@ -148,7 +148,7 @@ GreyOctree grey_octree_of_bricks(const Universe& universe, std::int16_t backgrou
                                  const std::function<void(std::size_t number, GreyBrick& brick)>& fill,
                                  std::optional<Octree> scan, double step) {
   if (scan && !(scan->universe() == universe))
-    throw InvalidInput("the scan's voxels and the bricks lie in different universes");
+    throw InvalidInput("the scan's voxels and the bricks have different universes");
   auto storage = std::make_shared<GreyOctree::Storage>(universe, background, blocks.size());
   storage->step = step;
   GreyOctree::Level& bottom = storage->bottom();
@@ -158,7 +158,7 @@ GreyOctree grey_octree_of_bricks(const Universe& universe, std::int16_t backgrou
         glm::any(glm::greaterThanEqual(block, glm::ivec3(bottom.side))))
       throw InvalidInput("a brick lies outside the universe");
     std::uint32_t& brick = storage->brick_of_block[bottom.index(block)];
-    if (brick != 0) throw InvalidInput("two bricks have the same place");
+    if (brick != 0) throw InvalidInput("two bricks have the same block");
     brick = static_cast<std::uint32_t>(i + 1);
   }
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {

@@ -35,7 +35,8 @@
 namespace octotomy::voxel {
 namespace {
 
-// First and last voxel of the universe that a scan can reach, clamped to the universe.
+// The first and the last voxel of the universe along each axis that a scan can reach, clamped to the
+// universe.
 std::pair<glm::ivec3, glm::ivec3> reach(const Universe& universe, const Lattice& lattice) {
   const glm::dmat4 universe_from_scan = glm::inverse(universe.lps_from_voxel) * lattice.lps_from_voxel;
   glm::dvec3 low(std::numeric_limits<double>::infinity());
@@ -57,7 +58,7 @@ using LeafRanges = std::array<MinMax, 64>;
 // computation of the ranges to the copy.
 constexpr std::size_t longest_run = 32;
 
-// Widens the ranges of columns by a row of samples.
+// Extends the ranges of columns so that they include a row of samples.
 OCTOTOMY_VECTOR_CLONES void widen(const std::int16_t* samples, std::size_t width, std::int16_t* low,
                                   std::int16_t* high) {
   for (std::size_t x = 0; x < width; ++x) {
@@ -72,7 +73,7 @@ OCTOTOMY_VECTOR_CLONES void widen(const std::int16_t* samples, std::size_t width
 void find_ranges(const std::int16_t* first, const RowSteps& steps, std::size_t count, LeafRanges* ranges) {
   const std::size_t width = 16 * count;
   for (std::size_t z = 0; z < 16; z += 4) {
-    // First the ranges of single columns; then four columns are joined to a leaf.
+    // Computes the ranges of single columns first, then joins four columns to a leaf.
     std::array<std::array<std::int16_t, 16 * longest_run>, 4> low, high;
     for (std::size_t slice = z; slice < z + 4; ++slice)
       for (std::size_t y = 0; y < 16; ++y) {
@@ -140,7 +141,7 @@ class GreyOctreeBuild::Work {
     try {
       tasks_.wait();
     } catch (...) {
-      // The octree is discarded, so its error is dropped.
+      // The octree is discarded, so an error in building it is ignored.
     }
   }
 
@@ -176,7 +177,7 @@ class GreyOctreeBuild::Work {
     }
     glm::ivec3 first, count;
   };
-  // The bricks of a single value that the blocks of a layer share.
+  // The bricks with a single value, which the blocks of a layer share.
   struct Shared {
     std::mutex mutex;
     std::unordered_map<std::int16_t, std::uint32_t> bricks;
@@ -186,10 +187,10 @@ class GreyOctreeBuild::Work {
   const Reached reached_;
   const ScanRows rows_;
   std::shared_ptr<GreyOctree::Storage> storage_;
-  std::vector<Block> scan_;  // per block, its voxels that lie in the scan
+  std::vector<Block> scan_;  // for each block the voxels that lie in the scan
   std::vector<Shared> shared_;
-  std::vector<std::pair<int, int>> layers_;  // layers not begun, the next one last: number of slices that the
-                                             // layer reads, and its z
+  // Layers that have not been begun, the next one last: number of slices that the layer reads, and its z.
+  std::vector<std::pair<int, int>> layers_;
   std::atomic<std::size_t> brick_count_ = 0;
   tbb::isolated_task_group tasks_;  // the last member, so that the others outlive the tasks
 };
@@ -239,14 +240,14 @@ class GreyOctreeBuild::Work::Row {
     return work_.scan_[work_.reached_.number(at + glm::ivec3(i, 0, 0))];
   }
 
-  // The scan's sample at a block's first voxel, if all of the block's samples are the scan's own; otherwise
-  // null.
+  // A pointer to the scan's sample at a block's first voxel if all of the block's samples are samples of the
+  // scan; otherwise null.
   const std::int16_t* scan_samples(const glm::ivec3& at) const {
-    // Blocks of a smaller universe reach beyond it.
+    // In a smaller universe, blocks extend beyond the universe.
     return storage_.universe.side() < 16 ? nullptr : scan_rows_.own_samples(origin(at));
   }
 
-  // Fills samples_ with `count` blocks along x from `at` on.
+  // Fills samples_ with the samples of `count` blocks along x, beginning at `at`.
   void resample(const glm::ivec3& at, int count) {
     samples_.resize(256 * 16 * longest_run);
     std::array<BlockRows, longest_run> inside{};
@@ -282,15 +283,15 @@ class GreyOctreeBuild::Work::Row {
         copy_block(samples + 16 * i, steps, *brick);
   }
 
-  // Assigns a brick to a block. Returns it, with its ranges, if its samples are still to be written,
-  // otherwise null.
+  // Assigns a brick to a block. If the brick's samples have yet to be written, stores its ranges and returns
+  // the brick, otherwise null.
   GreyBrick* placed(const glm::ivec3& at, const LeafRanges& ranges) {
     GreyOctree::Level& bottom = storage_.bottom();
     const std::size_t index = bottom.index(work_.reached_.first + at);
     const MinMax range = bottom.ranges[index] = joined(ranges);
     std::uint32_t& number = storage_.brick_of_block[index];
     if (range.low == range.high) {
-      if (range.low == storage_.background) return nullptr;  // brick 0 is the block's brick
+      if (range.low == storage_.background) return nullptr;  // the block refers to brick 0
       Shared& shared = work_.shared_[static_cast<std::size_t>(z_)];
       const std::lock_guard lock(shared.mutex);
       const auto [known, is_new] = shared.bricks.try_emplace(range.low, next_);
@@ -308,7 +309,7 @@ class GreyOctreeBuild::Work::Row {
   const ScanRows& scan_rows_;
   GreyOctree::Storage& storage_;
   std::uint32_t next_;                 // number of the next brick
-  std::vector<std::int16_t> samples_;  // of a run that is resampled, z after y
+  std::vector<std::int16_t> samples_;  // samples of a run that is resampled, row by row, z after y
 };
 
 void GreyOctreeBuild::Work::add(int count) {

@@ -9,12 +9,12 @@
 namespace octotomy::voxel {
 
 /// Builds the result of grey_octree_of() while the scene's slices are being read. Other threads build the
-/// parts that the final slices determine; the result has the same bits. Refers to the scene until finished()
+/// parts that the final slices determine; the result has the same bits. The scene must exist until finished()
 /// or the destructor has returned. Both wait for the other threads without running unrelated tasks.
 class GreyOctreeBuild {
  public:
   /// Preconditions: the scene passes check(); its vector of samples has its final size, but values may still
-  /// be missing; `step` is the scene's grey_step(), which is 1 for whole numbers of 16 bits.
+  /// be missing; `step` is the scene's grey_step(), which is 1 for integers that fit into 16 bits.
   GreyOctreeBuild(const Universe& universe, const Scene& scene, std::int16_t background = beyond_scan,
                   double step = 1.0);
   ~GreyOctreeBuild();
@@ -23,10 +23,10 @@ class GreyOctreeBuild {
 
   /// Reports that the scene's first `count` slices are final. Does not wait.
   void add(int count);
-  /// Waits for the other threads. Returns the share of the scan's box, from 0 to 1, that has been built.
+  /// Waits for the other threads. Returns the share of the scan's box that has been built, from 0 to 1.
   double built();
-  /// Waits for the rest and returns the octree. Preconditions: all slices were added; not called before.
-  /// Throws as grey_octree_of().
+  /// Waits for the remaining work and returns the octree. Preconditions: all slices were added, and this
+  /// function was not called before. Throws as grey_octree_of() does.
   GreyOctree finished();
 
  private:

@@ -14,17 +14,17 @@ namespace octotomy::voxel {
 /// cells of a leaf reach into the next leaf along each axis. Rays skip cubes whose bound is too low.
 class HighestSamples {
  public:
-  /// Cost: one pass over the ranges of the leaves. Parallel.
+  /// Computes the bounds in parallel. Cost: one pass over the ranges of the leaves.
   explicit HighestSamples(const GreyOctree& grey);
 
-  /// Edge, in cells, of the largest aligned cube that holds a cell and whose bound is at most `limit`; 0 if
-  /// there is none. Precondition: 0 <= cell < universe side.
+  /// The edge, in cells, of the largest aligned cube that contains a cell and whose bound is at most `limit`,
+  /// in steps; 0 if there is none. Precondition: 0 <= cell < universe side.
   int edge_without(const glm::ivec3& cell, double limit) const {
     for (std::size_t level = levels_.size(); level-- > 0;)
       if (levels_[level].at(cell >> shift_of(level)) <= limit) return 1 << shift_of(level);
     return 0;
   }
-  /// The bound of the cell's cube of 4 cells a side.
+  /// The bound of the cube of 4 cells a side that contains the cell.
   std::int16_t of_leaf(const glm::ivec3& cell) const { return levels_.front().at(cell >> 2); }
 
  private:
@@ -40,7 +40,7 @@ class HighestSamples {
   };
   static int shift_of(std::size_t level) { return 2 * static_cast<int>(level) + 2; }
   static Level leaves(const GreyOctree& grey);
-  /// Widens every cube by the next one along an axis.
+  /// Raises the bound of every cube to that of the next cube along an axis if that one is higher.
   static void reach_along(int axis, Level& level);
   static Level coarser(const Level& fine);
 

@@ -62,7 +62,7 @@ double interpolate_scan(const GreyOctree& grey, const glm::dvec3& p_voxel) {
   const auto corner_of = [&](int number) {
     return low + glm::ivec3(number & 1, number >> 1 & 1, number >> 2);
   };
-  // A sample that differs from the background belongs to the scan.
+  // Samples that differ from the background always belong to the scan.
   bool any_background = false;
   for (int number = 0; number < 8 && !any_background; ++number)
     any_background = grey.sample(corner_of(number)) == grey.background();
@@ -89,7 +89,7 @@ double interpolate_scan(const GreyOctree& grey, const glm::dvec3& p_voxel) {
     value += weight * grey.sample(corner);
     weights += weight;
   }
-  // With all samples in the scan, the result has the same bits as interpolate().
+  // If all samples belong to the scan, the result has the same bits as that of interpolate().
   return any_beyond ? value / weights : interpolate(grey, p_voxel, Interpolation::Linear);
 }
 

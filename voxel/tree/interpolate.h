@@ -20,7 +20,7 @@ struct Stencil {
 };
 Stencil stencil(double position, Interpolation interpolation);
 
-/// Numbers of samples before and after floor(position) that a stencil may reach.
+/// How many samples before and after floor(position) a stencil may include.
 struct Margin {
   int before = 0;
   int after = 1;
@@ -34,11 +34,12 @@ struct ValueRange {
 };
 ValueRange value_range(const MinMax& samples, Interpolation interpolation);
 
-/// The value at a position of the octree's universe, in voxel indices; samples beyond it are the background.
+/// The value at a position in voxel indices of the octree's universe, in the octree's steps. Samples beyond
+/// the universe are the background.
 double interpolate(const GreyOctree& grey, const glm::dvec3& p_voxel, Interpolation interpolation);
 
-/// The trilinear value at a position, in voxel indices of the octree's universe, from the scan's own samples
-/// alone. Samples around the position that do not belong to the scan are left out, and the other weights are
+/// The trilinear value at a position, in voxel indices of the octree's universe, from samples of the scan
+/// only. Samples around the position that do not belong to the scan are left out, and the other weights are
 /// scaled to sum to 1. Returns the background if the nearest voxel does not belong to the scan.
 double interpolate_scan(const GreyOctree& grey, const glm::dvec3& p_voxel);
 

@@ -6,7 +6,8 @@
 namespace octotomy::voxel {
 namespace {
 
-// Indexed by axis and shift: the bits of a shifted word that come from the first of two neighbouring leaves.
+// For each axis and shift, a mask of the bits of a shifted word that come from the first of two neighbouring
+// leaves.
 constexpr std::array<std::array<std::uint64_t, 4>, 3> staying{{
     {all_children, 0x7777777777777777, 0x3333333333333333, 0x1111111111111111},
     {all_children, 0x0fff0fff0fff0fff, 0x00ff00ff00ff00ff, 0x000f000f000f000f},
@@ -25,7 +26,8 @@ std::uint64_t joined_words(std::uint64_t low, std::uint64_t high, int axis, int 
 
 }  // namespace
 
-// `words_of(block)` returns whether the block is empty, and a function from child number to word.
+// Copies the words of all leaves in the box. `words_of(block)` returns whether the block is empty, and a
+// function that returns the word of a child number.
 template <typename Words>
 void LeafWords::fill(const glm::ivec3& first, const glm::ivec3& last, const Words& words_of) {
   assert(glm::all(glm::lessThan(last - first, glm::ivec3(side))));
@@ -86,7 +88,7 @@ void LeafWords::read(const GreyOctree& grey, Window16 window, const glm::ivec3& 
   });
 }
 
-// Separable: 5 x 5 x 5 leaves are joined along x to 4 x 5 x 5, then along y, then along z.
+// The shift is separable: 5 x 5 x 5 leaves are joined along x to 4 x 5 x 5, then along y, then along z.
 void LeafWords::shifted(const glm::ivec3& shift, std::uint64_t* words) const {
   std::array<std::uint64_t, 4 * 5 * 5> along_x;
   for (int z = 0; z < 5; ++z)

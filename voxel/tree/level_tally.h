@@ -21,13 +21,13 @@ class LevelTally {
     return !is_full && !is_empty;
   }
 
-  /// Counts the voxels of a leaf word that are in `mask`.
+  /// Counts the voxels of a leaf word whose bits are set in `mask`, by their status.
   void count_voxels(std::uint64_t word, std::uint64_t mask) {
     by_side_[0].full += static_cast<std::uint64_t>(std::popcount(word & mask));
     by_side_[0].empty += static_cast<std::uint64_t>(std::popcount(~word & mask));
   }
 
-  /// Levels 1..depth, without the root.
+  /// The counts of levels 1..depth; the root is left out.
   std::vector<LevelCount> levels() const {
     std::vector<LevelCount> levels(by_side_.rbegin() + 1, by_side_.rend());
     for (std::size_t i = 0; i < levels.size(); ++i) levels[i].level = static_cast<int>(i) + 1;

@@ -22,8 +22,8 @@ inline void check_depth(int depth) {
 
 /// Builds an octree from the statuses of its nodes in preorder. `source.open(level)` returns the next node's
 /// status. `source.close(homogeneous)` is called after the children of a Partial node; `homogeneous` means
-/// that all are Full or all Empty. A source may reject homogeneous children by throwing; otherwise they are
-/// condensed into their parent. Precondition: no node at the level of voxels is Partial.
+/// that all are Full or all Empty. A source that does not accept homogeneous children throws; otherwise they
+/// are condensed into their parent. Precondition: no node at the level of voxels is Partial.
 template <typename Source>
 class LogicalBuild {
  public:
@@ -46,7 +46,7 @@ class LogicalBuild {
   }
 
  private:
-  // Children of a block by child number.
+  // The children of a block that is being built, by child number.
   struct Children {
     std::uint64_t full = 0;
     std::uint64_t partial = 0;
@@ -54,7 +54,7 @@ class LogicalBuild {
     std::array<Block, 64> blocks;
   };
 
-  /// Opens eight nodes; `inside(k, status)` is called for those that are not Empty.
+  /// Opens the eight children of a node, and calls `inside(k, status)` for those that are not Empty.
   template <typename Inside>
   void eight(int level, const Inside& inside) {
     int full = 0;

@@ -11,12 +11,12 @@
 namespace octotomy::voxel {
 namespace {
 
-// Counts nodes of the logical octree.
+// Counts the nodes of the logical octree by level and status.
 class LevelCounter {
  public:
   explicit LevelCounter(int depth) : tally_(depth) {}
 
-  // The 64 children of a Partial block: its 8 octants, and the 8 children of each that is Partial.
+  // Counts the two levels below a Partial block: its 8 octants, and the 8 children of each Partial octant.
   void count_children(BlockRef block, int height) {
     const Node& node = *block.node();
     for (int octant_number = 0; octant_number < 8; ++octant_number) {
@@ -27,7 +27,7 @@ class LevelCounter {
     }
   }
 
-  // The 8 children of a Partial octant of a block.
+  // Counts the 8 children of a Partial octant of a block.
   void count_octant(BlockRef block, int height, std::uint64_t mask) {
     const Node& node = *block.node();
     for (std::uint64_t rest = mask; rest != 0; rest &= rest - 1) {
@@ -42,7 +42,7 @@ class LevelCounter {
     }
   }
 
-  // The two levels within a Partial leaf.
+  // Counts the two levels within a Partial leaf.
   void count_word(std::uint64_t word) {
     for (int octant_number = 0; octant_number < 8; ++octant_number)
       count_word_octant(word, octant_mask(octant_number));
@@ -58,7 +58,7 @@ class LevelCounter {
 };
 
 std::uint64_t bytes_below(const Node* node, std::unordered_set<const Node*>& met) {
-  // Only a node with several owners can be reached twice.
+  // Only nodes with several owners can be reached twice, so only these are remembered.
   if (node->references.load(std::memory_order_relaxed) > 1 && !met.insert(node).second) return 0;
   std::uint64_t bytes =
       sizeof(Node) + sizeof(std::uint64_t) * static_cast<std::uint64_t>(node->payload_count());

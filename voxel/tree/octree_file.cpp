@@ -42,7 +42,7 @@ constexpr std::size_t largest_raw = std::size_t{1} << 20;
 constexpr std::size_t largest_ratio = std::size_t{1} << 15;
 constexpr std::size_t bricks_per_section = 64;
 constexpr std::size_t samples_per_brick = 4096;
-/// Higher levels gain 5 % in size and take twice the time.
+/// Higher levels make files 5 % smaller and take twice the time.
 constexpr int compression_level = 3;
 
 enum class Kind : std::uint32_t { Binary = 1, Grey = 2, Partial = 3 };
@@ -63,7 +63,7 @@ std::uint32_t checksum(std::span<const std::uint8_t> bytes, std::uint32_t before
   return static_cast<std::uint32_t>(crc32_z(before, bytes.data(), bytes.size()));
 }
 
-// Checksum of section `number`, whose header and stored bytes begin at `section`.
+// The checksum of section `number`, whose header and stored bytes begin at `section`.
 std::uint32_t section_checksum(std::uint32_t number, const std::uint8_t* section, std::size_t stored) {
   std::array<std::uint8_t, 4> number_bytes;
   put(number, number_bytes.data());
@@ -104,7 +104,7 @@ Bytes universe_bytes(const Universe& universe, std::int16_t background) {
   return raw;
 }
 
-// Index of the sample that predicts sample i of a leaf. Precondition: i > 0.
+// The index of the sample by which sample i of a leaf is predicted. Precondition: i > 0.
 constexpr std::size_t predictor(std::size_t i) {
   return (i & 3) != 0 ? i - 1 : (i & 12) != 0 ? i - 4 : i - 16;
 }
@@ -136,7 +136,7 @@ Bytes brick_bytes(const GreyOctree& grey, std::span<const glm::ivec3> blocks) {
   return raw;
 }
 
-// The inverse of brick_bytes() for brick `number` of a section.
+// Decodes brick `number` of a section: the inverse of brick_bytes().
 void read_brick(const Bytes& raw, std::size_t number, std::int16_t background, GreyBrick& brick) {
   const std::uint8_t* low = raw.data() + number * samples_per_brick;
   const std::uint8_t* high = low + raw.size() / 2;
@@ -150,7 +150,7 @@ void read_brick(const Bytes& raw, std::size_t number, std::int16_t background, G
   }
 }
 
-// Calls `visit` for every block of the grid of a universe, x fastest.
+// Calls `visit` for every block of 16 x 16 x 16 voxels in a universe, x fastest.
 template <typename Visit>
 void for_each_block(const Universe& universe, const Visit& visit) {
   const int side = (universe.side() + 15) / 16;
@@ -273,7 +273,8 @@ class Reader {
     const std::size_t compared = std::min(bytes_.size(), magic.size());
     if (!std::equal(magic.begin(), magic.begin() + static_cast<std::ptrdiff_t>(compared), bytes_.begin()) ||
         bytes_.empty())
-      refuse("is no octree file: it does not begin with the letters OCTREE; make one with octotomy octree");
+      refuse(
+          "is not an octree file: it does not begin with the letters OCTREE; make one with octotomy octree");
     if (bytes_.size() < header_bytes)
       refuse_damaged("is cut short within its header, at byte " + std::to_string(bytes_.size()));
     if (get<std::uint32_t>(bytes_.data() + 28) != checksum(bytes_.first(28)))
@@ -290,7 +291,7 @@ class Reader {
     if (bytes_.size() < size)
       refuse_damaged("is cut short: it has " + std::to_string(bytes_.size()) + " of its " +
                      std::to_string(size) + " bytes");
-    if (bytes_.size() > size) refuse_damaged("goes on after its end, byte " + std::to_string(size));
+    if (bytes_.size() > size) refuse_damaged("continues after its end, byte " + std::to_string(size));
     section_count_ = get<std::uint32_t>(bytes_.data() + 24);
   }
 
@@ -325,7 +326,7 @@ class Reader {
       if (!damage[number].empty()) refuse_damaged(named(number) + ", " + damage[number]);
   }
 
-  // Checks and decompresses a section. If the section is damaged, returns the reason.
+  // Checks and decompresses a section. Returns the reason if the section is damaged.
   std::optional<std::string> unpack(std::uint32_t number, Section& section) const {
     const std::uint8_t* start = bytes_.data() + section.start;
     if (get<std::uint32_t>(start + 4) != section_checksum(number, start, section.stored.size()))
@@ -336,11 +337,12 @@ class Reader {
     const std::size_t size =
         ZSTD_decompress(section.raw.data(), section.raw.size(), section.stored.data(), section.stored.size());
     if (ZSTD_isError(size) != 0) return std::string("does not decompress: ") + ZSTD_getErrorName(size);
-    if (size != section.raw_size) return "is shorter than it says";
+    if (size != section.raw_size) return "is shorter than it states";
     return std::nullopt;
   }
 
-  // The joined raw bytes of the next sections if they have the given name; empty otherwise.
+  // The joined raw bytes of the consecutive next sections with the given name; empty if the next section has
+  // another name.
   Bytes take(const std::string& name) {
     Bytes raw;
     for (; next_ < sections_.size() && sections_[next_].name == name; ++next_) {
@@ -399,7 +401,7 @@ class Reader {
       }
       PartialOctree partial{inside, octree_of_packed_treecode(universe, take_needed("TOUC")), {}};
       const Bytes fractions = take("FRAC");
-      if (fractions.size() % 2 != 0) refuse("section FRAC ends amid a fraction");
+      if (fractions.size() % 2 != 0) refuse("section FRAC ends within a fraction");
       for (std::size_t i = 0; i < fractions.size(); i += 2)
         partial.fractions.push_back(get<std::uint16_t>(fractions.data() + i));
       check(partial);
@@ -453,7 +455,7 @@ class Reader {
     const auto step = std::bit_cast<double>(get<std::uint64_t>(raw.data()));
     int exponent = 0;
     if (!(step > 0.0) || !std::isfinite(step) || std::frexp(step, &exponent) != 0.5)
-      refuse("section STEP: the step of its samples is no power of two");
+      refuse("section STEP: the step of its samples is not a power of two");
     return step;
   }
 

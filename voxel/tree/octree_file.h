@@ -21,10 +21,10 @@
 //             one zstd frame of the raw ones
 //
 // A checksum is a CRC-32 (zlib's). A section's covers its number, a u32 counted from 0, and all of the
-// section except the checksum. So a burst of up to 32 flipped bits is always detected; other damage is missed
-// once in 2^32 cases, or once in 2^64 where zstd's own checksum of the raw bytes covers it too. A section's
-// raw bytes are at most 2^20. Longer data are cut into sections of the same name, all but the last of that
-// length. Sections follow in this order:
+// section except the checksum. A burst of up to 32 flipped bits is therefore always detected; other damage is
+// missed once in 2^32 cases, or once in 2^64 where zstd's own checksum of the raw bytes covers it too. A
+// section's raw bytes are at most 2^20. Longer data are cut into sections of the same name, all but the last
+// of that length. Sections follow in this order:
 //
 //   UNIV  u32 depth, i32 background (0 but for grey), 16 f64 of lps_from_voxel, column by column
 //   NAME  UTF-8, may be missing
@@ -48,29 +48,30 @@
 
 namespace octotomy::voxel {
 
-/// Contents of an .octree file.
+/// The contents of an .octree file.
 struct OctreeFile {
   std::variant<Octree, GreyOctree, PartialOctree> tree;
-  std::string name;      ///< for people, at most 2^20 bytes
+  std::string name;      ///< name for display, at most 2^20 bytes
   std::string metadata;  ///< JSON by convention; stored unchanged
 };
 
 const Universe& universe(const OctreeFile& file);
 
-/// The file's bytes. The bytes depend on the voxels alone, not on the tree's history or the number of
-/// threads. Parallel. Memory: the packed tree and, for grey, the compressed bricks.
+/// The bytes of a file with these contents. They depend only on the contents, not on how the tree was made or
+/// on the number of threads. Parallel. Memory: the packed tree and, for grey, the compressed bricks.
 std::vector<std::uint8_t> octree_file_bytes(const OctreeFile& file);
 
-/// The inverse. `source` begins every message. Throws Error with the code Input, which names the section and
-/// its first byte, if a checksum, a size or a tree is wrong; also if the file ends early, goes on after its
-/// end, or has a later version. Every checksum is verified before anything is built. Memory: at most 2^15
-/// times the bytes, the highest compression of zstd, and an empty tree of the universe.
+/// Reads the contents from a file's bytes. Every error message begins with `source`. Throws Error (Input)
+/// with the section and its first byte, if a checksum, a size or a tree is wrong; also if the file ends
+/// early, continues after its end, or has a later version. Every checksum is verified before anything is
+/// built. Memory: at most 2^15 times the number of bytes, which is zstd's highest compression, and an empty
+/// tree of the universe.
 OctreeFile octree_file_of_bytes(std::span<const std::uint8_t> bytes, const std::string& source);
 
-/// Writes a file beside `path` and renames it into place. Throws Error, Input or Resource, with path and
+/// Writes a file beside `path` and renames it into place. Throws Error (Input or Resource) with path and
 /// reason.
 void write_octree(const OctreeFile& file, const std::filesystem::path& path);
-/// Throws Error with path and reason, and as octree_file_of_bytes().
+/// Throws Error with path and reason; also throws as octree_file_of_bytes() does.
 OctreeFile read_octree(const std::filesystem::path& path);
 
 }  // namespace octotomy::voxel

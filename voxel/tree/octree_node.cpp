@@ -9,7 +9,7 @@
 namespace octotomy::voxel {
 namespace {
 
-// Number of voxels of a block. A block of height 6 has 2^36, so counts need 64 bits.
+// The number of voxels in a block of a height. A block of height 6 has 2^36 voxels, so counts need 64 bits.
 constexpr std::uint64_t voxels_of_height(int height) {
   return std::uint64_t{1} << (6 * height);
 }

@@ -19,7 +19,7 @@ constexpr std::uint8_t byte_of(std::uint64_t word, int number) {
   return static_cast<std::uint8_t>(word >> (8 * number));
 }
 
-// For the eight bytes of a 64-bit word, a bit each: whether the byte is 0xff, and whether it is neither 0xff
+// Two masks with a bit for each byte of a 64-bit word: bytes that are 0xff, and bytes that are neither 0xff
 // nor 0.
 struct Eight {
   std::uint8_t full = 0;
@@ -80,11 +80,11 @@ class Decoder {
   explicit Decoder(std::span<const std::uint8_t> code) : code_(code) {}
 
   std::uint8_t next() {
-    if (position_ == code_.size()) refuse("the code ends here, amid a node");
+    if (position_ == code_.size()) refuse("the code ends here, within a node");
     return code_[position_++];
   }
   void expect_end() {
-    if (position_ != code_.size()) refuse("the code goes on after the last node");
+    if (position_ != code_.size()) refuse("the code continues after the last node");
   }
   [[noreturn]] void refuse(const std::string& why) const {
     throw InvalidInput("treecode, byte " + std::to_string(position_) + ": " + why);
@@ -110,7 +110,7 @@ class Decoder {
       std::uint64_t voxels = ((octants.full >> k) & 1) != 0 ? 0xff : 0;
       if ((octants.partial >> k) & 1) {
         voxels = next();
-        if (voxels == 0 || voxels == 0xff) refuse("a Partial node's eight voxels are alike");
+        if (voxels == 0 || voxels == 0xff) refuse("a Partial node's eight voxels are all Full or all Empty");
       }
       ordered |= voxels << (8 * k);
     }
@@ -118,7 +118,7 @@ class Decoder {
   }
 
  private:
-  // Masks in octant order; payload by child number.
+  // The masks are in octant order, the payload is in the order of child numbers.
   struct Children {
     std::uint64_t full = 0;
     std::uint64_t partial = 0;
@@ -137,7 +137,7 @@ class Decoder {
     Eight read;
     read.full = next();
     read.partial = next();
-    if ((read.full & read.partial) != 0) refuse("a child is Full and Partial at once");
+    if ((read.full & read.partial) != 0) refuse("a child is marked both Full and Partial");
     if (read.full == 0xff || (read.full | read.partial) == 0)
       refuse("a Partial node's eight children are all Full or all Empty");
     return read;
@@ -206,7 +206,7 @@ Octree octree_of_packed_treecode(const Universe& universe, std::span<const std::
   check_depth(universe.depth);
   Decoder decoder(code);
   const std::uint8_t status = decoder.next();
-  if (status > 2) decoder.refuse("the root is 0 (Empty), 1 (Full) or 2 (Partial)");
+  if (status > 2) decoder.refuse("the root must be 0 (Empty), 1 (Full) or 2 (Partial)");
   Octree octree = status == 0   ? Octree::empty(universe)
                   : status == 1 ? Octree::full(universe)
                                 : Octree(universe, decoded_root(universe.depth, decoder));

@@ -15,7 +15,7 @@
 namespace octotomy::voxel {
 namespace {
 
-// Children of a block that are wholly inside, and children that the solid touches.
+// Masks of a block's children: those wholly inside the solid, and those that it touches.
 struct Masks {
   std::uint64_t full = 0;
   std::uint64_t some = 0;
@@ -40,11 +40,12 @@ class LevelCounter {
     for (int octant = 0; octant < 8; ++octant) {
       const std::uint64_t mask = octant_mask(octant);
       if ((mask & within) == 0) continue;
-      // If the universe is one octant of its root block, the octant is the root: level 0 is not counted.
+      // If the universe is only one octant of its root block, this octant is the root, on level 0, and is not
+      // counted.
       if (within == all_children && !count(2 * height - 1, masks, mask)) continue;
       for (std::uint64_t rest = mask & within; rest != 0; rest &= rest - 1) {
         const int child = std::countr_zero(rest);
-        // If the universe is a single leaf, the leaf is the root and not counted.
+        // If the universe is a single leaf, this leaf is the root and is not counted.
         if (within != 1 && !count(2 * height - 2, masks, rest & (~rest + 1))) continue;
         if (height > 2)
           count_block(inside.child(child), touching.child(child), height - 1, all_children);
@@ -63,7 +64,7 @@ class LevelCounter {
       if (count(1, words, mask)) tally_.count_voxels(words.some, mask);
     }
   }
-  // Counts the node formed by the children of `mask`. Returns whether it is Partial.
+  // Counts the node that consists of the children in `mask`. Returns whether the node is Partial.
   bool count(int side_log2, const Masks& masks, std::uint64_t mask) {
     return tally_.count(side_log2, (masks.full & mask) == mask, (masks.some & mask) == 0);
   }
@@ -71,7 +72,7 @@ class LevelCounter {
   LevelTally tally_;
 };
 
-// Visits the leaf words of touching - inside in tree order.
+// Visits the leaf words of the boundary voxels, touching - inside, in tree order.
 template <typename Visit>
 void for_each_boundary_leaf(BlockRef inside, BlockRef touching, int height, const glm::ivec3& origin,
                             const Visit& visit) {
@@ -86,8 +87,8 @@ void for_each_boundary_leaf(BlockRef inside, BlockRef touching, int height, cons
   }
 }
 
-// The voxels inside and the boundary voxels at least half filled. Reads fractions from `next` on, in tree
-// order.
+// The voxels inside, and the boundary voxels that are at least half filled. Reads fractions in tree order,
+// beginning at index `next`.
 Block half_filled(BlockRef inside, BlockRef touching, int height, const std::uint16_t*& next) {
   assert(height >= 2);
   if (inside == touching) return Block::share(inside);
@@ -118,7 +119,8 @@ bool is_subset(BlockRef inside, BlockRef touching, int height) {
   return true;
 }
 
-// A block of 16 x 16 x 16 voxels that the solid touches, and the first of its boundary voxels' fractions.
+// A block of 16 x 16 x 16 voxels that the solid touches, and the index of the first fraction of its boundary
+// voxels.
 struct SharedBlock {
   glm::ivec3 block{0};
   BlockRef inside, touching;
@@ -129,7 +131,7 @@ void collect_shares(BlockRef inside, BlockRef touching, int height, const glm::i
                     std::size_t& fraction_count, std::vector<SharedBlock>& into) {
   if (touching.is_empty() || glm::any(glm::greaterThanEqual(at, glm::ivec3(limit)))) return;
   if (height > 2) {
-    const int side = 1 << (2 * (height - 3));  // of a child, in blocks
+    const int side = 1 << (2 * (height - 3));  // edge length of a child, in blocks
     for (int child = 0; child < 64; ++child)
       collect_shares(inside.child(child), touching.child(child), height - 1, at + side * child_place(child),
                      limit, fraction_count, into);
@@ -144,9 +146,9 @@ void collect_shares(BlockRef inside, BlockRef touching, int height, const glm::i
 
 void check(const PartialOctree& partial) {
   if (partial.inside.universe() != partial.touching.universe())
-    throw InvalidInput("a partial octree's inside and touching voxels are of different universes");
+    throw InvalidInput("a partial octree's inside and touching voxels have different universes");
   if (!is_subset(partial.inside.root(), partial.touching.root(), partial.inside.root_height()))
-    throw InvalidInput("a partial octree has a voxel inside that is not among those touching");
+    throw InvalidInput("a partial octree has an inside voxel that is not a touching voxel");
   const std::uint64_t boundary = partial.touching.voxel_count() - partial.inside.voxel_count();
   if (partial.fractions.size() != boundary)
     throw InvalidInput("a partial octree of " + std::to_string(boundary) + " boundary voxels has " +

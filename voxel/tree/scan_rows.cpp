@@ -16,8 +16,8 @@ namespace octotomy::voxel {
 namespace {
 
 // Interpolates between four rows of samples, at (y, z) = (0, 0), (1, 0), (0, 1), (1, 1). Voxel i of the row
-// lies between samples low[i] and high[i], with weight share[i] for the latter. Values between 16-bit samples
-// round to 16 bits.
+// lies between samples low[i] and high[i]; share[i] is the weight of the latter. Values are rounded to 16
+// bits if the samples have 16 bits.
 OCTOTOMY_VECTOR_CLONES void interpolate_row(const std::int16_t* const (&rows)[4], const std::int32_t* low,
                                             const std::int32_t* high, const double* share,
                                             const glm::dvec2& yz_share, std::int16_t* row) {
@@ -170,7 +170,7 @@ std::uint16_t ScanRows::interpolate(const Sample* samples, const glm::ivec3& fir
   return static_cast<std::uint16_t>(inside);
 }
 
-// Returns the same bits as interpolate(), but computes a whole row at a time.
+// Computes a whole row at a time, with the same bits as interpolate().
 std::uint16_t ScanRows::interpolate_along(const std::int16_t* samples, const glm::ivec3& first,
                                           std::int16_t* row) const {
   const AxisPosition& y = along_[1][static_cast<std::size_t>(first.y)];

@@ -12,14 +12,15 @@
 
 namespace octotomy::voxel {
 
-/// Steps between rows and slices, in samples.
+/// The distances in memory from a row to the next and from a slice to the next, in samples.
 struct RowSteps {
   std::size_t row = 0, slice = 0;
 };
 
 /// A scan's samples at the voxel centres of a universe, read along the universe's rows, 16 voxels at a time.
-/// Samples are the scan's own if the lattices coincide, otherwise trilinearly interpolated. They are rounded
-/// to the nearest whole number of steps, halves upward. Refers to the scene, which must outlive it.
+/// If the lattices coincide, these are the scan's samples, otherwise they are interpolated trilinearly. They
+/// are rounded to the nearest multiple of the step, halves upward. Refers to the scene, which must outlive
+/// the object.
 class ScanRows {
  public:
   static constexpr int length = 16;
@@ -27,21 +28,22 @@ class ScanRows {
   /// padding, have the sample `background` and do not lie in the scan.
   ScanRows(const Universe& universe, const Scene& scene, std::int16_t background, double step);
 
-  /// The number n such that the universe's slices first..last depend only on the scan's first n slices.
+  /// The least number n such that the universe's slices first..last depend only on the scan's first n slices.
   int slices_read(int first, int last) const;
 
   /// A pointer to the first sample of the block of 16 x 16 x 16 voxels at `origin`, if every voxel of the
-  /// block is a sample of the scan and the scan has no padding; otherwise null. steps() leads to the other
-  /// samples.
+  /// block is a sample of the scan and the scan has no padding; otherwise null. The distances to the block's
+  /// other samples are those of steps().
   const std::int16_t* own_samples(const glm::ivec3& origin) const;
   RowSteps steps() const;
 
-  /// Fills a row. Bit i of the result is set if its voxel i lies in the scan. Precondition: `first` lies in
-  /// the universe. Throws std::invalid_argument if a float sample leaves the int16 range.
+  /// Reads a row of 16 voxels that begins at `first`. Bit i of the result is set if the row's voxel i lies in
+  /// the scan. Precondition: `first` lies in the universe. Throws std::invalid_argument if a float sample
+  /// leaves the int16 range.
   std::uint16_t read(const glm::ivec3& first, std::int16_t* row) const;
 
  private:
-  /// A position along one axis: between two samples, or outside.
+  /// A position along one axis, between two samples or outside the scan.
   struct AxisPosition {
     int low = 0;
     int high = 0;
@@ -69,13 +71,14 @@ class ScanRows {
   std::int16_t background_;
   double step_;
   glm::dmat4 scan_from_universe_;
-  std::optional<glm::ivec3> offset_;  ///< from the universe to the scan, if the two lattices coincide
+  /// Offset from the universe's voxels to the scan's samples, if the two lattices coincide.
+  std::optional<glm::ivec3> offset_;
   std::array<std::vector<AxisPosition>, 3>
-      along_;  ///< per axis and voxel, if the lattices' axes are parallel
+      along_;  ///< for each axis and voxel its position, if the lattices' axes are parallel
   struct {
     std::vector<std::int32_t> low, high;
     std::vector<double> share;
-  } in_row_;  ///< along_[0] as one array per member
+  } in_row_;  ///< the members of along_[0], each as an array
 };
 
 }  // namespace octotomy::voxel

@@ -18,7 +18,7 @@ struct SliceBits {
   const std::uint64_t* row(int y) const { return words.data() + static_cast<std::size_t>(y) * words_per_row; }
 };
 
-/// Reads the octree's voxels with index z into a slice, which may be reused. Precondition: z within the
+/// Reads the octree's voxels with index z into a slice, which may be reused. Precondition: z is in the
 /// universe.
 void read_slice(const Octree& octree, int z, SliceBits& slice);
 

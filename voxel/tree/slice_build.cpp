@@ -1,6 +1,6 @@
-// Building proceeds by layers. A layer of height h consists of the blocks of height h with the same z. One of
-// height 2 is built from 16 slices, a higher one from four layers of height h - 1. Layers without voxels cost
-// nothing.
+// Building proceeds by layers. A layer of height h consists of the blocks of height h with the same z. A
+// layer of height 2 is built from 16 slices, a higher layer from four layers of height h - 1. Layers without
+// voxels take no time.
 #include "voxel/tree/slice_build.h"
 
 #include <algorithm>
@@ -55,7 +55,7 @@ class LayerBuild {
     slices_.fill(empty_slice(side_));
   }
 
-  // A layer's blocks, x fastest; none if the layer has no voxels.
+  // The blocks of a layer, x fastest; empty if the layer has no voxels.
   std::vector<Block> layer(int height, int z) {
     if (z >= side_) return {};
     if (height == 2) return bottom_layer(z);
@@ -115,7 +115,7 @@ class LayerBuild {
     return blocks;
   }
 
-  // Builds the blocks of one y. A word of 64 voxels spans four blocks.
+  // Builds the blocks of a layer that have the same y. A word of 64 voxels spans four blocks.
   void draw_blocks(int y, int count, const std::array<bool, 16>& drawn, Block* blocks) const {
     const int words_per_row = slices_.front().words_per_row;
     for (int column = 0; column < words_per_row; ++column) {
@@ -187,7 +187,8 @@ void set_row(SliceBits& slice, int y, int first, int last) {
 bool next_run(const SliceBits& slice, int y, int from, int& first, int& last) {
   assert(y >= 0 && y < slice.side && from >= 0 && from <= slice.side);
   const std::uint64_t* row = slice.row(y);
-  // The first voxel from x on that is in the object; with `flip` all ones, the first outside the object.
+  // The first voxel of a row, from x on, that is in the object or, if all bits of `flip` are set, outside the
+  // object.
   const auto find = [&](int x, std::uint64_t flip) {
     for (int word = x / 64; word < slice.words_per_row; ++word) {
       std::uint64_t bits = row[word] ^ flip;

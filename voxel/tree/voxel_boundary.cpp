@@ -11,13 +11,13 @@
 namespace octotomy::voxel {
 namespace {
 
-// The word of the leaf with the given number along each axis; 0 outside the universe.
+// The word of the leaf with the given index along each axis; 0 outside the universe.
 std::uint64_t word_at(const Octree& octree, const glm::ivec3& leaf) {
   return octree.leaf_block(leaf >> 2).word(child_index(leaf.x & 3, leaf.y & 3, leaf.z & 3));
 }
 
-// The voxels of a word whose neighbour at +axis or -axis is inside; `beyond` is the word of the next leaf on
-// that side.
+// A mask of the voxels of a word whose neighbour at +axis or -axis is inside the object; `beyond` is the word
+// of the next leaf on that side.
 std::uint64_t neighbours(std::uint64_t word, std::uint64_t beyond, int axis, int side) {
   assert(axis >= 0 && axis < 3 && (side == 1 || side == -1));
   constexpr std::uint64_t first_layer[3]{0x1111111111111111ULL, 0x000f000f000f000fULL, 0x000000000000ffffULL};
@@ -40,7 +40,8 @@ void append_faces(const Octree& octree, const glm::ivec3& leaf, std::vector<Voxe
     }
 }
 
-// The edge, in leaves, of the largest empty block that holds a leaf; 0 if its leaf block is not empty.
+// The edge, in leaves, of the largest empty block that contains a leaf; 0 if no block that contains it is
+// empty.
 int empty_edge(const Octree& octree, const glm::ivec3& leaf) {
   BlockRef block = octree.root();
   for (int height = octree.root_height(); block.node() != nullptr && height > 2; --height) {
@@ -61,7 +62,7 @@ std::vector<VoxelFace> voxel_boundary(const Octree& octree) {
       for (int x = 0; x < leaves; ++x) {
         const int edge = x % 4 == 0 ? empty_edge(octree, {x, y, z}) : 0;
         if (edge > 0)
-          x |= edge - 1;  // blocks begin at multiples of their edge
+          x |= edge - 1;  // the next block begins at a multiple of the edge
         else
           append_faces(octree, {x, y, z}, layers[static_cast<std::size_t>(z)]);
       }

@@ -12,7 +12,7 @@
 
 namespace octotomy::voxel {
 
-/// A window on int16 samples, both ends included.
+/// A window of int16 samples: low..high, both included.
 struct Window16 {
   std::int16_t low = 0;
   std::int16_t high = 0;
@@ -47,7 +47,7 @@ inline std::uint16_t window_bits16(const std::int16_t* samples, Window16 window)
 #endif
 }
 
-/// The window's bits for the 64 samples of a leaf in bit order.
+/// Bit i is set if sample i of a leaf's 64 samples, in bit order, lies in the window.
 inline std::uint64_t window_bits64(const std::int16_t* samples, Window16 window) {
   std::uint64_t word = 0;
   for (int quarter = 0; quarter < 4; ++quarter)

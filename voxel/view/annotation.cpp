@@ -23,7 +23,7 @@ std::string number_text(double value) {
   return text;
 }
 
-/// A picture with the letter sizes and ink colours that fit it.
+/// A picture, with the letter sizes and ink colours that suit it.
 class Sheet {
  public:
   Sheet(const Canvas& canvas)
@@ -48,7 +48,7 @@ class Sheet {
   }
 
  private:
-  /// Mean linear light of the picture's outermost pixels: 0.18 looks halfway between black and white.
+  /// The mean linear light of the picture's outermost pixels; 0.18 appears half-way between black and white.
   float edge_light() const {
     double sum = 0.0;
     std::size_t count = 0;
@@ -93,7 +93,7 @@ void draw_scale(const Sheet& sheet, double pixel_mm) {
 void write_legend(const Sheet& sheet, const std::vector<LegendEntry>& legend) {
   const double cap = sheet.cap_px();
   const double line_px = 1.9 * cap;
-  // The legend ends before the letter at the middle of the lower edge.
+  // The legend must end before the letter at the middle of the lower edge.
   const double room_px = 0.5 * sheet.size_px().x - 5.0 * cap;
   double baseline = sheet.size_px().y - cap - line_px * (static_cast<double>(legend.size()) - 1.0);
   for (const LegendEntry& entry : legend) {
@@ -110,7 +110,7 @@ void write_legend(const Sheet& sheet, const std::vector<LegendEntry>& legend) {
 void draw_bar(const Sheet& sheet, const ColourBar& bar) {
   const double cap = sheet.cap_px();
   const glm::dvec2 size = sheet.size_px();
-  // The bar lies above the letter at the middle of the right edge and below the title.
+  // The bar must lie above the letter at the middle of the right edge and below the title.
   const int top = static_cast<int>(std::lround(4.5 * cap));
   const int bottom = std::max(top + 1, static_cast<int>(std::lround(0.5 * size.y - 2.5 * cap)));
   const int right = static_cast<int>(std::lround(size.x - cap));
@@ -155,7 +155,7 @@ EdgeLetters edge_letters(const View& view) {
 
 double round_length(double most) {
   const double power = std::pow(10.0, std::floor(std::log10(most)));
-  // Powers of ten below one are inexact. The factor keeps 0.005 / 0.001 from falling below 5.
+  // Powers of ten below one are inexact. Because of the factor, 0.005 / 0.001 is not below 5.
   const double digits = most / power * (1.0 + 1e-12);
   if (digits >= 10.0) return 10.0 * power;
   return (digits >= 5.0 ? 5.0 : digits >= 2.0 ? 2.0 : 1.0) * power;
@@ -171,7 +171,7 @@ void annotate(std::vector<std::uint8_t>& rgb, const ImagePlane& plane, const Ann
   if (annotation.scale && !plane.eye) draw_scale(sheet, plane.pixel_mm);
   if (annotation.bar) draw_bar(sheet, *annotation.bar);
   write_legend(sheet, annotation.legend);
-  // The title ends before the letter at the middle of the upper edge, or before the bar's title.
+  // The title must end before the letter at the middle of the upper edge, or before the bar's title.
   const double share = annotation.sides || annotation.bar ? 0.5 : 1.0;
   sheet.write(shortened(annotation.title, share * sheet.size_px().x - 4.0 * cap, cap), {cap, 2.0 * cap},
               Align::Left);

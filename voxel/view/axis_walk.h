@@ -11,8 +11,8 @@
 #include "voxel/view/counted_walk.h"
 
 // The common part of the thesis's walks along an axis (appendix A.2). Quadtree child i is the projection of
-// octree children front(i) and back(i) (table 4.3). The picture holds for every column the number of voxels
-// before the object's first voxel.
+// octree children front(i) and back(i) (table 4.3). The picture stores for every column the number of voxels
+// in front of the object's first voxel.
 
 namespace octotomy::voxel {
 
@@ -39,13 +39,13 @@ class AxisFrame {
     return ((quadtree_child & 1) << axes_.axis[0]) | ((quadtree_child >> 1) << axes_.axis[1]) |
            (static_cast<int>(far_half) << axes_.axis[2]);
   }
-  /// The child of a node at `level` that holds column (p, q) at a depth of d voxels.
+  /// The number of the child that contains column (p, q) at a depth of d voxels, for a node at `level`.
   int child_at(int level, int p, int q, int d) const {
     const int bit = depth_ - 1 - level;
     return child(((p >> bit) & 1) | (((q >> bit) & 1) << 1), ((d >> bit) & 1) != 0);
   }
 
-  /// Paints a square of columns.
+  /// Sets the depth d in the square of columns that a node at `level` covers.
   void paint(ColumnDepths& columns, int p, int q, int level, int d) const {
     const int edge = side_ >> level;
     for (int row = q; row < q + edge; ++row)
@@ -57,8 +57,8 @@ class AxisFrame {
   int depth_, side_;
 };
 
-/// The column map of a view. `walk(frame, root, counter, columns)` fills the columns of one object, with a
-/// node and a counter as in walk_object().
+/// Computes the column map of a view. `walk(frame, root, counter, columns)` fills the columns of one object,
+/// with the node and the counter that walk_object() passes.
 template <typename Walk>
 ColumnMap walk_columns(const std::vector<DrawnObject>& objects, const AxisView& axes, Visits* visits,
                        const Walk& walk) {

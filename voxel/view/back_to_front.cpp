@@ -7,8 +7,8 @@
 #include "voxel/view/pixel_index.h"
 
 // Back to front after Meagher 1982 (thesis 4.4.3.1). Depths need no comparison, because later nodes are
-// nearer. Objects are painted one by one and the nearest is kept, with the same result as painting all of
-// them at every node.
+// nearer. Objects are painted one by one, and the nearest surface is chosen afterwards. The result equals
+// that of painting all objects at every node.
 
 namespace octotomy::voxel {
 namespace {
@@ -96,7 +96,7 @@ DepthImage back_to_front(const std::vector<DrawnObject>& objects, const ImagePla
   const NodePolygons polygons(objects.front().octree.universe(), plane);
   DepthImage image = unlit(plane.size_px);
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    // Later nodes of an object overwrite earlier ones, so each object has its own image.
+    // Within an object later nodes overwrite earlier ones, so each object needs a separate image.
     DepthImage own = unlit(plane.size_px);
     walk_object(objects[i], image.pixels.size(), visits, [&](const auto& root, auto& counter) {
       PolygonPainter<std::decay_t<decltype(root)>, std::decay_t<decltype(counter)>>(

@@ -11,11 +11,11 @@
 namespace octotomy::voxel {
 namespace {
 
-/// A direction counts as an axis if the error across the whole universe stays below this number of voxels: a
-/// quarter of the finest step of depth that 8-bit shading shows on a slope of one.
+/// A direction counts as parallel to an axis if the deviation across the whole universe is below this number
+/// of voxels: a quarter of the finest step of depth that 8-bit shading shows on a slope of one.
 constexpr double unnoticed_voxels = 1.0 / 64.0;
 
-/// The range of an object's voxels, low and high included; empty if low > high.
+/// The range of an object's voxels along each axis, low and high included; empty if low > high.
 struct Extents {
   glm::ivec3 low{std::numeric_limits<int>::max()};
   glm::ivec3 high{std::numeric_limits<int>::min()};
@@ -34,7 +34,7 @@ void extend(Extents& extents, const Node& node, const glm::ivec3& first) {
   for (std::uint64_t children = node.full | node.partial; children != 0; children &= children - 1) {
     const int child = std::countr_zero(children);
     const glm::ivec3 low = first + child_place(child) * edge;
-    // Nodes inside the extents found so far add nothing, so only the boundary is walked.
+    // Nodes inside the extents found so far cannot enlarge these, so only nodes at the boundary are visited.
     if (extents.holds(low, low + (edge - 1))) continue;
     if ((node.full >> child) & 1) {
       extents.add(low, low + (edge - 1));

@@ -11,25 +11,26 @@
 
 namespace octotomy::voxel {
 
-/// The centre and width of a picture, in the view's millimetres.
+/// The frame of a picture: its centre and width, in the view's millimetres.
 struct Frame {
   glm::dvec2 centre_mm{0.0};
   double width_mm = 1.0;
 };
 
 /// The frame of a picture of the given size around the objects' extents in the view, with a margin of a
-/// twentieth; around the universe if all objects are empty. Precondition: at least one object, all of one
-/// universe. Cost: only nodes on the boundary of the extents are visited.
+/// twentieth; around the universe if all objects are empty. Precondition: there is at least one object, and
+/// all have one universe. Cost: only nodes on the boundary of the extents are visited.
 Frame frame_about(const std::vector<DrawnObject>& objects, const View& view, const glm::ivec2& size_px);
 
-/// An observer at a finite distance. One plane across the scene has the scale of an orthographic picture;
-/// nearer parts look larger.
+/// An observer at a finite distance. A plane across the scene appears in the scale of an orthographic
+/// picture; parts in front of the plane appear larger.
 struct Eye {
-  double distance_mm = 600.0;  ///< from the plane in true scale, above 0
+  double distance_mm = 600.0;  ///< distance from the plane in true scale, above 0
   double plane_mm = 0.0;       ///< depth of the plane in true scale
 
   double depth_mm() const { return plane_mm - distance_mm; }
-  /// The inverse of the magnification at a depth. Precondition: a depth beyond the eye.
+  /// The inverse of the magnification at a depth. Precondition: the depth lies behind the eye as seen by the
+  /// observer.
   double spread(double at_mm) const { return (at_mm - depth_mm()) / distance_mm; }
 };
 
@@ -41,11 +42,12 @@ struct ImagePlane {
   glm::ivec2 size_px{0};
   glm::dvec2 centre_mm{0.0};
   double pixel_mm = 1.0;
-  double nearest_mm = 0.0;      ///< p . look of the points of depth 0
+  double nearest_mm = 0.0;      ///< p . look for the points p of depth 0
   double depth_range_mm = 0.0;  ///< depth of the universe's farthest corner
   std::optional<Eye> eye{};     ///< none: orthographic
 
-  /// A pixel position in the view's millimetres; in perspective, on the plane in true scale (Eye::plane_mm).
+  /// Converts a pixel position to the view's millimetres; in perspective, on the plane in true scale
+  /// (Eye::plane_mm).
   glm::dvec2 view_mm(const glm::dvec2& p_px) const {
     const glm::dvec2 from_centre = p_px - glm::dvec2(size_px) * 0.5;
     return centre_mm + glm::dvec2(from_centre.x, -from_centre.y) * pixel_mm;
@@ -59,7 +61,7 @@ struct ImagePlane {
 };
 ImagePlane image_plane(const Universe& universe, const View& view, const glm::ivec2& size_px,
                        const Frame& frame);
-/// The same plane with an eye at `eye_distance_mm` from the middle of the universe.
+/// The same plane with an eye at the distance `eye_distance_mm` from the middle of the universe.
 ImagePlane seen_from(ImagePlane plane, double eye_distance_mm);
 
 /// The rays of an image plane in the universe's index space. The point of pixel position p at a depth is
@@ -70,7 +72,7 @@ struct VoxelRays {
   glm::dvec3 per_px_x{0.0};
   glm::dvec3 per_px_y{0.0};
   glm::dvec3 per_mm{0.0};
-  glm::dvec3 per_mm_px_x{0.0};  ///< change of the direction from pixel to pixel
+  glm::dvec3 per_mm_px_x{0.0};  ///< change of the direction from one pixel to the next
   glm::dvec3 per_mm_px_y{0.0};
 
   glm::dvec3 direction(const glm::dvec2& p_px) const {
@@ -80,12 +82,14 @@ struct VoxelRays {
 };
 VoxelRays voxel_rays(const Universe& universe, const ImagePlane& plane);
 
-/// The universe's axes along a view's right, up and look, in this order.
+/// Which axes of the universe are parallel to a view's right, up and look, in this order.
 struct AxisView {
   std::array<int, 3> axis{0, 1, 2};
-  std::array<bool, 3> reversed{false, false, false};  ///< the index decreases along that direction
+  /// Whether the axis's index decreases along the direction.
+  std::array<bool, 3> reversed{false, false, false};
 };
-/// None if the view is not along the axes, or the axes are not perpendicular.
+/// The universe's axes in a view. None if the view's directions are not parallel to the axes, or the axes are
+/// not perpendicular.
 std::optional<AxisView> axis_view(const Universe& universe, const View& view);
 
 }  // namespace octotomy::voxel

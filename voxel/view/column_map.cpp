@@ -13,7 +13,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// The map's columns between which a row or column of pixels lies, along one axis.
+/// For one axis of the picture, the map's columns between which each row or column of pixels lies.
 struct AxisColumns {
   int nearest = -1;  ///< -1: outside
   int low = 0, high = 0;
@@ -75,7 +75,7 @@ DepthImage picture_of(const ColumnMap& map, const AxisView& axes, const VoxelRay
         weigh(low[i.high], j.low_weight * i.high_weight);
         weigh(high[i.low], j.high_weight * i.low_weight);
         weigh(high[i.high], j.high_weight * i.high_weight);
-        // Not zero: the nearest column alone has a weight of at least a quarter.
+        // The sum of weights is not zero, because the nearest column has a weight of at least a quarter.
         pixel[x] = {answer.depth_mm + sum / weights, answer.object, answer.stepped};
       }
     }
@@ -99,7 +99,7 @@ glm::ivec3 ColumnSurface::voxel(const glm::ivec2& column, int before) const {
 }
 
 std::optional<Seen> ColumnSurface::seen_moved(const glm::ivec2& column, int before) const {
-  // A ray through the column's centre, from the universe's front face.
+  // The ray through the column's centre, starting at the universe's front face.
   const int look = axes_.axis[2];
   const double forward = axes_.reversed[2] ? -1.0 : 1.0;
   VoxelRay ray{glm::dvec3(voxel(column, 0)), glm::dvec3(0.0)};
@@ -171,7 +171,7 @@ Seen ColumnMap::seen(const glm::dvec2& column) const {
     sum += weight * other.depth_mm;
     weights += weight;
   }
-  // Not zero: the nearest column alone has a weight of at least a quarter.
+  // The sum of weights is not zero, because the nearest column has a weight of at least a quarter.
   answer.depth_mm = static_cast<float>(sum / weights);
   return answer;
 }

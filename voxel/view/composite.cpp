@@ -14,17 +14,18 @@
 #include "voxel/view/layer.h"
 #include "voxel/view/srgb.h"
 
-// 1 mark the leaves and blocks near visible samples; 2 march every ray: find the next marked leaf, take the
-// samples of its steps, light them, compose. The marks do not change the positions of the steps.
+// 1 mark the leaves and blocks near visible samples; 2 march every ray: find the next marked leaf, compute
+// the samples at the ray's steps in it, light and compose them. The marks do not change the positions of the
+// steps.
 
 namespace octotomy::voxel {
 namespace {
 
-/// A ray ends when a smaller share than this of the light from behind would come through: it changes 8-bit
-/// sRGB by less than half a step, even at black.
+/// A ray ends when a smaller share than this of the light from behind would be transmitted. Such light
+/// changes 8-bit sRGB by less than half a step, even on black.
 constexpr float unseen_share = 1.0f / 1024.0f;
 
-/// The cubes of cells that may be visible. A cell lies between the centres of eight voxels.
+/// Marks the cubes of cells that may be visible. A cell lies between the centres of eight voxels.
 class VisibleCells {
  public:
   VisibleCells(const GreyOctree& grey, const TransferTable& table) : last_cell_(grey.universe().side() - 1) {
@@ -32,7 +33,7 @@ class VisibleCells {
     while (levels_.back().side > 1) levels_.push_back(coarser(levels_.back()));
   }
 
-  /// Edge, in cells, of the largest invisible cube that holds a cell; 0 if the cell may be visible.
+  /// The edge, in cells, of the largest invisible cube that contains a cell; 0 if the cell may be visible.
   int invisible_edge(const glm::ivec3& cell) const {
     const glm::ivec3 inside = glm::clamp(cell, 0, last_cell_);
     for (std::size_t level = levels_.size(); level-- > 0;) {
@@ -54,7 +55,7 @@ class VisibleCells {
     }
   };
 
-  /// Cells of a leaf reach into the first voxels of the next leaf along each axis.
+  /// The cells of a leaf extend to the first voxels of the next leaf along each axis.
   static Level leaves(const GreyOctree& grey, const TransferTable& table) {
     const int side = std::max(1, grey.universe().side() / 4);
     const auto count = static_cast<std::size_t>(side);
@@ -98,14 +99,14 @@ class VisibleCells {
   std::vector<Level> levels_;
 };
 
-/// A pixel's ray in the universe's index space, by depth.
+/// A pixel's ray in the universe's index space, as a function of depth.
 struct Ray {
   glm::dvec3 start{0.0};
   glm::dvec3 per_mm{0.0};
   glm::dvec3 at(double depth_mm) const { return start + depth_mm * per_mm; }
 };
 
-/// Depth at which a ray leaves the aligned cube of `edge` cells a side that holds `cell`.
+/// The depth at which a ray leaves the aligned cube of `edge` cells a side that contains `cell`.
 double leaving_mm(const Ray& ray, double depth_mm, const glm::ivec3& cell, int edge) {
   double least_mm = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
@@ -156,7 +157,7 @@ class March {
  private:
   static constexpr float nothing = std::numeric_limits<float>::infinity();
 
-  /// Converts the samples of the function's points to steps of the octree.
+  /// Converts the samples at the transfer function's points to steps of the octree.
   static TransferFunction in_steps(TransferFunction transfer, const GreyOctree& grey) {
     for (TransferPoint& point : transfer.points) point.sample /= grey.step();
     return transfer;
@@ -173,7 +174,7 @@ class March {
     const int steps = static_cast<int>(std::ceil((span.far_mm - span.near_mm) / step_mm_));
     GreyCell samples(grey_);
     glm::vec3 light(0.0f);
-    float behind = 1.0f;  // transmitted share of the light from behind
+    float behind = 1.0f;  // share of the light from behind that is transmitted so far
     float half_mm = nothing;
     for (int i = 0; i < steps && behind >= unseen_share;) {
       const double from_mm = span.near_mm + i * step_mm_;
@@ -182,7 +183,7 @@ class March {
       const glm::dvec3 p = ray.at(depth_mm);
       const glm::ivec3 cell(glm::floor(p));
       if (const int edge = visible_.invisible_edge(cell); edge > 0) {
-        // Skip to the first step whose middle is not before the cube's end.
+        // Continue at the first step whose middle is not in front of the cube's end.
         const double until_mm = leaving_mm(ray, depth_mm, cell, edge);
         i = std::max(i + 1, static_cast<int>(std::ceil((until_mm - span.near_mm) / step_mm_ - 0.5 - 1e-9)));
         continue;
@@ -212,21 +213,21 @@ class March {
     return background_shows_ && !grey_.scan().contains(glm::ivec3(glm::floor(p + 0.5)));
   }
 
-  /// The cut whose face lies up to a voxel in front of a depth, and so is visible there.
+  /// The cut whose face lies at most a voxel in front of a depth, so that the face is visible there.
   const TakenSpan* cut_face(const std::vector<TakenSpan>& taken, double depth_mm) const {
     for (const TakenSpan& part : taken)
       if (depth_mm >= part.until_mm && depth_mm < part.until_mm + 2.0 * step_mm_) return &part;
     return nullptr;
   }
 
-  /// The negative gradient in LPS, in steps of the samples per millimetre: half the differences over two
-  /// voxels, mapped by the inverse transpose of the voxels' axes.
+  /// The negative gradient in LPS, in steps of the samples per millimetre. It is half the differences over
+  /// two voxels, mapped by the inverse transpose of the voxels' axes.
   glm::dvec3 outward(GreyCell& samples, const glm::dvec3& p) const {
     return lps_from_normal_ * (0.5 * samples.outward(p));
   }
 
-  /// Light from a point by Phong's model without gloss, on the cut's face or across the samples' gradient;
-  /// unshaded if there is neither.
+  /// The light from a point by Phong's model without gloss. The normal is that of the cut's face, else the
+  /// direction of the gradient; without either the point is not shaded.
   glm::vec3 lit(const glm::vec3& light, GreyCell& samples, const glm::dvec3& p, const TakenSpan* cut) const {
     if (cut != nullptr) return light * static_cast<float>(facing(cut->normal));
     const glm::dvec3 falling = outward(samples, p);
@@ -254,7 +255,7 @@ class March {
   glm::dmat4 voxel_from_lps_;
   glm::dmat3 lps_from_normal_;
   double step_mm_ = 1.0;
-  std::vector<glm::dvec3> lights_;  ///< LPS; the length is the strength
+  std::vector<glm::dvec3> lights_;  ///< in LPS; its length is the strength of the gradient
 };
 
 }  // namespace
@@ -266,7 +267,7 @@ double GradientOpacity::share(double slope_per_mm) const {
 void check(const GradientOpacity& gradient) {
   if (!(std::isfinite(gradient.opaque_per_mm) && gradient.clear_per_mm >= 0.0 &&
         gradient.opaque_per_mm > gradient.clear_per_mm))
-    throw InvalidInput("opacity by gradient rises from a change of at least 0 per mm to a larger one");
+    throw InvalidInput("opacity by gradient needs a low change of at least 0 per mm and a higher high one");
 }
 
 Composite composite(const GreyOctree& grey, const ImagePlane& plane, const CompositeOptions& options,

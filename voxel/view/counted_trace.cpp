@@ -19,7 +19,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// The thesis's ancestor array: the nodes from the root down, by level.
+/// The thesis's ancestor array: the nodes on the path from the root down, one for each level.
 template <typename Node>
 struct Ancestors {
   explicit Ancestors(const Node& root) { nodes.fill(root); }
@@ -28,7 +28,7 @@ struct Ancestors {
   std::array<Node, Universe::max_depth + 1> nodes;
 };
 
-/// Does nothing when a quadtree node is painted.
+/// Ignores that a quadtree node is painted.
 struct NoReads {
   void painted(int, int, int, int) {}
 };
@@ -54,7 +54,7 @@ class NodeTracer {
         split(path, recursion, p, q, d);
         return;
       }
-      // Step from the front face of the Empty node to the node behind it.
+      // Steps from the front face of the Empty node to the node behind this node.
       const int next = d + (frame_.side() >> level);
       if (next >= frame_.side()) return;
       const int pivot = frame_.depth() - std::bit_width(static_cast<unsigned>(d ^ next));
@@ -101,10 +101,10 @@ class NodeTracer {
   Reads reads_;
 };
 
-/// Counts the additional visits of interpolated depths (thesis 5.2.2.2, figure 5.7). The ray of a quadtree
-/// node that ends at a Full node needs the samples at that node's front and those of the node before it. Both
-/// nodes lie on the ray's path and cost no visit. A node whose samples differ is opened, and the quadtree
-/// node is split with it.
+/// Counts the additional visits of interpolated depths (thesis 5.2.2.2, figure 5.7). If the ray of a quadtree
+/// node ends at a Full node, the samples at the front of this node and those of the node before it are
+/// needed. Both nodes are on the ray's path and cost no visit. A node with different samples is opened, and
+/// the quadtree node is split too.
 class DepthReads {
  public:
   DepthReads(const GreyOctree& grey, Window16 window, const AxisFrame& frame, VisitCounter& counter)
@@ -114,7 +114,7 @@ class DepthReads {
         counter_(&counter) {}
 
   void painted(int level, int p, int q, int d) {
-    if (d == 0) return;  // no voxel lies before the surface
+    if (d == 0) return;  // the universe has no voxel in front of the surface
     split(level, p, q, d, find(level, p, q, d - 1), find(level, p, q, d));
   }
 
@@ -137,8 +137,8 @@ class DepthReads {
     return {outer.node.child(number), outer.origin + (octant << (outer.node.side_log2() - 1))};
   }
 
-  /// The node of a level, or the larger node of equal samples that contains it. Counts an indirect visit to
-  /// every node below the node on the ray's path.
+  /// The node on the given level, or the larger node of equal samples that contains it. Counts an indirect
+  /// visit to every node below the node on the ray's path.
   Place find(int level, int p, int q, int d) {
     Place place = root_;
     for (int at = 0; at < level && !is_even(place); ++at) {
@@ -173,7 +173,7 @@ class DepthReads {
   VisitCounter* counter_;
 };
 
-/// A node of a grey octree whose samples are used only if they are all equal.
+/// A node of a grey octree. Its samples can be used only if they are all equal.
 class PlainGreyNode {
  public:
   PlainGreyNode() = default;
@@ -198,8 +198,8 @@ class PlainGreyNode {
   Status status_ = Status::Empty;
 };
 
-/// Node tracing in a general view: a quadtree node's ray is a beam with a square section. Octree nodes do
-/// not project onto quadtree nodes. So a beam keeps a list of the nodes that it meets, front to back,
+/// Node tracing in a general view: a quadtree node's ray is a beam with a square section. Octree nodes do not
+/// project onto quadtree nodes. A beam therefore has a list of the nodes that it meets, front to back,
 /// instead of stepping from neighbour to neighbour.
 template <typename Node, typename Counter>
 class BeamTracer {
@@ -223,7 +223,7 @@ class BeamTracer {
     NodePolygons::Polygon polygon;
   };
 
-  /// Traces a beam. `outer` holds all nodes that the beam meets, front to back.
+  /// Traces a beam. `outer` contains all nodes that the beam meets, front to back.
   void split(const std::vector<Met>& outer, const glm::ivec2& corner_px, int side_px) {
     if (glm::any(glm::greaterThanEqual(corner_px, image_.size_px))) return;
     if (side_px == 1) {
@@ -243,8 +243,8 @@ class BeamTracer {
     for (int i = 0; i < 4; ++i) split(inner, corner_px + half * glm::ivec2(i & 1, i >> 1), half);
   }
 
-  /// Adds the parts of a node that the beam meets to `inner`; opens a Partial node larger than the beam.
-  /// Returns whether a Full node across the whole beam hides everything behind.
+  /// Adds those parts of a node that the beam meets to `inner`, and opens a Partial node larger than the
+  /// beam. Returns whether a Full node covers the whole beam and so hides everything behind it.
   bool collect(const Met& met, const glm::ivec2& corner_px, int side_px, std::vector<Met>& inner) {
     const auto where = polygons_.place(met.polygon, corner_px, side_px);
     if (where == NodePolygons::Containment::Outside) return false;
@@ -352,7 +352,7 @@ class RayCounter {
     }
   }
 
-  /// Moves into the voxel behind an Empty node; false if that leaves the universe.
+  /// Moves into the voxel behind an Empty node. Returns false if this voxel is outside the universe.
   bool step(const glm::dvec3& start, int level, glm::ivec3& voxel, int& pivot) const {
     const int edge = side_ >> level;
     const glm::ivec3 low = voxel & -edge;
@@ -408,7 +408,8 @@ DepthImage quadtree_trace(const std::vector<DrawnObject>& objects, const ImagePl
       using Root = std::decay_t<decltype(root)>;
       using Counter = std::decay_t<decltype(counter)>;
       if (root.status() == Status::Empty) return;
-      // Visits are counted for a single beam from the root; without a count, each tile has its own beam.
+      // To count visits, the whole picture is traced as one beam from the root. Otherwise each tile is traced
+      // as a separate beam.
       constexpr int tile_px = 64;
       const int beam_px = visits != nullptr ? side_px : std::min(side_px, tile_px);
       const glm::ivec2 beams = (plane.size_px + beam_px - 1) / beam_px;

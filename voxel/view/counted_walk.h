@@ -11,7 +11,8 @@
 
 namespace octotomy::voxel {
 
-/// A node of an object digitised by partial volume, as the thesis counts it.
+/// A node of an object digitised by partial volume, with the status that the thesis assigns to it when
+/// counting.
 class PartialVolumeNode {
  public:
   PartialVolumeNode() = default;
@@ -31,7 +32,7 @@ class PartialVolumeNode {
   LogicalNode inside_, touching_;
 };
 
-/// Calls `walk(root, counter)` for an object. Without `visits` the counter compiles to nothing; otherwise its
+/// Calls `walk(root, counter)` for an object. Without `visits` the counter compiles to nothing. Otherwise the
 /// counts are added to `visits`, and `root` is the root of the tree in which the object's visits are counted.
 template <typename Walk>
 void walk_object(const DrawnObject& object, std::uint64_t pixel_count, Visits* visits, const Walk& walk) {

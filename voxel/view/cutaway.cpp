@@ -13,7 +13,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// A line of sight: its point of depth 0, and its step per millimetre of depth.
+/// A line of sight: its point at depth 0, and its step per millimetre of depth, LPS.
 struct Sight {
   glm::dvec3 start_mm{0.0};
   glm::dvec3 along{0.0, 1.0, 0.0};
@@ -51,19 +51,19 @@ std::optional<TakenSpan> taken_of(const Sight& sight, const Box& box) {
   return span;
 }
 
-/// Bound on the distance along a cut's normal from the cut to a face between a kept and a removed voxel.
-/// The two centres lie on different sides of the cut, and no point of a voxel is farther from its centre than
-/// this.
+/// An upper bound of the distance, along a cut's normal, between the cut and a face that separates a kept
+/// voxel from a removed one. The two centres lie on different sides of the cut, and no point of a voxel is
+/// farther from its centre than this.
 double half_voxel_mm(const glm::dmat3& lps_from_voxel, const glm::dvec3& normal) {
   return 0.5 *
          (std::abs(glm::dot(lps_from_voxel[0], normal)) + std::abs(glm::dot(lps_from_voxel[1], normal)) +
           std::abs(glm::dot(lps_from_voxel[2], normal)));
 }
 
-/// The cut whose face a pixel shows; among several the nearest in depth.
+/// The cut whose face a pixel shows; if there are several, the nearest in depth.
 std::optional<TakenSpan> face_at(const Sight& sight, double depth_mm, const glm::dmat3& lps_from_voxel,
                                  const std::vector<Cutaway>& cuts) {
-  // Margin for the rounding of depths, which are floats of a few hundred millimetres.
+  // A margin in mm for the rounding of depths, which are floats of a few hundred millimetres.
   constexpr double rounding = 1.0 + 1e-3;
   std::optional<TakenSpan> nearest;
   for (const Cutaway& cut : cuts) {

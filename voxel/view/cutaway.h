@@ -11,11 +11,12 @@
 
 namespace octotomy::voxel {
 
-/// A part to leave out of a picture, to show the inside: everything outside a half-space, or inside a box.
+/// A part that is left out of a picture to show the inside of objects: all points outside a half-space, or
+/// all points in a box.
 using Cutaway = std::variant<HalfSpace, Box>;
 
-/// The part of a line of sight that a cut removes: this part's first and last depth, which may be infinite,
-/// and the outward normal of the cut face behind it.
+/// The part of a line of sight that a cut removes: its first and last depth, which may be infinite, and the
+/// outward normal of the cut face at its end.
 struct TakenSpan {
   double from_mm = 0.0;
   double until_mm = 0.0;
@@ -28,17 +29,17 @@ std::optional<TakenSpan> taken_span(const Cutaway& cut, const glm::dvec3& start_
 /// have unit length.
 Expression without(const Expression& object, const std::vector<Cutaway>& cuts);
 
-/// The objects without the parts that the cuts remove, as expressions (DrawnObject::unbuilt). They keep their
-/// samples. Visits to them are counted in binary octrees.
+/// The objects without the parts that the cuts remove, as expressions (DrawnObject::unbuilt). The objects
+/// retain their samples, but visits are counted in their binary octrees.
 std::vector<DrawnObject> without(const std::vector<DrawnObject>& objects, const std::vector<Cutaway>& cuts);
 
-/// Moves pixels from the voxel faces that a cut made onto the cut itself. The cut face is then flat, not
-/// stepped. A pixel shows a cut's face if its depth is a voxel's face and at most half a voxel's extent along
-/// the cut's normal away from the cut. No face between a kept and a removed voxel is farther from the cut.
-/// Faces seen at more than 76 degrees (break_mm() of depth_plane.h) stay, because there a pixel shows the
-/// voxels' sides. Returns the outward normals (right, up, look) of the moved pixels and zero elsewhere; empty
-/// without cuts. Precondition: the image is of objects of this universe, drawn without the parts that the
-/// cuts remove. Parallel over rows.
+/// Moves pixels from the voxel faces that a cut made onto the cut itself. The cut face is then flat instead
+/// of stepped. A pixel shows a cut's face if its depth is that of a voxel's face whose distance from the cut
+/// is at most half a voxel's extent along the cut's normal. No face between a kept and a removed voxel is
+/// farther from the cut. Cut faces seen at more than 76 degrees (break_mm() of depth_plane.h) are not
+/// changed, because pixels show the voxels' sides there. Returns the outward normals (right, up, look) of the
+/// moved pixels and zero elsewhere; empty without cuts. Precondition: the image is of objects of this
+/// universe, drawn without the parts that the cuts remove. Parallel over rows.
 std::vector<glm::vec3> flatten_cuts(DepthImage& image, const ImagePlane& plane, const Universe& universe,
                                     const std::vector<Cutaway>& cuts);
 

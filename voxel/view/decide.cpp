@@ -14,7 +14,7 @@
 #include "voxel/view/layer.h"
 #include "voxel/view/pixel_index.h"
 
-// For every ray: 1 take the parts that cuts remove; 2 step through the samples, past leaves in which
+// For every ray: 1 compute the parts that cuts remove; 2 step through the samples, and skip leaves in which
 // no place can meet the criterion; 3 count the stretches on which the criterion holds; 4 halve the step in
 // which the wanted stretch begins.
 
@@ -57,8 +57,9 @@ class DecidedRays {
  private:
   struct Ray {
     glm::dvec3 start{0.0};
-    glm::dvec3 per_mm{0.0};        ///< voxels per millimetre of depth
-    double mm_per_depth_mm = 1.0;  ///< above 1 with an eye at a finite distance
+    glm::dvec3 per_mm{0.0};  ///< the ray's step per millimetre of depth, in voxels
+    /// Length of the ray in mm per millimetre of depth; above 1 with an eye at a finite distance.
+    double mm_per_depth_mm = 1.0;
     std::vector<TakenSpan> taken;
     glm::dvec3 at(double depth_mm) const { return start + depth_mm * per_mm; }
   };
@@ -86,7 +87,7 @@ class DecidedRays {
     return {};
   }
 
-  /// The place between two steps where the criterion begins to hold.
+  /// The depth between two steps at which the criterion begins to hold.
   double begin_mm(const Ray& ray, GreyCell& samples, double outside_mm, double inside_mm) const {
     constexpr int halvings = 9;
     for (int i = 0; i < halvings; ++i) {
@@ -117,8 +118,8 @@ class DecidedRays {
 
   bool in_scan(const glm::dvec3& p) const { return grey_.scan().contains(glm::ivec3(glm::floor(p + 0.5))); }
 
-  /// Whether all samples on which a change at p depends belong to the scan: those of the cell and its
-  /// neighbours.
+  /// Whether all samples on which the change at p depends, those of the cell and of its neighbours, belong to
+  /// the scan.
   bool deep_in_scan(const glm::dvec3& p) const {
     const glm::ivec3 cell(glm::floor(p));
     for (int corner = 0; corner < 8; ++corner) {
@@ -149,8 +150,8 @@ class DecidedRays {
            side * (static_cast<std::size_t>(leaf.y) + side * static_cast<std::size_t>(leaf.z));
   }
 
-  /// Marks leaves by the range of the samples in them and in the 26 about them: a change of samples in a leaf
-  /// depends on samples at most two voxels away.
+  /// Marks leaves by the range of the samples in them and in their 26 neighbours: a change of samples in a
+  /// leaf depends on samples at most two voxels away.
   void mark_dull_leaves() {
     leaves_ = std::max(1, grey_.universe().side() / 4);
     const auto side = static_cast<std::size_t>(leaves_);
@@ -178,14 +179,14 @@ class DecidedRays {
 
   /// Two samples differ by at most the width of their range. The derivative compares two samples two steps
   /// apart. The gradient has three differences, each between samples that are two voxels, so at least four
-  /// steps, apart. A change across the universe's border is no surface, so samples beyond the border do not
-  /// matter.
+  /// steps, apart. A change across the universe's border is no surface, so samples beyond the border are
+  /// ignored.
   bool is_dull(const MinMax& range) const {
     if (decision_.by == Criterion::Range) return range.high < low_ || range.low > high_;
     const double most = static_cast<double>(range.high) - range.low;
     const double distance_mm =
         decision_.by == Criterion::Derivative ? 2.0 * step_mm_ : 4.0 * step_mm_ / std::sqrt(3.0);
-    // A margin of a ten-thousandth for rounding.
+    // The factor adds a margin of a ten-thousandth for rounding.
     return 1.0001 * most < steeper_ * distance_mm;
   }
 
@@ -196,7 +197,7 @@ class DecidedRays {
   glm::dmat4 voxel_from_lps_;
   glm::dmat3 lps_from_normal_;
   double step_mm_ = 1.0;
-  double low_ = 0.0, high_ = 0.0, steeper_ = 0.0;  ///< in steps of the samples
+  double low_ = 0.0, high_ = 0.0, steeper_ = 0.0;  ///< bounds of the range, in steps of the samples
   int leaves_ = 1;                                 ///< along an axis
   std::vector<std::uint8_t> dull_;
 };
@@ -204,10 +205,10 @@ class DecidedRays {
 }  // namespace
 
 void check(const Decision& decision) {
-  if (decision.peeled < 0) throw InvalidInput("the number of peeled layers is negative");
+  if (decision.peeled < 0) throw InvalidInput("the number of peeled layers must be at least 0");
   if (decision.by == Criterion::Range) {
     if (std::isnan(decision.low) || std::isnan(decision.high) || !(decision.low <= decision.high))
-      throw InvalidInput("the range of samples that ends rays is empty");
+      throw InvalidInput("the range of samples that ends rays is empty: low must be at most high");
   } else if (!(std::isfinite(decision.steeper_per_mm) && decision.steeper_per_mm > 0.0)) {
     throw InvalidInput("the change of samples that ends rays must be positive and finite");
   }
@@ -216,7 +217,8 @@ void check(const Decision& decision) {
 Picture decide(const DrawnObject& object, const RenderOptions& options, const Decision& decision) {
   check(decision);
   if (!object.grey || object.moved_from_still)
-    throw std::invalid_argument("decision functions along rays need the samples of an object at rest");
+    throw std::invalid_argument(
+        "decision functions along rays need an object with samples that was not moved");
   Picture picture = blank_picture({object}, options);
   picture.algorithm = Algorithm::RayCast;
   picture.visits.reset();

@@ -13,18 +13,19 @@
 
 namespace octotomy::voxel {
 
-/// The surface that a line of sight meets first.
+/// The surface that a line of sight meets first, or background.
 struct Seen {
-  float depth_mm = std::numeric_limits<float>::infinity();  ///< along look from the image plane
-  std::int16_t object = -1;                                 ///< index of the object, -1: background
-  bool stepped = false;  ///< the depth is that of a voxel's face, not interpolated by partial volume
+  /// Depth along look from the image plane; infinity: background.
+  float depth_mm = std::numeric_limits<float>::infinity();
+  std::int16_t object = -1;  ///< index of the object, -1: background
+  /// Whether the depth is that of a voxel's face instead of interpolated by partial volume.
+  bool stepped = false;
 
   bool lit() const { return object >= 0; }
 };
 
 /// Does not initialise pixels that are constructed without a value, so that only the threads that compute
-/// them write them. Their memory needs no constructor, because a Seen is an aggregate that may be copied
-/// bytewise.
+/// pixels write them. A Seen is an aggregate that may be copied bytewise, so its memory needs no constructor.
 struct PixelAllocator : LargeAllocator<Seen> {
   template <typename Other>
   struct rebind {  // NOLINT(readability-identifier-naming): the standard fixes this name
@@ -56,7 +57,7 @@ inline DepthImage unlit(const glm::ivec2& size_px) {
   return image;
 }
 
-/// Overwrites the pixels of `image` at which `own` is nearer. Precondition: images of one size.
+/// Overwrites the pixels of `image` at which `own` is nearer. Precondition: both images have the same size.
 inline void take_nearer(const DepthImage& own, DepthImage& image) {
   assert(own.pixels.size() == image.pixels.size());
   for (std::size_t i = 0; i < image.pixels.size(); ++i)

@@ -10,16 +10,18 @@
 namespace octotomy::voxel {
 namespace {
 
-/// Taps of smoothing on each side, a voxel apart. Four turn a slope with a step every four voxels into a
-/// plane, and flatten the waves that slices four voxels thick leave in interpolated depths.
+/// The number of taps of the smoothing on each side, a voxel apart. With four taps, a slope with a step every
+/// four voxels becomes a plane, and waves that slices four voxels thick cause in interpolated depths are
+/// flattened.
 constexpr int smoothing_taps = 4;
 
-/// One pass of smoothing along x or y: the triangle-weighted mean of pairs of pixels at equal distance on
-/// both sides that continue the surface.
+/// The parameters of one pass of smoothing along x or y: the triangle-weighted mean of pairs of pixels at
+/// equal distance on both sides that continue the surface.
 struct Smoothing {
-  std::ptrdiff_t tap = 1;  ///< values between taps
-  float limit_mm = 1.0f;   ///< largest difference to the first tap; grows in proportion for the others
-  float band_mm = 0.5f;    ///< largest shift of a depth
+  std::ptrdiff_t tap = 1;  ///< distance between taps, in values
+  /// Largest difference from the pixel to the first tap; for further taps it grows in proportion.
+  float limit_mm = 1.0f;
+  float band_mm = 0.5f;  ///< largest change of a depth
 };
 
 /// Smooths `count` values of `from` into `to`, within the band around the original depths `found`.
@@ -47,11 +49,12 @@ OCTOTOMY_VECTOR_CLONES void smooth_row(const float* __restrict from, const float
   }
 }
 
-/// Copies depths into the plane. Finds the lit part of each row and, within it, the part that shows voxels'
-/// faces.
+/// The nearest depth of a row, and the part of the row that shows voxels' faces. copy_row() copies a row's
+/// depths into the plane and also computes the lit part of the row.
 struct RowFacts {
   float nearest_mm = beyond_mm;
-  glm::ivec2 stepped{0};  ///< the first and one past the last; empty if equal
+  /// The first pixel with a voxel's face and one past the last; no such pixels if equal.
+  glm::ivec2 stepped{0};
 };
 RowFacts copy_row(const DepthImage& image, int y, float* row, glm::ivec2& lit) {
   RowFacts facts;
@@ -91,7 +94,7 @@ DepthPlane depth_plane(const DepthImage& image, const Scenery& scenery) {
       facts[number] = copy_row(image, y, row, lit);
       plane.lit[number] = lit;
     }
-    // Fills only the pixels outside the lit part, because smoothing writes the lit part.
+    // Only pixels outside the lit part are filled, because smoothing writes the lit part.
     for (Plane* const other : {&between, &plane.depth}) {
       std::fill(other->row(y) - margin, other->row(y) + lit.x, beyond_mm);
       std::fill(other->row(y) + lit.y, other->row(y) - margin + other->width, beyond_mm);

@@ -16,27 +16,29 @@ namespace octotomy::voxel {
 
 /// An object to draw. With `grey`, depth is interpolated by partial volume at `threshold`, the sample at
 /// which the object begins (thesis 5.2.2.2). Without `grey`, and on cut faces, the surface consists of
-/// voxels' faces. Precondition: `grey` is of the octree's universe, or `moved_from_still` is set.
+/// voxels' faces. Precondition: `grey` has the octree's universe, or `moved_from_still` is set.
 struct DrawnObject {
   std::string name;
   Octree octree;
   glm::vec3 colour{0.93f, 0.89f, 0.80f};  ///< sRGB, 0..1
   std::optional<GreyOctree> grey{};
   double threshold = 0.0;
-  /// The motion, affine, LPS to LPS, from the object's place in its samples to its place in the picture.
+  /// The affine map, LPS to LPS, from the object's position in its samples to its position in the picture;
+  /// none: not moved.
   std::optional<glm::dmat4> moved_from_still{};
   float opacity = 1.0f;  ///< 0: hidden, 1: opaque
   /// Counts visits in the min-max octree of `grey` (samples from the threshold up) instead of in the binary
-  /// octree. Precondition if set: `octree` holds the voxels with these samples.
+  /// octree. Precondition if set: `octree` consists of the voxels with these samples.
   bool counted_in_grey = false;
-  /// For an object digitised by partial volume: the voxels wholly inside it, while `octree` holds all voxels
-  /// that it touches. Visits are then counted in the thesis's tree for such objects (table 3.1): a node is
-  /// Full only if wholly inside, and boundary voxels are Full without being merged.
+  /// For an object digitised by partial volume: the voxels wholly inside it, whereas `octree` contains all
+  /// voxels that the object touches. Visits are then counted in the thesis's tree for such objects (table
+  /// 3.1): a node is Full only if it is wholly inside; boundary voxels count as Full but are not merged.
   std::optional<Octree> inside{};
-  /// Colours the surface instead of `colour` in shadings that use Paint (shade.h).
+  /// Replaces `colour` on the surface in shadings that use Paint (shade.h).
   std::shared_ptr<const SurfaceScalar> scalar{};
   /// Draws the voxels of this expression without building their octree: node tracing evaluates the expression
-  /// only where it is visible. `octree` is then empty and of the universe to draw in.
+  /// only where it is visible. `octree` must then be empty and have the universe in which the object is
+  /// drawn.
   std::optional<Expression> unbuilt{};
 
   /// Maps the octree's voxel indices to those of the object's samples; none if both are the same.
@@ -48,7 +50,7 @@ struct DrawnObject {
   }
 };
 
-/// The objects, with an octree built for each unbuilt one. Cost: combine() for each of these.
+/// The objects, in which each unbuilt one is replaced by its octree. Cost: combine() for each of them.
 std::vector<DrawnObject> built(std::vector<DrawnObject> objects);
 
 }  // namespace octotomy::voxel

@@ -11,7 +11,7 @@
 // Front to back after Meagher 1982 and Amans 1986 (thesis 4.4.3.2, A.2). Departures: a covered quadtree node
 // has one status for both cases of the thesis, a single colour (Full) or several (Masked); each level of the
 // quadtree is a flat array, so that no node is created; for general views a quadtree node counts its
-// uncovered pixels, so that condensing it needs no look at its children.
+// uncovered pixels, so that it can be condensed without reading its children.
 
 namespace octotomy::voxel {
 namespace {
@@ -25,8 +25,8 @@ class AxisWalk {
       covers_.emplace_back(std::size_t{1} << (2 * level), Status::Empty);
   }
 
-  /// `is_virtual`: the octree node is homogeneous and above the quadtree node's level; its visit is counted
-  /// already.
+  /// `is_virtual` means that the octree node is homogeneous and lies above the quadtree node's level, so that
+  /// its visit was counted before.
   void walk(const Node& node, int level, int p, int q, int d, bool is_virtual) {
     const Status status = node.status();
     Status& cover = at(level, p, q);
@@ -85,9 +85,9 @@ class Screen {
 
   int levels() const { return levels_; }
   int side_px(int level) const { return 1 << (levels_ - level); }
-  /// The top left pixel of a quadtree node, in the picture's pixels.
+  /// The top left pixel of a quadtree node, in pixels of the picture.
   glm::ivec2 corner(int level, const glm::ivec2& node) const { return first_ + node * side_px(level); }
-  /// The quadtree node of a level that holds a pixel position, clamped to the root.
+  /// The quadtree node on a level that contains a pixel position; positions are clamped to the root.
   glm::ivec2 node_at(int level, const glm::dvec2& p_px) const {
     const glm::dvec2 p = (p_px - glm::dvec2(first_)) / double(side_px(level));
     return glm::clamp(glm::ivec2(glm::floor(p)), 0, (1 << level) - 1);
@@ -107,7 +107,7 @@ class Screen {
   }
   void count(const glm::ivec2& pixel, int by) {
     const glm::ivec2 p = pixel - first_;
-    // Pixels beyond the root show no part of the universe.
+    // Pixels outside the root show no part of the universe.
     if (p.x < 0 || p.y < 0 || ((p.x | p.y) >> levels_) != 0) return;
     for (int level = 0; level <= levels_; ++level)
       dark_[static_cast<std::size_t>(level)][index(level, p >> (levels_ - level))] += by;
@@ -116,7 +116,7 @@ class Screen {
   DepthImage& image_;
   glm::ivec2 first_;
   int levels_ = 0;
-  std::vector<std::vector<std::int32_t>> dark_;  ///< number of uncovered pixels, by level
+  std::vector<std::vector<std::int32_t>> dark_;  ///< number of uncovered pixels of each node, by level
 };
 
 template <typename Node, typename Counter>
@@ -150,7 +150,7 @@ class PolygonWalk {
   }
 
  private:
-  /// The quadtree nodes, at most four of the octree node's level, that the polygon's rectangle touches.
+  /// The quadtree nodes on the octree node's level, at most four, that the polygon's rectangle touches.
   template <typename Visit>
   void for_each_covering(const NodePolygons::Polygon& polygon, int octree_level, const Visit& visit) const {
     const int level = std::min(octree_level, screen_.levels());

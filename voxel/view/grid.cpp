@@ -18,7 +18,7 @@ constexpr double nearest_lines_px = 4.0;
 const glm::vec3 ink(0.05f, 0.40f, 0.85f);
 constexpr float line_strength = 0.32f, labelled_strength = 0.62f;
 
-/// Height of letters, the same as that of annotations on pictures of this size.
+/// The height of letters, equal to that of annotations on pictures of this size.
 double cap_px(const glm::ivec2& size_px) {
   return std::max(7.0, std::min(size_px.x, size_px.y) / 50.0);
 }
@@ -28,7 +28,7 @@ struct Line {
   int pixel;  ///< the column or row in which the line lies
 };
 
-/// The lines across u (axis 0, columns) or v (axis 1, rows), in growing order of pixels.
+/// The lines across u (axis 0, columns) or v (axis 1, rows), in ascending order of pixels.
 std::vector<Line> lines_of(const glm::ivec2& size_px, const Grid& grid, int axis) {
   const double along = axis == 0 ? grid.pixel_mm : -grid.pixel_mm;
   const double from_mm = grid.corner_mm[axis], to_mm = from_mm + along * size_px[axis];
@@ -50,7 +50,8 @@ std::string text_of(double mm) {
   return text;
 }
 
-/// Every n-th line has a label. Returns the n that leaves at least a letter's width between labels.
+/// Every n-th line gets a label. Returns the least n for which there is at least a letter's width between
+/// labels.
 int labelled_every(const std::vector<Line>& lines, const Grid& grid, double cap, int axis) {
   double room_px = 1.8 * cap;
   if (axis == 0)
@@ -126,7 +127,7 @@ glm::ivec2 add_grid_margin(std::vector<std::uint8_t>& rgb, const glm::ivec2& siz
       const std::string text = text_of(column.at_mm);
       const double half = 0.5 * text_width_px(text, cap), x = column.pixel + 0.5;
       draw_lines(canvas, {{{x, below}, {x, below + 0.5 * cap}}}, tick);
-      // Skips a label at an edge, where it would be cut off or overlap the unit.
+      // Skips a label at an edge if it would be cut off or overlap the unit.
       if (x >= half && x + half + 0.3 * cap <= right) write(text, {x - half, below + 2.0 * cap});
     }
   for (const Line& row : rows)
@@ -135,7 +136,7 @@ glm::ivec2 add_grid_margin(std::vector<std::uint8_t>& rgb, const glm::ivec2& siz
       draw_lines(canvas, {{{right, y}, {right + 0.5 * cap, y}}}, tick);
       write(text_of(row.at_mm), {right + 0.8 * cap, std::max(cap + 1.0, y + 0.5 * cap)});
     }
-  // Below the labels of the rows, right of the labels of the columns.
+  // The unit is drawn below the labels of the rows and right of the labels of the columns.
   write("mm", {right + 0.8 * cap, below + 2.0 * cap});
   return whole_px;
 }

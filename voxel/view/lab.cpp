@@ -8,7 +8,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// CIE XYZ of linear sRGB, by columns: red, green, blue.
+/// The matrix from linear sRGB to CIE XYZ; its columns are red, green and blue.
 const glm::dmat3 xyz_from_linear{
     {0.4124564, 0.2126729, 0.0193339}, {0.3575761, 0.7151522, 0.1191920}, {0.1804375, 0.0721750, 0.9503041}};
 

@@ -24,7 +24,8 @@
 namespace octotomy::voxel {
 namespace {
 
-/// The span of the depths at a pixel and its neighbours, widened by a surface's extent within a pixel.
+/// The span of the depths at a pixel and its neighbours, extended by the depth that a surface spans within a
+/// pixel.
 DepthSpan span_about(const DepthImage& image, const glm::ivec2& pixel, double reach_mm) {
   DepthSpan span{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   const glm::ivec2 first = glm::max(pixel - 1, glm::ivec2(0));
@@ -39,8 +40,8 @@ DepthSpan span_about(const DepthImage& image, const glm::ivec2& pixel, double re
   return span;
 }
 
-/// Blends four parts of each edge pixel. Traces a part only between the depths of the surrounding pixels,
-/// because no shaded pixel has the colour of a surface elsewhere.
+/// Blends four parts of each edge pixel. A part is traced only between the depths of the surrounding pixels,
+/// because for a surface elsewhere no shaded pixel has the colour.
 template <typename At>
 void antialias(const DepthImage& image, const Scenery& scenery, const At& seen_at,
                std::vector<std::uint8_t>& rgb) {
@@ -63,7 +64,7 @@ void antialias(const DepthImage& image, const Scenery& scenery, const At& seen_a
       rgb[3 * std::size_t{edges[i]} + channel] = blended[i][channel];
 }
 
-/// A depth image, and a function that traces more of the same scene.
+/// A depth image, and a function that traces single rays of the same scene.
 struct Drawing {
   DepthImage image;
   SeenAt seen_at;
@@ -141,7 +142,7 @@ Scenery scenery_of(const std::vector<DrawnObject>& objects, const ImagePlane& pl
 
 /// The sample of the voxel visible at a point of a surface or cut face, read at the point or at the voxel's
 /// centre. A surface runs between voxels' centres, so the voxel may begin up to a voxel's diagonal behind the
-/// point. Searches for it along the view direction, `ahead`, in steps of a quarter voxel.
+/// point. It is searched for along the view direction, `ahead`, in steps of a quarter voxel.
 std::optional<double> sample_behind(const GreyOwners& samples, const glm::dvec3& p_voxel,
                                     const glm::dvec3& ahead, bool at_centre) {
   constexpr int most_steps = 8;
@@ -154,13 +155,13 @@ std::optional<double> sample_behind(const GreyOwners& samples, const glm::dvec3&
   return std::nullopt;
 }
 
-/// A sample between black and white as a grey tone.
+/// The grey tone of a sample between black and white.
 glm::vec3 tone_of(const CutTones& tones, double sample) {
   return glm::vec3(
       static_cast<float>(std::clamp((sample - tones.black) / (tones.white - tones.black), 0.0, 1.0)));
 }
 
-/// The light that remains at a depth: the farthest pixels keep a tenth, as in Style::Depth.
+/// The share of light that remains at a depth. The farthest pixels keep a tenth, as in Style::Depth.
 class Attenuation {
  public:
   explicit Attenuation(const DepthImage& image) {
@@ -182,7 +183,7 @@ class Attenuation {
   float near_mm_ = std::numeric_limits<float>::infinity(), far_mm_ = -near_mm_;
 };
 
-/// Paints a pixel that shows a sample (thesis 5.2.1.2).
+/// Sets the paint of a pixel that shows a sample (thesis 5.2.1.2).
 void paint_density(const Densities& densities, double sample, const Attenuation* attenuation, float depth_mm,
                    Paint::Kind& kind, glm::vec3& colour) {
   const auto range =
@@ -198,7 +199,7 @@ void paint_density(const Densities& densities, double sample, const Attenuation*
   }
 }
 
-/// The paint of samples on cut faces, and of scalars and samples on surfaces.
+/// The paint of all pixels: samples on cut faces, and scalars or samples on surfaces.
 Paint paint_of(const DepthImage& image, const std::vector<DrawnObject>& objects, const ImagePlane& plane,
                const RenderOptions& options, const Scenery& scenery,
                const std::vector<glm::vec3>& cut_normals) {
@@ -249,7 +250,7 @@ Paint paint_of(const DepthImage& image, const std::vector<DrawnObject>& objects,
   return paint;
 }
 
-/// Whether the shading reads voxels around the visible ones.
+/// Whether the shading reads voxels around the visible voxels.
 bool reads_voxels(Shading shading) {
   return shading == Shading::Context || shading == Shading::GreyGradient;
 }
@@ -302,7 +303,7 @@ DrawnObject as_shaded(const DrawnObject& object, Shading shading) {
 }
 
 void number_objects(DepthImage& image, const std::vector<std::int16_t>& numbers) {
-  // In most pictures each object already has its own number.
+  // In most pictures each object already has the right number.
   std::vector<std::int16_t> same(numbers.size());
   std::iota(same.begin(), same.end(), std::int16_t{0});
   if (numbers == same) return;

@@ -8,13 +8,12 @@
 
 #include "voxel/space/vector_clones.h"
 
-// The search of ray_surface.cpp on vectors of rays:
-// 1 copy the samples about the leaf in fours (LeafSurface::fours_); 2 interpolate them at the entries; 3 take
-// the voxel's face where the object was cut; 4 probe along the other rays until their sample crosses the
-// threshold; 5 interpolate the crossing. All rays execute the same steps; a step that a ray does not need has
-// no effect on it.
+// The search of ray_surface.cpp, for several rays at once in vectors: 1 copy the samples about the leaf in
+// fours (LeafSurface::fours_); 2 interpolate them at the entries; 3 choose the voxel's face where the object
+// was cut; 4 probe along the other rays until their sample crosses the threshold; 5 interpolate the crossing.
+// All rays execute the same steps; a step that a ray does not need has no effect on it.
 
-// Vectors are passed between functions of this file alone, all of them inlined.
+// Vectors are passed only between functions of this file, which are all inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace octotomy::voxel {
@@ -24,10 +23,10 @@ constexpr int lanes = 8;
 constexpr int row = LeafSurface::side;
 constexpr int layer = row * row;
 
-/// The sample that is read for voxels beyond the universe, which therefore count as cut away.
+/// The sample that is used for voxels beyond the universe, so that these count as cut away.
 constexpr std::int16_t beyond = std::numeric_limits<std::int16_t>::max();
 
-// Vectors of rays. A comparison gives -1 where it holds.
+// Vectors with one number for each ray. A comparison yields -1 for rays for which it is true.
 using Float = float __attribute__((vector_size(4 * lanes)));
 using Int = std::int32_t __attribute__((vector_size(4 * lanes)));
 using Double4 = double __attribute__((vector_size(32)));
@@ -69,16 +68,16 @@ struct Way {
   float threshold = 0.0f;
 };
 
-/// The samples about a leaf.
+/// The samples around a leaf.
 struct Leaf {
   const std::uint64_t* fours = nullptr;
-  Int first[3];                   ///< voxel of the first four
+  Int first[3];                   ///< voxel to which the first entry of `fours` belongs
   Int low_cell[3], high_cell[3];  ///< range of cells whose fours are in memory
   std::int32_t corner = 0;        ///< number of the leaf's first voxel in the mirrored frame
-  std::int32_t stride[3];         ///< from a voxel to the next one along an axis
+  std::int32_t stride[3];         ///< distance in `fours` from a voxel to the next one along an axis
 };
 
-/// The samples of a moved object, among which its rays run.
+/// The samples of a moved object, and the map from its voxels to these samples.
 struct StillSamples {
   const GreyOctree* grey = nullptr;
   glm::dmat4 still_from_voxel{1.0};
@@ -105,14 +104,14 @@ struct Fours {
   using Long4 = std::uint64_t __attribute__((vector_size(4 * lanes)));
   alignas(64) std::uint32_t at[lanes];
   store(numbers, at);
-  // In this order both shuffles stay within halves of vectors.
+  // In this order both shuffles exchange only numbers within the same half of a vector.
   const auto low = reinterpret_cast<Int>(Long4{fours[at[0]], fours[at[1]], fours[at[4]], fours[at[5]]});
   const auto high = reinterpret_cast<Int>(Long4{fours[at[2]], fours[at[3]], fours[at[6]], fours[at[7]]});
   return {{__builtin_shufflevector(low, high, 0, 2, 8, 10, 4, 6, 12, 14)},
           {__builtin_shufflevector(low, high, 1, 3, 9, 11, 5, 7, 13, 15)}};
 }
 
-/// Interpolates from the eight samples about positions, numbered x + 2y + 4z, as RaySamples does.
+/// Interpolates, as RaySamples does, from the eight samples around each position, numbered x + 2y + 4z.
 [[gnu::always_inline]] inline Float mixed(const Float corners[8], const Float t[3]) {
   const auto mix = [](const Float& from, const Float& to, const Float& share) __attribute__((always_inline)) {
     return from + (to - from) * share;
@@ -122,8 +121,8 @@ struct Fours {
   return mix(left, right, t[0]);
 }
 
-/// The cell, along an axis, of positions at a distance from the entry, and the positions' places in their
-/// cells.
+/// For positions at a distance from the rays' entries, along one axis: the cells that contain them, and their
+/// places within the cells.
 [[gnu::always_inline]] inline Int cell_of(const Way& way, const Origins& origins, int axis,
                                           const Float& distance_mm, const Int& low, const Int& high,
                                           Float& t) {
@@ -133,7 +132,7 @@ struct Fours {
   return cell;
 }
 
-/// Interpolates at a distance from the entry.
+/// Interpolates at the positions at a distance from the rays' entries.
 [[gnu::always_inline]] inline Float interpolate(const Way& way, const Leaf& leaf, const Origins& origins,
                                                 const Float& distance_mm) {
   Float t[3];
@@ -163,7 +162,7 @@ struct Fours {
     store(cell_of(way, origins, axis, distance_mm, low, high, t[axis]), cells[axis]);
   for (int i = 0; i < lanes; ++i) {
     const glm::ivec3 cell(cells[0][i], cells[1][i], cells[2][i]);
-    // What a coordinate adds to the number of a brick's sample. Samples are numbered by leaves, then by
+    // The summand of a coordinate in the number of a brick's sample. Samples are numbered by leaves, then by
     // voxels of a leaf, each in the order x + 4y + 16z.
     const auto along = [](int at) { return ((at >> 2) & 3) * 64 + (at & 3); };
     const int number[3][2] = {{along(cell.x), along(cell.x + 1)},
@@ -185,7 +184,7 @@ struct Fours {
   return mixed(corners, t);
 }
 
-/// Positions near the entries of the rays from number `from` on.
+/// The positions near the entries of a vector's rays, from ray number `from` on.
 [[gnu::always_inline]] inline Origins origins_of(const Way& way, const RayBatch& batch, int from,
                                                  const Double4 start[3][2]) {
   Origins origins;
@@ -193,7 +192,7 @@ struct Fours {
     Double4 first[2], p[2];
     for (int half = 0; half < 2; ++half) {
       p[half] = start[axis][half] + load<Double4>(batch.enter_mm.data() + from + 4 * half) * way.per_mm[axis];
-      // Computes the floor: subtracts one where the conversion rounded up.
+      // Computes the floor: one is subtracted if the conversion rounded up.
       const Double4 whole = __builtin_convertvector(__builtin_convertvector(p[half], Int4), Double4);
       constexpr double reach = 8.0;
       first[half] = (whole > p[half] ? whole - 1.0 : whole) - reach;
@@ -205,14 +204,14 @@ struct Fours {
   return origins;
 }
 
-/// The search along one vector of rays.
+/// The state of the search along the rays of one vector.
 struct Search {
   Origins origins;
-  Int outside;            ///< at the entry
-  Int faces;              ///< rays that meet their voxel's face
-  Int crossed;            ///< rays whose surface lies between their last two probes; the entry counts as a
-                          ///< probe
-  Float near_mm, far_mm;  ///< from the entry to these two probes
+  Int outside;  ///< rays that are outside the surface at their entry
+  Int faces;    ///< rays whose surface is their voxel's face
+  /// Rays whose surface lies between their last two probes; the entry counts as a probe.
+  Int crossed;
+  Float near_mm, far_mm;        ///< distances from the entry to these two probes
   Float near_value, far_value;  ///< samples at these two probes
 };
 
@@ -258,7 +257,8 @@ struct Search {
   search.faces = Int{};
 }
 
-/// Step 4: from outside, forward over the voxel in two steps; from inside, back over two voxels in four.
+/// Step 4: a ray that enters outside the surface is probed forward through the voxel in two steps; a ray that
+/// enters inside is probed back over two voxels in four steps.
 template <typename Samples>
 [[gnu::always_inline]] inline void probe(const Way& way, const Samples& samples, const RayBatch& batch,
                                          int from, Search& search) {
@@ -301,7 +301,7 @@ template <typename Samples>
   Float below_value = outside ? search.near_value : search.far_value;
   Float above_mm = outside ? search.far_mm : search.near_mm;
   Float above_value = outside ? search.far_value : search.near_value;
-  // A ray without a crossing stays at its entry.
+  // The distance of a ray without a crossing is 0.
   const Float middle_mm = search.crossed ? below_mm + (above_mm - below_mm) * (threshold - below_value) /
                                                           (above_value - below_value)
                                          : Float{};
@@ -317,7 +317,7 @@ template <typename Samples>
   return search.crossed ? crossing_mm : Float{};
 }
 
-constexpr std::int32_t nothing = 0, smooth = 1, face = 2;  // kind of the surface that a ray meets
+constexpr std::int32_t nothing = 0, smooth = 1, face = 2;  // kind of surface that a ray meets
 
 /// Executes each of steps 2 to 5 for all vectors of a batch before the next step, so that the processor can
 /// overlap the work on several vectors.
@@ -356,23 +356,24 @@ std::uint64_t row_of(const std::int16_t* leaf, int y, int z) {
   return four;
 }
 
-/// Number of voxels towards the eye, along one axis, on which a surface in a leaf may depend. The ray enters
-/// a voxel at most half a voxel in front of its centre. From there the search goes back two voxels along the
-/// ray, which is `share` times two along the axis. The margin is far beyond the rounding of positions.
+/// The number of voxels in front of a leaf, along one axis, on which a surface in the leaf may depend. The
+/// ray enters a voxel at most half a voxel in front of its centre. From there the search goes back by two
+/// voxels along the ray, which are 2 * `share` voxels along the axis. The margin is much larger than the
+/// rounding of positions.
 int in_front(double share) {
   constexpr double margin = 1.0 / 64.0;
   return std::min(row - 5, static_cast<int>(std::ceil(0.5 + 2.0 * std::abs(share) + margin)));
 }
 
-/// The samples of a row of `row` voxels, lowest first, and the next of each along x. The last voxel has no
-/// next one and is paired with itself.
+/// For each voxel of a row of `row` voxels, its sample and the next one along x. The last voxel has no next
+/// one and is paired with itself.
 struct RowOfPairs {
   using Short8 = std::int16_t __attribute__((vector_size(16)));
   Short8 low, high;  ///< four pairs each
 
   RowOfPairs(std::uint64_t first, std::uint64_t last) {
     using Long2 = std::uint64_t __attribute__((vector_size(16)));
-    // Combines them in registers, because two writes of eight bytes delay a read of sixteen.
+    // Pairs are combined in registers, because a read of sixteen bytes is delayed after two writes of eight.
     const auto left = reinterpret_cast<Short8>(Long2{first, last});
     const Short8 right = __builtin_shufflevector(left, left, 1, 2, 3, 4, 5, 6, 7, 7);
     low = __builtin_shufflevector(left, right, 0, 8, 1, 9, 2, 10, 3, 11);
@@ -406,8 +407,9 @@ void write_cube(const glm::ivec3& from, const glm::ivec3& until, const RowAt& ro
   }
 }
 
-/// Writes the fours of a cube, as write_cube(). The cube's first voxel lies one to three voxels behind a
-/// leaf's first along each axis. Precondition: the three leaves along each axis lie within the universe.
+/// Writes the fours of a cube as write_cube() does. Along each axis the cube's first voxel lies one to three
+/// voxels behind a leaf's first voxel. Precondition: the three leaves along each axis lie within the
+/// universe.
 void write_leaves(const GreyOctree& grey, const glm::ivec3& first, const glm::ivec3& from,
                   const glm::ivec3& until, std::uint64_t* fours) {
   const glm::ivec3 first_brick = first >> 4;
@@ -450,7 +452,7 @@ LeafSurface::LeafSurface(const DrawnObject& object, const glm::dvec3& per_mm, co
       half_voxel_mm_(static_cast<float>(0.5 / glm::length(per_mm_))),
       threshold_(static_cast<float>(object.grey->in_steps(object.threshold))),
       universe_side_(object.grey->universe().side()) {
-  // Along a flipped axis, voxels in front of the leaf have larger indices.
+  // Along a mirrored axis, voxels in front of the leaf have larger indices.
   for (int axis = 0; axis < 3; ++axis) {
     const int unused = side - 5 - in_front(per_mm_[axis] / glm::length(per_mm_));
     (mirror.flipped[axis] != 0 ? until_ : from_)[axis] += mirror.flipped[axis] != 0 ? -unused : unused;
@@ -494,7 +496,7 @@ void LeafSurface::find(const RayBatch& batch, Found& found) {
       leaf.low_cell[axis] = Int{} + std::max(first_[axis] + from_[axis], 0);
       leaf.high_cell[axis] = Int{} + std::min(first_[axis] + until_[axis], universe_side_) - 2;
     }
-    // Along a flipped axis voxels count down.
+    // Along a mirrored axis voxels are counted down.
     const glm::ivec3 stride = glm::ivec3(1, row, layer) * (1 - 2 * mirror_.flipped);
     const glm::ivec3 corner = native_ - first_ + 3 * mirror_.flipped;
     leaf.corner = corner.x + row * corner.y + layer * corner.z;

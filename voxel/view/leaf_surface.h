@@ -13,28 +13,29 @@
 
 namespace octotomy::voxel {
 
-/// Finds an object's surface near the voxels of a leaf that parallel rays pass, for many rays at once: the
-/// result for each is bit for bit that of GreySurface::seen(). Keeps the samples about the last leaf. For one
-/// thread.
+/// Computes an object's surface near the voxels of a leaf that parallel rays pass, for many rays at once.
+/// Each result has the same bits as that of GreySurface::seen(). Caches the samples around the last leaf. To
+/// be used by one thread at a time.
 class LeafSurface {
  public:
-  /// For rays of `per_mm` voxels per millimetre of depth. Preconditions: the object has its samples; the
-  /// mirror is that of the rays. Refers to the object's samples and the mirror.
+  /// For rays of `per_mm` voxels per millimetre of depth. Preconditions: the object has samples; the mirror
+  /// is that of the rays. The object's samples and the mirror must outlive this object.
   LeafSurface(const DrawnObject& object, const glm::dvec3& per_mm, const Mirror& mirror);
 
-  /// What the rays of a batch see.
+  /// The surfaces that the rays of a batch meet.
   struct Found {
-    RayBatch::Rays lit = 0;      ///< the rays that meet the surface
+    RayBatch::Rays lit = 0;      ///< the rays that meet a surface
     RayBatch::Rays stepped = 0;  ///< the lit rays whose surface is the voxel's face
     RayBatch::ByRay<float> depth_mm;
   };
-  /// Finds the surface of every ray in the batch. Precondition: all of them pass their voxels. For a moved
+  /// Computes the surface of every ray in the batch. Precondition: all of them pass their voxels. For a moved
   /// object, only the rays' starts and the depths of their voxels are used, and the voxels need not be of one
   /// leaf.
   void find(const RayBatch& batch, Found& found);
 
-  /// Samples that the surface in a leaf may depend on: from three voxels in front of the leaf to one behind,
-  /// because a surface is sought up to two voxels in front of a voxel (ray_surface.cpp).
+  /// The number of samples, along each axis, on which the surface in a leaf may depend: from three voxels in
+  /// front of the leaf to one behind, because a surface is searched for up to two voxels in front of a voxel
+  /// (ray_surface.cpp).
   static constexpr int side = 8;
 
  private:
@@ -43,8 +44,9 @@ class LeafSurface {
   const GreyOctree& grey_;
   const Mirror& mirror_;
   std::optional<glm::dmat4> still_from_voxel_;  ///< DrawnObject::still_from_voxel()
-  glm::dvec3 per_mm_;                           ///< of the rays, in voxels of the samples
-  float half_voxel_mm_;                         ///< along a ray, in depth
+  /// Step of the rays per millimetre of depth, in voxels of the samples.
+  glm::dvec3 per_mm_;
+  float half_voxel_mm_;  ///< depth that half a voxel's length along a ray spans
   float threshold_;
   int universe_side_;
   glm::ivec3 leaf_{std::numeric_limits<int>::min()};

@@ -7,10 +7,10 @@
 namespace octotomy::voxel {
 namespace {
 
-// A glyph is a list of strokes, separated by spaces. A stroke is a list of points of two symbols, x then y,
-// each 0..9 or from a = 10 on. Straight lines join the points. A point after a '*' is the control point of a
-// quadratic curve between its neighbours. The baseline is y = 4; small letters reach 10, capitals 13, and
-// descenders begin at 0.
+// A glyph is a list of strokes, separated by spaces. A stroke is a list of points. A point has two symbols, x
+// then y, each 0..9, or a letter from a = 10 on. Straight lines join the points. A point after a '*' is the
+// control point of a quadratic curve between its neighbours. The baseline is y = 4; small letters reach 10,
+// capitals 13, and descenders begin at 0.
 constexpr double baseline = 4.0;
 constexpr double cap_units = 9.0;
 constexpr double gap_units = 2.5;    ///< between letters
@@ -132,7 +132,7 @@ double units_of(char symbol) {
   return symbol <= '9' ? symbol - '0' : symbol - 'a' + 10;
 }
 
-/// The strokes of a glyph, in units from the left end of the baseline, y up.
+/// The strokes of a glyph, in units of the glyph's grid, counted from the left end of the baseline, y up.
 void add_strokes(const Glyph& glyph, std::vector<Polyline>& strokes) {
   const std::string_view text = glyph.strokes;
   Polyline stroke;

@@ -27,14 +27,14 @@ glm::dvec2 pixel_position(const ImagePlane& plane, const glm::dvec3& p_mm) {
 
 SpaceMark mark_between(const SightLine& a, const SightLine& b) {
   assert(std::abs(glm::length(a.direction) - 1.0) < 1e-9 && std::abs(glm::length(b.direction) - 1.0) < 1e-9);
-  // The nearest points of the lines differ by a multiple of this normal, whose length is the sine of the
-  // angle between the lines.
+  // The vector between the nearest points of the lines is a multiple of this normal. The normal's length is
+  // the sine of the angle between the lines.
   const glm::dvec3 normal = glm::cross(a.direction, b.direction);
   const double square = glm::dot(normal, normal);
   constexpr double least_sine = 0.1;
   if (!(square >= least_sine * least_sine))
     throw InvalidInput(
-        "the two views have almost the same direction, so that marks in them do not fix the depth of a "
+        "the two views have almost the same direction, so that marks in them do not determine the depth of a "
         "point: "
         "mark in views at least 6 degrees apart, best at right angles");
   const glm::dvec3 between = b.start_mm - a.start_mm;

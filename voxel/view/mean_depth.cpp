@@ -12,7 +12,7 @@ namespace {
 
 constexpr int cell_px = 4;
 
-/// The cell whose centre precedes a pixel's, and the weight of the next cell.
+/// The last cell whose centre is not behind a pixel's centre, and the weight of the next cell.
 std::pair<int, float> between_cells(int pixel, int cells) {
   const float at = std::clamp((static_cast<float>(pixel) + 0.5f) / static_cast<float>(cell_px) - 0.5f, 0.0f,
                               static_cast<float>(cells - 1));
@@ -49,7 +49,7 @@ MeanDepth::MeanDepth(const DepthPlane& plane, const glm::ivec2& size_px)
   }
 }
 
-/// Sums over 2 reach + 1 cells along x, then y.
+/// Sums values over 2 reach + 1 cells along x, then along y.
 void MeanDepth::blur(std::vector<float>& values, int reach) const {
   std::vector<float> between(values.size(), 0.0f);
   const auto each_row = [&](const auto& row) {
@@ -80,8 +80,8 @@ void MeanDepth::blur(std::vector<float>& values, int reach) const {
 
 void MeanDepth::mean_row(int y, const glm::ivec2& span, std::vector<float>& to) const {
   assert(span.x >= 0 && (span.y <= span.x || static_cast<std::size_t>(span.y) <= to.size()));
-  // Bilinear between the cells' centres, sums and counts separately, so that cells without lit pixels have no
-  // weight.
+  // Interpolates bilinearly between the cells' centres, separately for sums and for counts, so that cells
+  // without lit pixels have no weight.
   const auto [j, t] = between_cells(y, cells_.y);
   const int above = std::min(j + 1, cells_.y - 1);
   thread_local std::vector<float> sums, lit;

@@ -10,9 +10,9 @@
 
 namespace octotomy::voxel {
 
-/// The convex polygons of octree nodes in one orthographic view (thesis 4.4.3.1): intersections of pairs of
-/// half planes a x + b y + c >= 0 across the image of each axis, six for general views, four along an axis. a
-/// and b are the same for all nodes; c follows from centre and edge.
+/// The convex polygons of octree nodes in one orthographic view (thesis 4.4.3.1): intersections of half
+/// planes a x + b y + c >= 0, two for each axis, across the axis's image. There are six in general views and
+/// four in views along an axis. a and b are the same for all nodes; c follows from centre and edge.
 class NodePolygons {
  public:
   NodePolygons(const Universe& universe, const ImagePlane& plane)
@@ -21,7 +21,7 @@ class NodePolygons {
     for (int axis = 0; axis < 3; ++axis) {
       const glm::dvec2 along(image_from_voxel_[axis]);
       half_extent_px_ += 0.5 * glm::abs(along);
-      // An axis along the view has no image: its pair of half planes would exclude nothing.
+      // An axis along the view has no extent in the image, so its pair of half planes would exclude nothing.
       if (rays_.per_mm[axis] != 0.0 && still_axes() == 2) continue;
       const glm::dvec2 across(-along.y, along.x);
       double half_width = 0.0;
@@ -39,10 +39,10 @@ class NodePolygons {
   struct Polygon {
     glm::dvec2 centre_px{0.0};
     glm::dvec2 half_px{0.0};      ///< of the bounding rectangle
-    double edge = 1.0;            ///< of the node, in voxels
-    glm::dvec3 enter_voxel{0.0};  ///< on each axis, the plane through which rays enter
+    double edge = 1.0;            ///< edge of the node, in voxels
+    glm::dvec3 enter_voxel{0.0};  ///< for each axis, the position of the plane through which rays enter
   };
-  /// The polygon of the cube of `edge` voxels a side with its first voxel at `origin`.
+  /// The polygon of the cube of `edge` voxels a side whose first voxel is `origin`.
   Polygon of(const glm::ivec3& origin, int edge) const {
     const glm::dvec3 low = glm::dvec3(origin) - 0.5;
     const glm::dvec3 centre = low + 0.5 * edge;
@@ -61,8 +61,8 @@ class NodePolygons {
     }
     return true;
   }
-  /// Whether a square of pixel positions lies wholly inside or wholly outside the polygon. Conservative: for
-  /// a square on one side, Either may be returned as well.
+  /// Whether a square of pixel positions lies wholly inside or wholly outside the polygon. Conservative:
+  /// Either may also be returned for a square that lies on one side.
   enum class Containment { Inside, Outside, Either };
   Containment place(const Polygon& polygon, const glm::dvec2& low_px, double side_px) const {
     const glm::dvec2 d = low_px + 0.5 * side_px - polygon.centre_px;
@@ -77,8 +77,8 @@ class NodePolygons {
     }
     return inside ? Containment::Inside : Containment::Either;
   }
-  /// Depth at which the ray of a pixel position enters the node. Precondition: its polygon holds the
-  /// position.
+  /// The depth at which the ray of a pixel position enters the node. Precondition: the node's polygon
+  /// contains the position.
   double depth_mm(const Polygon& polygon, const glm::dvec2& p_px) const {
     const glm::dvec3 start = rays_.start(p_px);
     double depth = -std::numeric_limits<double>::infinity();
@@ -97,7 +97,7 @@ class NodePolygons {
   }
   struct Pair {
     glm::dvec2 across{0.0};
-    double half_width = 0.0;  ///< for an edge of one voxel
+    double half_width = 0.0;  ///< half the pair's width for a node of one voxel
   };
 
   VoxelRays rays_;

@@ -16,9 +16,9 @@
 #include "voxel/view/leaf_surface.h"
 
 // Node tracing (thesis 4.5) with the physical nodes. Departures from the thesis: a quadtree node has 16
-// children, the columns of a physical node's 64 children, instead of four; instead of a ray that seeks its
-// next neighbour from the root, the descent itself goes front to back and visits the same nodes; all objects
-// are traced at once.
+// children, the columns of a physical node's 64 children, instead of four; instead of rays that search for
+// their next neighbour from the root, the descent itself goes front to back and visits the same nodes; all
+// objects are traced at once.
 //
 // In the *traced frame* a block's digits are p, q (in the image) and r (along the look axis), so that child
 // number p + 4q + 16r makes every layer of children across the look axis 16 adjacent bits of a mask. Words
@@ -34,7 +34,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// Height of a block whose footprint is a tile.
+/// The height of blocks whose footprint is a tile.
 constexpr int tile_height = 3;
 constexpr int tile_side = 64;
 constexpr int max_height = Universe::max_depth / 2;
@@ -51,7 +51,7 @@ static_assert(traced(std::uint64_t{1} << child_index(1, 2, 3), 0) == std::uint64
 static_assert(traced(std::uint64_t{1} << child_index(1, 2, 3), 1) == std::uint64_t{1}
                                                                          << child_index(1, 3, 2));
 
-/// The child's number in the node, from its number in the traced frame.
+/// Converts a child's number in the traced frame to its number in the node.
 constexpr int native(int child, int look_axis) {
   const int p = child & 3;
   const int q = (child >> 2) & 3;
@@ -59,7 +59,7 @@ constexpr int native(int child, int look_axis) {
   return look_axis == 0 ? child_index(r, q, p) : look_axis == 1 ? child_index(p, r, q) : child;
 }
 
-/// The traced frame's place in the universe and in the map.
+/// The position of the traced frame in the universe and in the map.
 struct TracedFrame {
   explicit TracedFrame(const AxisView& axes, const Universe& universe)
       : look(axes.axis[2]),
@@ -102,12 +102,12 @@ UnbuiltObjects unbuilt_of(const std::vector<DrawnObject>& objects) {
 
 /// An object's part of the current block. A block of height 1 is a leaf's word.
 struct Part {
-  BlockRef block;             ///< unset if `entered` is set
-  std::uint64_t full = 0;     ///< Full children in the traced frame; of a leaf, its voxels
+  BlockRef block;             ///< the block; unset if `entered` is set
+  std::uint64_t full = 0;     ///< Full children, or voxels of a leaf, in the traced frame
   std::uint64_t partial = 0;  ///< in the traced frame
   std::int16_t object = 0;
-  EnteredBlock* entered = nullptr;  ///< of an object that is not built
-  const TopBlock* top = nullptr;    ///< the same for a block that all tiles share
+  EnteredBlock* entered = nullptr;  ///< block of an object that is not built
+  const TopBlock* top = nullptr;    ///< also set if all tiles share that block
 };
 
 /// Pass 1 for one tile. Depths are in voxels behind the universe's front face.
@@ -123,7 +123,7 @@ class TileTrace {
         entered_(objects.size()) {
     open_.fill(0xFFFF);
     const int height = objects.front().octree.root_height();
-    // The root block may reach beyond the universe; along a reversed axis that part comes first.
+    // The root block may extend beyond the universe; along a reversed axis the part outside comes first.
     const int before = frame.reversed ? frame.side - (1 << (2 * height)) : 0;
     auto& parts = parts_[static_cast<std::size_t>(height)];
     for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -174,7 +174,7 @@ class TileTrace {
     return part(&own, object);
   }
 
-  /// The child of a part that is not built. Precondition: its bit is set in the part's masks.
+  /// The child of a part that is not built. Precondition: the child's bit is set in the part's masks.
   Part unbuilt_child(const Part& outer, int height, int child, int number) {
     if (((outer.full >> child) & 1) != 0) return part(BlockRef::full(), outer.object);
     const auto slot = static_cast<std::size_t>(number);
@@ -204,12 +204,13 @@ class TileTrace {
     return ((cover.full >> number) & 1) != 0 ? all_children : 0;
   }
 
-  /// Columns, or footprints of children, still open within the block's footprint.
+  /// A mask of the columns, or footprints of children, that are still open within the block's footprint.
   std::uint16_t& open(int height, int p, int q) {
     const int mask = tile_side - 1;
     const int shift = 2 * height;
     if (height > tile_height) {
-      // Above the tile's height, descend only into the child that holds the tile, until the tile is closed.
+      // Above the tile's height, the descent enters only children that contain the tile, until the tile is
+      // closed.
       std::uint16_t& above = open_[273 + static_cast<std::size_t>(height - tile_height - 1)];
       const int child = shift - 2;
       if (above != 0)
@@ -277,7 +278,7 @@ class TileTrace {
     }
   }
 
-  /// Traces parts_[height], whose blocks' corner is at p, q and whose front face is at depth d.
+  /// Traces parts_[height]. The corner of their blocks is at p, q, and the blocks' front face is at depth d.
   void descend(int height, int p, int q, int d) {
     assert(height >= 2 && height <= max_height);
     const auto& parts = parts_[static_cast<std::size_t>(height)];
@@ -315,22 +316,22 @@ class TileTrace {
     }
   }
 
-  /// Blocks of an object up to a tile's height, by height.
+  /// The current blocks of an object, by height, up to a tile's height.
   using EnteredBlocks = std::array<EnteredBlock, tile_height + 1>;
 
   const UnbuiltObjects& unbuilt_;
   const TracedFrame& frame_;
   int tile_p_, tile_q_;
-  int height_ = 0;  ///< of the root block, 0 if there is nothing to trace
+  int height_ = 0;  ///< height of the root block; 0 if there is nothing to trace
   int front_ = 0;   ///< depth of the root block's front face
   std::vector<Seen>& columns_;
   /// Masks of the tile's quadtree: 16 x 16 of height 1, 4 x 4 of height 2, one of height 3, then those above.
   std::array<std::uint16_t, 273 + max_height - tile_height> open_;
   std::array<std::vector<Part>, max_height + 1> parts_;
-  std::vector<std::unique_ptr<EnteredBlocks>> entered_;  ///< of each object that is not built
+  std::vector<std::unique_ptr<EnteredBlocks>> entered_;  ///< one for each object; null if the object is built
 };
 
-/// Reads samples of a grey octree column by column along the look axis. Caches the last brick.
+/// Reads samples of a grey octree along the look axis, column by column. Caches the last brick.
 class ColumnSamples {
  public:
   ColumnSamples(const GreyOctree& grey, const TracedFrame& frame) : grey_(&grey), frame_(&frame) {}
@@ -352,8 +353,8 @@ class ColumnSamples {
   }
 
  private:
-  /// What an index along an axis adds to the number of a brick's sample. Samples are numbered by leaves, then
-  /// by voxels of a leaf, each in the order x + 4y + 16z.
+  /// The summand of an index along an axis in the number of a brick's sample. Samples are numbered by leaves,
+  /// then by voxels of a leaf, each in the order x + 4y + 16z.
   static int part(int axis, int index) { return (((index >> 2) & 3) * 64 + (index & 3)) << (2 * axis); }
 
   const GreyOctree* grey_;
@@ -363,7 +364,7 @@ class ColumnSamples {
   glm::ivec3 block_{-1};
 };
 
-/// Finds a moved object's surface in columns, a batch of them at a time.
+/// Computes a moved object's surface in columns, a batch of columns at a time.
 class MovedColumns {
  public:
   MovedColumns(const DrawnObject& object, const TracedFrame& frame, double spacing_mm)
@@ -373,13 +374,13 @@ class MovedColumns {
         mirror_(per_mm(), 1 << (2 * object.octree.root_height())),
         surface_(object, per_mm(), mirror_) {}
 
-  /// Queues `seen`, whose depth is a number of voxels, and sets its depth in millimetres at once or later,
-  /// when the batch is full.
+  /// Adds `seen`, whose depth is a number of voxels, to the batch. When the batch is full, the depths of its
+  /// columns are replaced by depths in millimetres.
   void add(Seen& seen, int p, int q) {
     const auto ray = static_cast<std::size_t>(batch_.count);
     const double d = static_cast<double>(seen.depth_mm);
     columns_[ray] = &seen;
-    // A ray through the column's centre, from the universe's front face.
+    // The ray through the column's centre, starting at the universe's front face.
     batch_.start[static_cast<std::size_t>(frame_.p_axis)][ray] = p;
     batch_.start[static_cast<std::size_t>(frame_.q_axis)][ray] = q;
     batch_.start[static_cast<std::size_t>(frame_.look)][ray] = frame_.index(0) - 0.5 * forward_;
@@ -387,7 +388,8 @@ class MovedColumns {
     batch_.leave_mm[ray] = (d + 1.0) * spacing_mm_;
     if (++batch_.count == RayBatch::most) find();
   }
-  /// Sets the depths of all queued columns. A column that stays outside the surface keeps the voxel's face.
+  /// Sets the depths of all queued columns. A column whose ray remains outside the surface gets the depth of
+  /// the voxel's face.
   void find() {
     surface_.find(batch_, found_);
     for (std::size_t ray = 0; ray < static_cast<std::size_t>(batch_.count); ++ray) {
@@ -457,7 +459,8 @@ class Depths {
   const TracedFrame& frame_;
   double spacing_mm_;
   std::vector<std::optional<ColumnSamples>> readers_;
-  std::vector<std::unique_ptr<MovedColumns>> moved_;  ///< for objects that were moved away from their samples
+  /// One for each object that was moved away from its samples.
+  std::vector<std::unique_ptr<MovedColumns>> moved_;
 };
 
 }  // namespace
@@ -475,9 +478,9 @@ ColumnMap node_trace(const std::vector<DrawnObject>& objects, const AxisView& ax
   tbb::parallel_for(0, tiles * tiles, [&](int tile) {
     const int tile_p = tile % tiles * tile_side;
     const int tile_q = tile / tiles * tile_side;
-    // 1. Find the first voxel of every column.
+    // 1. Compute the first voxel of every column.
     TileTrace(objects, unbuilt, frame, tile_p, tile_q, map.columns).run();
-    // 2. Turn these voxels into depths, leaf by leaf so that a leaf's samples stay in the cache.
+    // 2. Compute depths from these voxels, leaf by leaf so that a leaf's samples remain in the cache.
     Depths depths(objects, frame, spacing_mm[frame.look]);
     const int last_p = std::min(tile_p + tile_side, frame.side);
     const int last_q = std::min(tile_q + tile_side, frame.side);

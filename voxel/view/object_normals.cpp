@@ -15,13 +15,14 @@ glm::ivec3 unit(int axis, int sign) {
   return step;
 }
 
-/// The surface beyond a side of the face: 1 if it rises, 0 if it continues, -1 if it falls.
+/// How the surface continues beyond a side of the face: 1 if it rises, 0 if it is level, -1 if it falls.
 int turn(const Octree& octree, const glm::ivec3& voxel, const glm::ivec3& outward, const glm::ivec3& side) {
   if (octree.contains(voxel + side + outward)) return 1;
   return octree.contains(voxel + side) ? 0 : -1;
 }
 
-/// The voxel of the object that a ray meets at a depth, and the axis of the face it enters through.
+/// The voxel of the object that a ray meets at a depth, and the axis of the face through which the ray
+/// enters.
 struct Face {
   glm::ivec3 voxel{0};
   int axis = 0;
@@ -38,7 +39,7 @@ Face face_at(const Octree& octree, const glm::dvec3& p_voxel, const glm::dvec3& 
     const glm::ivec3 here = glm::ivec3(glm::floor(p_voxel + step * step_voxels * direction + 0.5));
     if (octree.contains(here)) {
       face.voxel = here;
-      // The ray enters through an edge or corner: choose the axis nearest to its direction.
+      // If the ray enters through an edge or corner, the axis nearest to the ray's direction is chosen.
       double most = -1.0;
       for (int axis = 0; axis < 3; ++axis) {
         const double along = std::abs(direction[axis]) + (here[axis] != before[axis] ? 2.0 : 0.0);

@@ -20,11 +20,11 @@
 namespace octotomy::voxel {
 namespace {
 
-/// Bound on the rounding error of a block's projection, which adds up along a path from the root, as a share
-/// of the universe's extent in pixels.
+/// An upper bound of the rounding error of a block's projection, as a share of the universe's extent in
+/// pixels. Errors add up along the path from the root.
 constexpr double rounding_share = 8.0 * std::numeric_limits<float>::epsilon();
 
-/// The bits from first to last, both included.
+/// A mask of the bits from first to last, both included.
 std::uint64_t bits_between(int first, int last) {
   return (all_children << first) & (all_children >> (63 - last));
 }
@@ -51,7 +51,7 @@ std::uint64_t mirrored(std::uint64_t mask, const glm::ivec3& flipped) {
 
 }  // namespace
 
-/// One square of pixels and its open rays.
+/// A square of pixels, and which of its rays are still open.
 class ParallelRays::Square {
  public:
   Square(const ParallelRays& rays, const glm::ivec2& first_px, const glm::ivec2& last_px,
@@ -70,10 +70,10 @@ class ParallelRays::Square {
   }
 
  private:
-  /// Stands for every position to the right of or below all pixels.
+  /// Represents every position to the right of or below all pixels.
   static constexpr auto outside = static_cast<float>(2 * square_px);
 
-  /// The pixels whose centres lie in a block's rectangle.
+  /// The range of pixels whose centres lie in a block's rectangle.
   struct Rectangle {
     int left, top, right, bottom;
     bool empty() const { return left > right || top > bottom; }
@@ -185,7 +185,8 @@ class ParallelRays::Square {
     voxels_[ray] = voxels;
   }
 
-  /// Passes the batch's voxels to `accept_`, front to back, until each ray has ended or left the leaf.
+  /// Passes the voxels of the batch's rays to `accept_`, front to back, until each ray has ended or left the
+  /// leaf.
   void offer() {
     for (drop_missed(); batch_.count > 0; drop_missed()) move_on(0, accept_(batch_));
   }

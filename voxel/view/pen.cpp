@@ -12,7 +12,7 @@
 namespace octotomy::voxel {
 namespace {
 
-/// Pixels from first up to, not including, last.
+/// A rectangle of pixels from first up to, not including, last.
 struct PixelBox {
   glm::ivec2 first{0};
   glm::ivec2 last{0};

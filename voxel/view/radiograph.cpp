@@ -20,8 +20,8 @@ constexpr double water_per_mm = 0.0206;
 constexpr double steps_per_voxel = 2.0;
 constexpr int leaf_edge = 4;
 
-/// Trilinear samples. Reads the bricks in which a cell's corners lie. Keeps the bricks of the last block and
-/// the corners of the last cell, because a ray takes several steps in either.
+/// Computes trilinear samples from the bricks that contain a cell's corners. Caches the bricks of the last
+/// block and the corners of the last cell, because a ray takes several steps in each.
 class CellSamples {
  public:
   explicit CellSamples(const GreyOctree& grey)
@@ -48,7 +48,7 @@ class CellSamples {
 
   void enter(const glm::ivec3& cell) {
     cell_ = cell;
-    // Beyond the universe, where rounding may lead, all is background.
+    // Rounding may lead beyond the universe, where all samples are background.
     if (glm::any(glm::lessThan(cell, glm::ivec3(0))) || glm::any(glm::greaterThan(cell, last_cell_))) {
       for (int line = 0; line < 4; ++line) {
         const glm::ivec3 at = cell + glm::ivec3(0, line >> 1, line & 1);
@@ -62,7 +62,7 @@ class CellSamples {
     const std::size_t x[2] = {offset(in.x, 0, 0), offset((in.x + 1) & 15, 0, 0)};
     const std::size_t y[2] = {offset(0, in.y, 0), offset(0, (in.y + 1) & 15, 0)};
     const std::size_t z[2] = {offset(0, 0, in.z), offset(0, 0, (in.z + 1) & 15)};
-    // Bit 0, 1 and 2: the upper corner along x, y and z lies in the next brick.
+    // Bits 0, 1 and 2 are set if the upper corner along x, y and z, respectively, lies in the next brick.
     const std::size_t beyond = static_cast<std::size_t>((in.x + 1) >> 4) |
                                static_cast<std::size_t>(((in.y + 1) >> 4) << 1) |
                                static_cast<std::size_t>(((in.z + 1) >> 4) << 2);
@@ -87,12 +87,13 @@ class CellSamples {
   glm::ivec3 last_cell_, last_block_;
   glm::ivec3 cell_{-1000}, block_{-1000};
   std::array<double, 4> lower_{},
-      upper_{};  ///< samples at both ends of the cell's edges along x; an edge at (y, z) of the cell has
-                 ///< number z + 2y
-  std::array<const std::int16_t*, 8> bricks_{};  ///< of a block and the next ones along each axis
+      /// Samples at both ends of the cell's edges along x; an edge at (y, z) of the cell has number z + 2y.
+      upper_{};
+  std::array<const std::int16_t*, 8> bricks_{};  ///< bricks of a block and of the next blocks along each axis
 };
 
-/// The positions of a ray's samples: equal steps of at most half a voxel from end to end of its span.
+/// The positions of a ray's samples: equal steps of at most half a voxel from one end of the ray's span to
+/// the other.
 struct Steps {
   glm::dvec3 start, per_mm;
   double near_mm;
@@ -108,8 +109,8 @@ struct Steps {
 
   glm::dvec3 at(int i) const { return start + (near_mm + i * length_mm) * per_mm; }
 
-  /// A step after i, but not after the first step outside the aligned cube of `edge` cells a side that holds
-  /// step i's cell.
+  /// A step after step i from which a search can continue: at most the first step outside the aligned cube of
+  /// `edge` cells a side that contains step i's cell.
   int leaving(int i, const glm::ivec3& cell, int edge) const {
     double exit_mm = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
@@ -128,8 +129,8 @@ inline glm::ivec3 cell_of(const glm::dvec3& p) {
           static_cast<int>(std::floor(p.z))};
 }
 
-/// Calls take(i, sample) for a ray's steps in their order, without those in cubes that have no sample above
-/// limit().
+/// Calls take(i, sample) for a ray's steps in their order, except for steps in cubes that have no sample
+/// above limit().
 template <typename Limit, typename Take>
 void march(const GreyOctree& grey, const HighestSamples& highest, const Steps& steps, CellSamples& samples,
            const Limit& limit, const Take& take) {
@@ -163,8 +164,8 @@ void for_rows(const ImagePlane& plane, const Progress& progress, const DrawRow& 
   progress.at(1.0);
 }
 
-/// The attenuation relative to water of every sample of 16 bits, times the weight of the first range that
-/// holds it.
+/// A table of the attenuation relative to water of every 16-bit sample, multiplied by the weight of the first
+/// range that contains the sample.
 class WeightedSamples {
  public:
   WeightedSamples(const GreyOctree& grey, const std::vector<RangeWeight>& weights) : of_(65536) {
@@ -183,14 +184,14 @@ class WeightedSamples {
   std::vector<double> of_;
 };
 
-/// The samples as they are; their attenuation follows after interpolation.
+/// Passes samples on unchanged; their attenuation is computed after interpolation.
 struct PlainSamples {
   double operator()(int sample) const { return sample; }
 };
 
-/// Integrates along rays of one direction the attenuation relative to water, which is 0 for air. The nodes of
-/// the integral are the places where a ray crosses planes of voxels' centres along the axis that it runs
-/// closest to, and the ends of its span.
+/// Integrates the attenuation relative to water, which is 0 for air, along rays of one direction. The nodes
+/// of the integral are the ends of a ray's span and the points where the ray crosses planes of voxels'
+/// centres across `axis`, the axis nearest to the ray's direction.
 template <int axis, typename Mapped>
 class AttenuationOfRay {
  public:
@@ -217,7 +218,7 @@ class AttenuationOfRay {
     const int last = static_cast<int>(std::floor(start[axis] + high_mm * per_mm_[axis]));
     if (last < first) return 0.5 * (near + far) * (span.far_mm - span.near_mm);
     const Sum planes = of_planes(start, std::max(first, 0), std::min(last, last_));
-    // Trapezia between planes, and those from either end of the span to its nearest plane.
+    // Adds the trapezia between planes, and those from each end of the span to the nearest plane.
     const auto depth_mm = [&](int plane) { return (plane - start[axis]) / per_mm_[axis]; };
     return plane_mm_ * (planes.all - 0.5 * (planes.first + planes.last)) +
            0.5 * std::abs(depth_mm(first) - low_mm) * ((rises ? near : far) + planes.first) +
@@ -278,8 +279,8 @@ class AttenuationOfRay {
     return sum;
   }
 
-  /// The sample in a plane; `in` is a cell of the same leaf. A place that rounding has put outside of the leaf
-  /// is taken to its border cells.
+  /// The sample at a point in a plane; `in` is a cell of the same leaf. A point that lies outside the leaf
+  /// because of rounding is assigned to the leaf's border cells.
   double bilinear(int plane, double u, double v, const glm::ivec3& in) const {
     const int low_u = in[u_axis] & ~(leaf_edge - 1), low_v = in[v_axis] & ~(leaf_edge - 1);
     const int cell_u = std::min(std::clamp(static_cast<int>(u), low_u, low_u + leaf_edge - 1), last_ - 1);
@@ -297,7 +298,7 @@ class AttenuationOfRay {
     return low + (high - low) * tv;
   }
 
-  /// What a coordinate within a brick adds to the number of a sample (grey_octree.h).
+  /// The summand of a coordinate within a brick in the number of a sample (grey_octree.h).
   static constexpr std::size_t part(int along, int of_axis) {
     return static_cast<std::size_t>(((along & 3) << (2 * of_axis)) + ((along & 12) << (2 * of_axis + 4)));
   }
@@ -313,8 +314,8 @@ class AttenuationOfRay {
     }
   }
 
-  /// The next plane to visit when the ray skips the aligned cube of `edge` cells a side around `cell`: at
-  /// least plane + 1, otherwise never beyond the first plane at which the ray has left the cube.
+  /// The next plane to visit if the ray skips the aligned cube of `edge` cells a side around `cell`: at most
+  /// the first plane at which the ray has left the cube, but at least plane + 1.
   int leaving(int plane, const glm::ivec3& cell, int edge, double u_at_0, double v_at_0) const {
     double exit = (cell[axis] & -edge) + edge;
     const auto leave_along = [&](int along, double slope, double at_0) {
@@ -332,16 +333,16 @@ class AttenuationOfRay {
   const Mapped& mapped_;
   glm::dvec3 per_mm_;
   int last_;
-  double plane_mm_;  ///< from plane to plane along the ray
-  double du_, dv_;   ///< from plane to plane across the axis
-  double air_;       ///< in steps of the samples; exact, because a step is a power of two
+  double plane_mm_;  ///< distance between planes along the ray
+  double du_, dv_;   ///< steps across the axis from one plane to the next
+  double air_;       ///< sample of air in steps of the samples; exact, because a step is a power of two
   double per_step_;
   CellSamples ends_;
   glm::ivec3 block_{-1000};
-  std::array<const std::int16_t*, 4> bricks_{};  ///< of a block and the next ones along u and v
+  std::array<const std::int16_t*, 4> bricks_{};  ///< bricks of a block and of the next blocks along u and v
 };
 
-/// The axis along which a direction goes furthest.
+/// The axis along which a direction has its largest component.
 int major_of(const glm::dvec3& per_mm) {
   const glm::dvec3 size = glm::abs(per_mm);
   return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -400,8 +401,8 @@ RayImage maximum_intensity(const GreyOctree& grey, const ImagePlane& plane, cons
         most = sample;
         most_at_mm = steps.near_mm + i * steps.length_mm;
       };
-      // The maximum often lies as deep as that of the last ray. If that cube is read first, most other
-      // cubes cannot raise the maximum.
+      // The maximum often lies at the same depth as that of the last ray. If the cube there is read first,
+      // most other cubes cannot raise the maximum.
       const int likely =
           std::clamp(static_cast<int>((most_at_mm - steps.near_mm) / steps.length_mm + 0.5), 0, steps.count);
       const glm::dvec3 p = steps.at(likely);

@@ -9,7 +9,7 @@
 
 #include "voxel/space/vector_clones.h"
 
-// Vectors are passed between functions of this file alone, all of them inlined.
+// Vectors are passed only between functions of this file, which are all inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace octotomy::voxel {
@@ -35,15 +35,16 @@ using Int = std::int32_t __attribute__((vector_size(4 * lanes)));
   std::memcpy(to, &vector, sizeof vector);
 }
 
-/// Rays and voxels along one axis.
+/// The coordinates of rays and voxels along one axis.
 struct Axis {
-  double first, per_px_x, per_px_y;  ///< of the rays, in index space
+  double first, per_px_x, per_px_y;  ///< step of the rays per millimetre of depth, in index space
   double side, leaf, mm_per_voxel;   ///< mirrored
   bool flipped, still;
 };
 
-/// Computes the passages of a batch's rays, from a vector's first ray on. Ray i passes the leaf's voxel
-/// number voxels[i]. Returns the rays that pass; bits beyond the batch are meaningless.
+/// Computes the passages of a batch's rays through their voxels, beginning with the first ray of a vector.
+/// The voxel of ray i is the leaf's voxel number voxels[i]. Returns the rays that pass their voxels; bits
+/// beyond the batch are meaningless.
 OCTOTOMY_VECTOR_CLONES RayBatch::Rays pass(const Axis* axes, const std::int32_t* voxels, int first,
                                            RayBatch& batch) {
   const Long ray{1, 2, 4, 8};
@@ -93,12 +94,12 @@ RayBatch::Rays find_passages(const VoxelRays& rays, const Mirror& mirror,
     axes[axis] = {rays.first[axis],          rays.per_px_x[axis],      rays.per_px_y[axis],
                   double(mirror.side),       double(batch.leaf[axis]), mirror.mm_per_voxel[axis],
                   mirror.flipped[axis] != 0, mirror.still[axis]};
-  // Recomputes, with the same result, the rays before `first` that are in the same vector.
+  // Rays before `first` in the same vector are computed again, with the same result.
   const int aligned = first - first % lanes;
   RayBatch::ByRay<std::int32_t> numbers;
   for (int ray = aligned; ray < batch.count; ++ray)
     numbers[static_cast<std::size_t>(ray)] = std::countr_zero(voxels[static_cast<std::size_t>(ray)]);
-  // Unused rays of the last vector need a valid voxel number.
+  // Unused rays of the last vector must have a valid voxel number.
   std::fill_n(numbers.begin() + batch.count, std::min(lanes, RayBatch::most - batch.count), 0);
   return pass(axes, numbers.data(), aligned, batch) & RayBatch::all(batch.count) & RayBatch::from(first);
 }

@@ -10,20 +10,21 @@
 
 namespace octotomy::voxel {
 
-/// Parallel rays, each with one voxel of the same leaf. Entry i of every array belongs to ray i, so that
-/// loops over rays become vectors.
+/// Parallel rays, each with one voxel of the same leaf. Entry i of every array belongs to ray i, so that the
+/// compiler can vectorise loops over rays.
 struct RayBatch {
   static constexpr int most = 64;
   template <typename Value>
   using ByRay = std::array<Value, most>;
 
-  glm::ivec3 leaf{0};  ///< its first voxel, mirrored (ray_walk.h)
+  glm::ivec3 leaf{0};  ///< the leaf's first voxel, mirrored (ray_walk.h)
   int count = 0;
   ByRay<std::int32_t> x{}, y{};             ///< pixels
-  std::array<ByRay<double>, 3> start{};     ///< by axis: the ray's point at depth 0 in index space
-  std::array<ByRay<std::int32_t>, 3> at{};  ///< by axis: the voxel's place in the leaf, mirrored
-  ByRay<double> enter_mm{}, leave_mm{};     ///< depths of the voxel; 0 if the ray does not pass it
-  ByRay<std::int32_t> entered_through{};    ///< axis
+  std::array<ByRay<double>, 3> start{};     ///< for each axis the ray's point at depth 0, in index space
+  std::array<ByRay<std::int32_t>, 3> at{};  ///< for each axis the voxel's position in the leaf, mirrored
+  /// Depths at which the ray enters and leaves the voxel; 0 if it does not pass the voxel.
+  ByRay<double> enter_mm{}, leave_mm{};
+  ByRay<std::int32_t> entered_through{};  ///< axis
 
   Passage passage(std::size_t ray) const {
     return {leaf + glm::ivec3(at[0][ray], at[1][ray], at[2][ray]), enter_mm[ray], leave_mm[ray],
@@ -32,9 +33,9 @@ struct RayBatch {
 
   /// A set of rays: bit i is set if ray i is in the set.
   using Rays = std::uint64_t;
-  /// The rays of a batch of `count`. Precondition: at least one.
+  /// The set of the first `count` rays. Precondition: `count` is at least 1.
   static Rays all(int count) { return ~Rays{0} >> (most - count); }
-  /// The rays from number `first` on. Precondition: less than `most`.
+  /// The set of all rays from number `first` on. Precondition: `first` is below `most`.
   static Rays from(int first) { return ~Rays{0} << first; }
 
   /// Copies ray `ray` and its passage over ray `place`.
@@ -46,8 +47,8 @@ struct RayBatch {
 };
 
 /// For each ray of a batch from number `first` on, computes its passage through the lowest-numbered voxel set
-/// in `voxels` (one bit a voxel of the leaf), bit for bit as passage_of() does. Returns the rays that do pass
-/// their voxel. Precondition: `first` is a ray of the batch.
+/// in `voxels` (one bit for each voxel of the leaf), with the same bits as passage_of(). Returns the rays
+/// that pass their voxels. Precondition: `first` is a ray of the batch.
 RayBatch::Rays find_passages(const VoxelRays& rays, const Mirror& mirror,
                              const RayBatch::ByRay<std::uint64_t>& voxels, int first, RayBatch& batch);
 

@@ -15,9 +15,9 @@
 #include "voxel/view/ray_surface.h"
 #include "voxel/view/ray_walk.h"
 
-// Pictures are cast square by square, all rays of a square together (parallel_rays.h); single rays walk one
-// by one (ray_walk.h). Both visit the objects' voxels in their order along a ray. If an object has samples,
-// its surface is searched near the voxel; otherwise the surface is the voxel's face.
+// For pictures all rays of a square of pixels are cast together (parallel_rays.h); other rays walk one by one
+// (ray_walk.h). Both visit the objects' voxels in their order along a ray. If an object has samples, its
+// surface is searched for near the voxel; otherwise the surface is the voxel's face.
 
 namespace octotomy::voxel {
 namespace {
@@ -48,7 +48,7 @@ struct RayCast::Prepared {
   std::optional<Eye> eye;
   Mirror mirror;                                     ///< used for parallel rays
   std::vector<ParallelRays> bundles;                 ///< by object
-  std::vector<std::optional<GreySurface>> surfaces;  ///< one entry per object; set if the object has samples
+  std::vector<std::optional<GreySurface>> surfaces;  ///< one for each object; set if the object has samples
   glm::ivec2 size_px{0};
 
   /// The largest distance in depth by which a surface may lie in front of the voxel through which it was
@@ -57,7 +57,7 @@ struct RayCast::Prepared {
     return object.grey ? 2.0 / glm::length(per_mm) : 0.0;
   }
 
-  /// The surface of object `i` near a voxel; none if the ray stays outside it.
+  /// The surface of object `i` near a voxel; none if the ray remains outside the surface.
   std::optional<Seen> surface_near(std::size_t i, const VoxelRay& ray, const Mirror& frame,
                                    const Passage& passage) const {
     if (!surfaces[i]) return Seen{static_cast<float>(passage.enter_mm), 0, true};
@@ -72,7 +72,7 @@ struct RayCast::Prepared {
     if (seen.depth_mm < nearest.depth_mm) nearest = seen;
   }
 
-  /// Pixels of a square, row by row.
+  /// The pixels of a square, row by row.
   using Square = std::array<Seen, std::size_t{ParallelRays::square_px} * ParallelRays::square_px>;
   void cast_square(std::size_t i, const glm::ivec2& first, const glm::ivec2& last, Square& square) const;
   RayBatch::Rays take(std::size_t i, const RayBatch& batch, const LeafSurface::Found& found,
@@ -95,8 +95,8 @@ RayCast::RayCast(const std::vector<DrawnObject>& objects, const ImagePlane& plan
   prepared_ = std::move(prepared);
 }
 
-/// Enters the surfaces of object `i`, found near the voxels of a batch, into a square. Returns the rays that
-/// end: at a surface, or more than the reach behind the nearest one.
+/// Stores the surfaces of object `i`, computed near the voxels of a batch, in a square if they are the
+/// nearest. Returns the rays that end, at a surface or farther than the reach behind the nearest surface.
 RayBatch::Rays RayCast::Prepared::take(std::size_t i, const RayBatch& batch, const LeafSurface::Found& found,
                                        const glm::ivec2& first, Square& square) const {
   const auto pixel_of = [&](int ray) -> Seen& {
@@ -121,7 +121,7 @@ RayBatch::Rays RayCast::Prepared::take(std::size_t i, const RayBatch& batch, con
   return found.lit | behind;
 }
 
-/// Casts the rays of a square of pixels through object `i`. Each ends in the object's nearest surface.
+/// Casts the rays of a square of pixels through object `i`. Each ray ends at the object's nearest surface.
 void RayCast::Prepared::cast_square(std::size_t i, const glm::ivec2& first, const glm::ivec2& last,
                                     Square& square) const {
   const DrawnObject& object = objects[i];
@@ -152,12 +152,13 @@ Seen RayCast::seen(const glm::dvec2& p_px, double near_mm, double far_mm) const 
   const VoxelRay ray{the.rays.start(p_px), the.rays.direction(p_px)};
   const Mirror frame = the.eye ? Mirror(ray.per_mm, the.mirror.side) : the.mirror;
   const glm::dvec3 mirrored = frame.mirrored(ray.start);
-  // Nothing behind the eye is visible.
+  // Surfaces behind the eye are not visible.
   if (the.eye) near_mm = std::max(near_mm, the.eye->depth_mm());
   Seen nearest;
   for (std::size_t i = 0; i < the.objects.size(); ++i) {
     const DrawnObject& object = the.objects[i];
-    // A voxel behind the nearest surface may still have its own surface in front of that one.
+    // The surface of a voxel may be up to the reach in front of the voxel, so it may be the nearest although
+    // the voxel is not.
     const double reach_mm = the.reach_mm(object, ray.per_mm);
     const double until_mm = std::min(far_mm, static_cast<double>(nearest.depth_mm)) + reach_mm;
     Walk(object.octree.root(), object.octree.root_height(), frame)

@@ -23,9 +23,9 @@ Vector clamped(Vector v, Vector low, Vector high) {
   return v > high ? high : v;
 }
 
-/// Trilinear samples along a ray near one of its points. Caches the eight corners of the last cell. Single
-/// precision suffices: a 16-bit sample is rounded by less than a thousandth of its unit, and a position,
-/// counted from a nearby voxel, by less than a millionth of a voxel.
+/// Computes trilinear samples along a ray near one of the ray's points. Caches the eight corners of the last
+/// cell. Single precision suffices: a 16-bit sample is rounded by less than a thousandth of its unit, and a
+/// position, counted from a nearby voxel, by less than a millionth of a voxel.
 class RaySamples {
  public:
   /// Distances count from depth `origin_mm`.
@@ -44,8 +44,8 @@ class RaySamples {
     return samples_of(voxel >> 4)[along(voxel.x) + (along(voxel.y) << 2) + (along(voxel.z) << 4)];
   }
 
-  /// The interpolated sample at distance_mm along the ray. Precondition: that point is less than `reach`
-  /// voxels from the origin.
+  /// The interpolated sample at distance_mm along the ray. Precondition: the point at this distance is less
+  /// than `reach` voxels from the origin.
   float operator()(float distance_mm) {
     const Float4 p = origin_ + distance_mm * per_mm_;
     const Int4 cell = clamped(first_ + __builtin_convertvector(p, Int4), Int4{}, last_);
@@ -96,8 +96,8 @@ class RaySamples {
       }
     }
   }
-  /// What coordinate x adds to the number of a brick's sample. Samples are numbered by leaves, then by voxels
-  /// of a leaf, each in the order x + 4y + 16z.
+  /// The summand of coordinate x in the number of a brick's sample. Samples are numbered by leaves, then by
+  /// voxels of a leaf, each in the order x + 4y + 16z.
   static int along(int coordinate) { return ((coordinate >> 2) & 3) * 64 + (coordinate & 3); }
 
   const GreyOctree& grey_;
@@ -105,20 +105,21 @@ class RaySamples {
   Int4 first_{};  ///< positions are counted from this voxel
   Int4 last_{};   ///< highest cell
   Int4 cell_{-1, -1, -1, 0};
-  Float4 below_{}, above_{};  ///< x + 2y, at the cell's z and at the next
+  Float4 below_{}, above_{};  ///< samples at the corners x + 2y, at the cell's z and at z + 1
   glm::ivec3 block_{-1};
   const std::int16_t* samples_ = nullptr;  ///< of the block
 };
 
-/// A sample and its place on the ray.
+/// A sample and its distance along the ray.
 struct Sample {
   float distance_mm = 0.0f;
   float value = 0.0f;
 };
 
-/// The crossing of the threshold between a sample below it and one not below: linear interpolation, repeated
-/// once on the side of the crossing. Trilinear samples along a ray are a cubic. Within half a voxel the error
-/// of this approximation is smaller than that of samples rounded to integers.
+/// The crossing of the threshold between a sample below it and one that is not below. Uses linear
+/// interpolation, repeated once on the part that contains the crossing. Trilinear samples along a ray are a
+/// cubic. Within half a voxel the error of this approximation is smaller than that of samples rounded to
+/// integers.
 float crossing(RaySamples& samples, float threshold, Sample below, Sample above) {
   const auto between = [&] {
     return below.distance_mm +
@@ -134,10 +135,10 @@ Seen face_of(const Passage& passage) {
   return {static_cast<float>(passage.enter_mm), 0, true};
 }
 
-/// The surface near a voxel that a ray passes. If the ray enters the voxel outside the surface, searches
-/// forward until the ray leaves the voxel; none if the ray stays outside. If it enters inside the surface,
-/// searches back over two voxels; the voxel's face if the ray was inside all the way. Distances of `samples`
-/// count from the entry.
+/// The surface near a voxel that a ray passes. If the ray is outside the surface where it enters the voxel,
+/// searches forward until the ray leaves the voxel; none if the ray remains outside. If it is inside at the
+/// entry, searches back over two voxels; the result is the voxel's face if the ray is inside everywhere
+/// there. Distances of `samples` count from the entry.
 std::optional<Seen> surface_about(RaySamples& samples, float threshold, const Passage& passage,
                                   float half_voxel_mm) {
   const auto surface = [&](Sample below, Sample above) {
@@ -153,8 +154,8 @@ std::optional<Seen> surface_about(RaySamples& samples, float threshold, const Pa
     if (leave.value >= threshold) return surface(middle, leave);
     return std::nullopt;
   }
-  // The interpolated surface is at most one voxel away from the object's voxels. Along a slanting ray that is
-  // at most two voxels' lengths, so four half steps back suffice.
+  // The interpolated surface is at most one voxel away from the object's voxels. Along an oblique ray this is
+  // at most two voxels' lengths, so four steps of half a voxel back suffice.
   Sample above = enter;
   for (int step = 1; step <= 4; ++step) {
     const float distance_mm = -static_cast<float>(step) * half_voxel_mm;
@@ -165,7 +166,7 @@ std::optional<Seen> surface_about(RaySamples& samples, float threshold, const Pa
   return face_of(passage);
 }
 
-/// Half a voxel's length along a ray, in depth.
+/// The depth that half a voxel's length along a ray spans.
 float half_voxel_mm(const VoxelRay& ray) {
   return static_cast<float>(0.5 / glm::length(ray.per_mm));
 }

@@ -16,18 +16,18 @@ struct VoxelRay {
   glm::dvec3 per_mm{0.0};
 };
 
-/// Finds the surface of an object near voxels that rays pass. Keeps the object's samples. Any number of
+/// Computes the surface of an object near voxels that rays pass. Shares the object's samples. Any number of
 /// threads may call it.
 class GreySurface {
  public:
-  /// Precondition: the object has its samples.
+  /// Precondition: the object has samples.
   explicit GreySurface(const DrawnObject& object);
 
   /// The crossing of the threshold by trilinear samples (thesis 5.2.2.2), or the voxel's face if the object
-  /// was cut there; none if the ray stays outside the surface. Precondition: the mirror is that of the ray.
+  /// was cut there; none if the ray remains outside the surface. Precondition: the mirror is that of the ray.
   std::optional<Seen> seen(const VoxelRay& ray, const Mirror& mirror, const Passage& passage) const;
-  /// The surface of a moved object, whose voxels do not lie on the samples. Searches from two voxels before
-  /// the passed one to its far side. Precondition: DrawnObject::moved_from_still is set.
+  /// The surface of a moved object, whose voxels do not lie on the samples. Searches from two voxels in front
+  /// of the passed voxel to this voxel's far side. Precondition: DrawnObject::moved_from_still is set.
   std::optional<Seen> seen_moved(const VoxelRay& ray, const Passage& passage) const;
 
  private:

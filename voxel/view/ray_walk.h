@@ -13,15 +13,16 @@
 #include "voxel/tree/octree_node.h"
 #include "voxel/view/camera.h"
 
-// The walk of one ray through an octree, block by block. It descends to the current block and leaves an empty
-// one through the first plane on its way (Amanatides, Woo 1987, on blocks of any size). It then descends
-// again from the smallest block that holds both the old and the new voxel.
+// The walk of one ray through an octree, block by block. The walk descends to the block at the current voxel.
+// It leaves an empty block through the first of the block's planes that the ray meets (Amanatides, Woo 1987,
+// on blocks of any size), and descends again from the smallest block that contains both the old and the new
+// voxel.
 //
-// Rays are walked in the *mirrored frame*: index space shifted so that voxel i reaches from i to i + 1, and
-// every axis along which the ray's coordinate decreases is reversed, so that all its coordinates increase. If
-// a ray does not move along an axis, its time to a plane across that axis is infinite.
+// Rays are walked in the *mirrored frame*: index space is shifted so that voxel i extends from i to i + 1,
+// and every axis along which the ray's coordinate decreases is reversed, so that all coordinates increase
+// along the ray. If a ray does not move along an axis, its time to a plane across that axis is infinite.
 //
-// Longer than other headers, because the receiver of the voxels is inlined into the innermost loop.
+// This header is longer than others, because the receiver of the voxels is inlined into the innermost loop.
 
 namespace octotomy::voxel {
 
@@ -78,8 +79,8 @@ inline Passage passage_of(const Mirror& mirror, const glm::dvec3& start, const g
   return passage;
 }
 
-/// Walks rays through one octree. Keeps the path of nodes to the last voxel, because neighbouring rays share
-/// most of it.
+/// Walks rays through one octree. Stores the path of nodes to the last voxel, because neighbouring rays share
+/// most of this path.
 class Walk {
  public:
   Walk(BlockRef root, int height, const Mirror& mirror) : mirror_(mirror), top_(height), lowest_(height) {
@@ -87,8 +88,8 @@ class Walk {
     full_root_ = root.is_full();
   }
 
-  /// Calls `accept` with the object's voxels that a ray passes between two depths, in order, until it returns
-  /// true.
+  /// Calls `accept` with the object's voxels that a ray passes between two depths, in order, until `accept`
+  /// returns true.
   template <typename Accept>
   void run(const glm::dvec3& start, double from_mm, double until_mm, const Accept& accept) {
     start_ = start;
@@ -111,7 +112,7 @@ class Walk {
         const LeafWay way = pass_leaf(until_mm, accept);
         if (way == LeafWay::Accepted || (way == LeafWay::Left && !inside_root())) return;
       } else {
-        // A Full block: voxel by voxel.
+        // In a Full block the ray walks voxel by voxel.
         if (accept(pass()) || !leave(1)) return;
       }
     }
@@ -146,7 +147,7 @@ class Walk {
 
   bool inside_root() const { return ((voxel_.x | voxel_.y | voxel_.z) & mirror_.side) == 0; }
 
-  /// Shortens the path to the nodes that hold both the current voxel and `other`.
+  /// Shortens the path to the nodes that contain both the current voxel and `other`.
   void forget(const glm::ivec3& other) {
     const auto changed =
         static_cast<unsigned>((voxel_.x ^ other.x) | (voxel_.y ^ other.y) | (voxel_.z ^ other.z));
@@ -158,8 +159,8 @@ class Walk {
     forget(other);
   }
 
-  /// Edge of the largest aligned empty block found around the voxel; 0 if the voxel is in a Full block, or in
-  /// a leaf, whose word is then in word_.
+  /// The edge of the largest aligned empty block found around the voxel. 0 if the voxel is in a Full block,
+  /// or in a leaf whose word is stored in word_.
   int empty_edge() {
     if (nodes_[static_cast<std::size_t>(top_)] == nullptr) return full_root_ ? 0 : mirror_.side;
     while (lowest_ > 1) {
@@ -189,14 +190,15 @@ class Walk {
 
   Passage pass() const { return passage_of(mirror_, start_, voxel_); }
 
-  /// Moves into the voxel behind the aligned block of the given edge; false if that leaves the root block.
+  /// Moves into the voxel behind the aligned block of the given edge. Returns false if this voxel is outside
+  /// the root block.
   bool leave(int edge) {
     const glm::ivec3 end = (voxel_ & ~(edge - 1)) + edge;
     const glm::dvec3 time = (glm::dvec3(end) - start_) * mirror_.mm_per_voxel + mirror_.exit_offset;
     const double leave_mm = std::min(time.x, std::min(time.y, time.z));
     const glm::dvec3 p = start_ + leave_mm * mirror_.speed_per_mm;
-    // Clamps, because rounding must not move the ray backwards or out of the block's other sides. Avoids
-    // branches, because the side through which a ray leaves is unpredictable.
+    // The new position is clamped, because rounding must not move the ray backwards or out of the block's
+    // other sides. There are no branches, because the side through which a ray leaves is unpredictable.
     const auto next = [leave_mm](double time_mm, double position, int from, int behind) {
       const int inside = std::min(std::max(static_cast<int>(position), from), behind - 1);
       return time_mm <= leave_mm ? behind : inside;
@@ -213,7 +215,7 @@ class Walk {
   const Mirror& mirror_;
   glm::dvec3 start_{0.0};
   int top_;
-  int lowest_;  ///< height of the lowest node on the path that holds the voxel; 1: word_
+  int lowest_;  ///< height of the lowest node on the path that contains the voxel; 1: the leaf in word_
   bool full_root_ = false;
   glm::ivec3 voxel_{0};
   double at_mm_ = 0.0;

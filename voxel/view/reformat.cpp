@@ -27,7 +27,7 @@ void need_pixel(double pixel_mm) {
 int pixels(double length_mm, double pixel_mm) {
   const double exact = length_mm / pixel_mm;
   const double rounding = 64.0 * std::numeric_limits<double>::epsilon() * (1.0 + exact) * most_sheet_px;
-  // Written so that NaN, which infinite lengths produce, is refused too.
+  // The condition also refuses NaN, which infinite lengths produce.
   if (!(std::ceil(exact - rounding) <= most_sheet_px))
     throw InvalidInput("a picture of " +
                        (std::isfinite(length_mm) ? rounded(length_mm) + " mm" : "points that far apart") +
@@ -46,8 +46,8 @@ struct Rectangle {
   }
 };
 
-// The plane's cut through the lattice's box, in the view's millimetres: the bounding rectangle of its points
-// on the twelve edges.
+// The bounding rectangle, in the view's millimetres, of the plane's cut through the lattice's box. It is
+// computed from the points at which the plane meets the box's twelve edges.
 Rectangle cut_rectangle(const Lattice& lattice, const View& view, double position_mm) {
   std::array<glm::dvec3, 8> corners;
   for (int corner = 0; corner < 8; ++corner)
@@ -65,7 +65,7 @@ Rectangle cut_rectangle(const Lattice& lattice, const View& view, double positio
       const glm::dvec3& end = corners[from | axis];
       const double there = glm::dot(end, view.look) - position_mm;
       if ((here > 0.0) == (there > 0.0) && here != 0.0 && there != 0.0) continue;
-      // An edge in the plane adds both its ends.
+      // If an edge lies in the plane, both its ends are added.
       if (here == there) {
         rectangle.add(view.project(corners[from]));
         rectangle.add(view.project(end));
@@ -77,7 +77,7 @@ Rectangle cut_rectangle(const Lattice& lattice, const View& view, double positio
   if (!(lowest <= 0.0 && highest >= 0.0))
     throw InvalidInput("the plane at " + rounded(position_mm) + " mm misses the scan, which reaches from " +
                        rounded(lowest + position_mm) + " to " + rounded(highest + position_mm) +
-                       " mm along its normal: give a place in between");
+                       " mm along its normal: choose a position in between");
   return rectangle;
 }
 
@@ -95,7 +95,7 @@ void for_each_pixel(const Sheet& sheet, const Progress& progress, const Pixel& p
   progress.at(1.0);
 }
 
-// Maps millimetres to index space; inverts the matrix once.
+// Maps millimetres to index space. The matrix is inverted only once.
 class VoxelOf {
  public:
   explicit VoxelOf(const glm::dmat4& lps_from_voxel)
@@ -112,8 +112,8 @@ bool within(const glm::dvec3& p_voxel, const glm::ivec3& dims) {
          glm::all(glm::lessThan(p_voxel, glm::dvec3(dims) - 0.5));
 }
 
-// Interpolates like interpolate() of a grey octree. Samples of the border repeat beyond it. None if the value
-// would depend on padding.
+// Interpolates like interpolate() of a grey octree. Beyond the border, the border's samples repeat. None if
+// the value would depend on padding.
 template <typename Samples>
 std::optional<double> interpolated(const Samples& samples, const glm::ivec3& dims, const glm::dvec3& p_voxel,
                                    Interpolation interpolation, std::optional<double> padding) {
@@ -181,7 +181,7 @@ Sheet curved_sheet(const CurveOptions& options) {
   if (!(up_length > 0.0) || !std::isfinite(up_length))
     throw InvalidInput("the up vector of a curved slice must be finite and not zero");
   const glm::dvec3 up = options.up / up_length;
-  std::vector<glm::dvec3> flat;   // the points, projected along up
+  std::vector<glm::dvec3> flat;   // the curve's points, projected along `up`
   std::vector<double> length_mm;  // length of the polyline up to each point
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
@@ -196,7 +196,7 @@ Sheet curved_sheet(const CurveOptions& options) {
   }
   if (flat.size() < 2 || !(length_mm.back() > 0.0))
     throw InvalidInput(
-        "a curved slice needs at least two points that differ in a direction other than its up");
+        "a curved slice needs at least two points that differ in a direction other than its up vector");
   Sheet sheet;
   sheet.down = -up;
   sheet.pixel_mm = options.pixel_mm;
@@ -283,8 +283,8 @@ EdgeLetters edge_letters(const Sheet& sheet) {
   letters.bottom = patient_side(sheet.down);
   const std::vector<glm::dvec3>& columns = sheet.columns_mm;
   if (columns.empty()) return letters;
-  // Directions count from the middle: both ends of a dental arch run backwards, but one lies on the right and
-  // one on the left.
+  // Directions are those from the middle to the ends: both ends of a dental arch run backwards, but one lies
+  // on the right and one on the left.
   const glm::dvec3 middle_mm = 0.5 * (columns[(columns.size() - 1) / 2] + columns[columns.size() / 2]);
   if (columns.front() != middle_mm) letters.left = patient_side(columns.front() - middle_mm);
   if (columns.back() != middle_mm) letters.right = patient_side(columns.back() - middle_mm);

@@ -18,13 +18,13 @@ namespace octotomy::voxel {
 namespace {
 
 void check(const std::vector<DrawnObject>& objects, const RenderOptions& options) {
-  if (objects.empty()) throw InvalidInput("nothing to draw: give at least one object");
+  if (objects.empty()) throw InvalidInput("nothing to draw: choose at least one object");
   if (objects.size() > std::numeric_limits<std::int16_t>::max())
     throw InvalidInput("cannot draw " + std::to_string(objects.size()) +
                        " objects in one picture: at most 32767");
   for (const DrawnObject& object : objects) {
     if (object.octree.universe() != objects.front().octree.universe())
-      throw InvalidInput("object '" + object.name + "' is of another universe than '" + objects.front().name +
+      throw InvalidInput("object '" + object.name + "' has another universe than '" + objects.front().name +
                          "': combine it into that universe first");
     if (object.scalar && object.scalar->universe != object.octree.universe())
       throw std::invalid_argument(
@@ -37,13 +37,14 @@ void check(const std::vector<DrawnObject>& objects, const RenderOptions& options
   }
   if (options.cut_tones && options.cut_tones->samples.universe() != objects.front().octree.universe())
     throw std::invalid_argument(
-        "the samples for cut faces are of another universe than the objects: build them in the objects'");
+        "the samples for cut faces are of another universe than the objects: build them in the objects' "
+        "universe");
   if (options.cut_tones && !(options.cut_tones->white > options.cut_tones->black))
     throw InvalidInput("white must be a larger sample than black on cut faces");
   if (options.densities && options.densities->tones.samples.universe() != objects.front().octree.universe())
     throw std::invalid_argument(
         "the samples that colour surfaces are of another universe than the objects: build them in the "
-        "objects'");
+        "objects' universe");
   if (options.shading == Shading::Density && !options.densities)
     throw InvalidInput("shading by density needs samples: draw a scan or a grey octree");
   if (options.size_px.x < 1 || options.size_px.y < 1)
@@ -61,7 +62,7 @@ void check(const std::vector<DrawnObject>& objects, const RenderOptions& options
     throw InvalidInput("the picture's centre is not finite");
 }
 
-/// Blends a translucent object over the pixels at which it is nearer than the opaque surface.
+/// Blends a translucent object over the pixels at which this object is nearer than the opaque surface.
 void lay_over(const Translucent& layer, const DepthImage& opaque, std::vector<std::uint8_t>& rgb) {
   for (std::size_t i = 0; i < layer.image.pixels.size(); ++i) {
     const Seen& seen = layer.image.pixels[i];
@@ -160,7 +161,7 @@ Picture blank_picture(const std::vector<DrawnObject>& objects, const RenderOptio
 ImagePlane plane_of(const std::vector<DrawnObject>& objects, const Picture& picture) {
   ImagePlane plane = image_plane(objects.front().octree.universe(), picture.view, picture.size_px,
                                  {picture.centre_mm, picture.pixel_mm * picture.size_px.x});
-  plane.pixel_mm = picture.pixel_mm;  // exactly as in the picture
+  plane.pixel_mm = picture.pixel_mm;  // depth and object exactly as in the picture
   plane.eye = picture.eye;
   return plane;
 }

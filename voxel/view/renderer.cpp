@@ -11,12 +11,13 @@ namespace octotomy::voxel {
 namespace {
 
 bool same_samples(const std::optional<GreyOctree>& a, const std::optional<GreyOctree>& b) {
-  // Grey octrees are immutable and shared, so the same storage holds the same samples. If equal octrees are
-  // stored twice, the only cost is another trace.
+  // Grey octrees are immutable and shared, so the same storage means the same samples. If equal octrees are
+  // stored twice, the only cost is an unnecessary trace.
   return a.has_value() == b.has_value() && (!a || &a->universe() == &b->universe());
 }
 
-// Comparisons name every field, so that a new field does not compile until it is compared here.
+// The comparisons bind every field by name, so that code with a new field does not compile until the field is
+// compared here.
 
 bool same_expression(const std::optional<Expression>& a, const std::optional<Expression>& b) {
   return a.has_value() == b.has_value() && (!a || &a->term() == &b->term());
@@ -67,7 +68,7 @@ bool same_densities(const std::optional<Densities>& a, const std::optional<Densi
                     });
 }
 
-/// Whether two sets of options turn the same layers into the same picture.
+/// Whether two sets of options lead from the same layers to the same picture.
 bool same_style(const RenderOptions& a, const RenderOptions& b) {
   const auto& [view, size_px, centre_mm, width_mm, eye_mm, algorithm, shading, background, cuts, cut_tones,
                lights, occlusion, count, antialias, ambient, gloss, exponent, densities] = a;
@@ -93,12 +94,12 @@ bool same_plane(const Picture& a, const Picture& b) {
 
 }  // namespace
 
-/// The layers and the last picture of each size.
+/// The cached layers and the last picture, for each size.
 class Renderer::Stages {
  public:
   Tally tally;
 
-  /// Whether all layers of the full picture are kept.
+  /// Whether all layers of the full picture are cached.
   bool has_all_layers(const std::vector<DrawnObject>& objects, const RenderOptions& options) {
     const Stage& stage = stages_.back();
     if (!is_of(stage, blank_picture(objects, options), options.cuts)) return false;
@@ -107,13 +108,13 @@ class Renderer::Stages {
     });
   }
 
-  /// The picture of a size; the last size is the full one. Throws Stopped.
+  /// Draws the picture of a size; the last size is the full one. Throws Stopped.
   Picture draw(std::size_t number, const std::vector<DrawnObject>& objects, RenderOptions options,
                const Progress& progress) {
     Stage& stage = stages_[number];
     if (number + 1 < stages_.size()) {
       const int step = 2 << (stages_.size() - 2 - number);
-      // All sizes have the full picture's frame, so that it does not jump.
+      // All sizes have the frame of the full picture, so that the picture does not jump.
       const Picture whole = blank_picture(objects, options);
       options.centre_mm = whole.centre_mm;
       options.width_mm = whole.pixel_mm * whole.size_px.x;
@@ -132,7 +133,7 @@ class Renderer::Stages {
       all_kept = all_kept && same_shape(object, as_shaded(stage.last->objects[i], options.shading)) &&
                  same_look(object, stage.last->objects[i]);
       layers.push_back(layer_of(stage, object, plane, options, blank.algorithm));
-      // Stores the layer at once, so that the next frame can use it if this one is stopped.
+      // The layer is stored at once, so that the next frame can use it if this frame is stopped.
       if (layers.back().layer && find(stage, object) == nullptr) stage.layers.push_back(layers.back());
     }
     progress.at(1.0);
@@ -143,8 +144,8 @@ class Renderer::Stages {
     Picture picture = blank;
     shade(objects, layers, plane, options, picture);
     ++tally.pictures_shaded;
-    // Keeps only this frame's layers, including those of hidden objects, because users often hide and show
-    // objects.
+    // Only this frame's layers are kept. These include the layers of hidden objects, because users often hide
+    // objects and show them again.
     std::erase_if(layers, [](const Kept& kept) { return kept.layer == nullptr; });
     stage.layers = std::move(layers);
     stage.last = Last{objects, options, picture};
@@ -159,8 +160,8 @@ class Renderer::Stages {
   /// An object's layer.
   struct Kept {
     DrawnObject shape;
-    DrawnObject left;                    ///< the shape without the parts that the cuts remove
-    std::shared_ptr<const Layer> layer;  ///< none: hidden and not traced yet
+    DrawnObject left;                    ///< `shape` without the parts that the cuts remove
+    std::shared_ptr<const Layer> layer;  ///< null: the object is hidden and was not traced yet
   };
   struct Last {
     std::vector<DrawnObject> objects;
@@ -168,7 +169,7 @@ class Renderer::Stages {
     Picture picture;
   };
   struct Stage {
-    std::optional<Picture> blank;  ///< has the layers' plane and algorithm
+    std::optional<Picture> blank;  ///< a picture with the plane and algorithm of the layers
     std::vector<Cutaway> cuts;     ///< of the layers
     std::vector<Kept> layers;
     std::optional<Last> last;  ///< the last finished picture of these layers

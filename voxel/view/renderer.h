@@ -12,15 +12,15 @@
 
 namespace octotomy::voxel {
 
-/// Draws frame after frame for a screen. Keeps an object's layer while its voxels, samples, cuts and the view
-/// stay the same, and the whole picture while nothing changes. The result is bit for bit that of a new
-/// Renderer. One thread at a time may use it.
+/// Draws frame after frame for a screen. Caches an object's layer as long as the object's voxels and samples,
+/// the cuts and the view do not change, and the whole picture as long as nothing changes. The result has the
+/// same bits as that of a new Renderer. One thread at a time may use it.
 ///
-/// Every object has a layer of its own, so that moving a fragment does not redraw the skull's layer. The
-/// nearest surface wins. Where two objects lie within a voxel of each other along a ray of node tracing,
-/// render() may show the other object, because it compares voxels before it interpolates depths. A hidden
-/// object keeps its layer, but none is traced for it. Memory: for each object and size, a depth image and the
-/// algorithm's data.
+/// Every object has a separate layer, so that moving a fragment does not redraw the skull's layer. At every
+/// pixel the nearest surface is visible. Where two objects lie within a voxel of each other along a ray of
+/// node tracing, render() may show the other object, because it compares voxels before it interpolates
+/// depths. The layer of a hidden object stays cached, but if there is none, it is not traced. Memory: for
+/// each object and size, a depth image and the algorithm's data.
 class Renderer {
  public:
   Renderer();
@@ -28,7 +28,7 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Counts of the layers and pictures of all frames so far.
+  /// Numbers of layers and pictures that were traced, shaded or reused in all frames so far.
   struct Tally {
     std::uint64_t layers_drawn = 0;
     std::uint64_t layers_kept = 0;
@@ -41,9 +41,9 @@ class Renderer {
   Picture frame(const std::vector<DrawnObject>& objects, const RenderOptions& options);
 
   /// Calls `show` with the frame at a quarter and at half of the pixels along each side, without blended
-  /// edges, and then with the full frame; only with the full frame if all its layers are cached. Stops
-  /// between layers and pictures, never within one, and keeps the finished ones. Throws as frame() does, and
-  /// Stopped.
+  /// edges, and then with the full frame; only with the full frame if all its layers are cached. A stop takes
+  /// effect between layers and pictures, never within one; finished ones are kept. Throws as frame() does,
+  /// and Stopped.
   void refine(const std::vector<DrawnObject>& objects, const RenderOptions& options,
               const std::function<void(const Picture&)>& show, const Progress& progress = {});
 

@@ -19,8 +19,8 @@
 // 1 smooth depths (depth_plane.h); 2 compute slopes; 3 compute the mean depth around every cell of 4 x 4
 // pixels (mean_depth.h); 4 light every pixel from slope, depth and mean depth; 5 map light to sRGB.
 //
-// Departures from Gordon and Reynolds: weights fall smoothly to almost zero instead of in three pieces, and
-// three parallel differences are averaged.
+// Departures from Gordon and Reynolds: the weights are a smooth function that falls to almost zero, instead
+// of three pieces, and three parallel differences are averaged.
 
 namespace octotomy::voxel {
 namespace {
@@ -34,17 +34,17 @@ inline float continuity(float difference, float per_limit2) {
   return std::abs(difference) < surely_lit_mm ? weight : 0.0f;
 }
 
-/// Depths of three rows, `stride` apart, and the constants of their slopes.
+/// The depths of three rows, `stride` apart, and the constants for computing slopes from them.
 struct SlopeRows {
   const float* above = nullptr;
   const float* here = nullptr;
   const float* below = nullptr;
   int stride = 1;
   float per_limit2 = 1.0f;
-  float per_mm = 1.0f;  ///< 1 / the length of a stride
+  float per_mm = 1.0f;  ///< 1 / the length of a stride in mm
 };
 
-/// Pass 2 for the pixels of one row from `first` up to `last`, without unit.
+/// Pass 2 for the pixels of one row from `first` up to, not including, `last`: slopes without unit.
 OCTOTOMY_VECTOR_CLONES void slope_row(const SlopeRows& rows, int first, int last, float* __restrict to_right,
                                       float* __restrict to_top) {
   const float* const above = rows.above;
@@ -57,7 +57,7 @@ OCTOTOMY_VECTOR_CLONES void slope_row(const SlopeRows& rows, int first, int last
     const float c = here[x], l = here[x - stride], r = here[x + stride];
     const float a = above[x], al = above[x - stride], ar = above[x + stride];
     const float b = below[x], bl = below[x - stride], br = below[x + stride];
-    // The weights of the four differences to the centre serve both directions.
+    // The weights of the four differences to the centre are used for both directions.
     const float to_l = continuity(c - l, per_limit2), to_r = continuity(r - c, per_limit2);
     const float to_a = continuity(a - c, per_limit2), to_b = continuity(c - b, per_limit2);
     const float r1 = to_a * continuity(ar - a, per_limit2), r2 = to_a * continuity(a - al, per_limit2);
@@ -73,7 +73,7 @@ OCTOTOMY_VECTOR_CLONES void slope_row(const SlopeRows& rows, int first, int last
   }
 }
 
-/// The scenery's lights in (right, up, look), flat.
+/// The directions and strengths of the scenery's lights in (right, up, look), as flat arrays.
 struct Lighting {
   static constexpr int most_lights = 8;
   explicit Lighting(const Scenery& scenery)
@@ -88,7 +88,8 @@ struct Lighting {
       y[i] = towards.y;
       z[i] = towards.z;
     }
-    // A surface with this normal, halfway between light and observer, mirrors the first light.
+    // A surface with this normal, half-way between the directions to light and observer, mirrors the first
+    // light to the observer.
     if (count > 0)
       halfway = glm::normalize(glm::normalize(scenery.lights.front().towards) + glm::vec3(0.0f, 0.0f, -1.0f));
   }
@@ -107,7 +108,7 @@ OCTOTOMY_VECTOR_CLONES void light_row(const Lighting& lighting, const float* __r
   float* const per_length = mirrored;
   const float ambient = lighting.ambient;
   for (int i = first; i < last; ++i) {
-    // A surface turns towards the side to which its depth grows, and so does its normal.
+    // The normal of a surface points to the side towards which the depth grows.
     const float nx = to_right[i], ny = to_top[i];
     per_length[i] = 1.0f / std::sqrt(nx * nx + ny * ny + 1.0f);
     diffuse[i] = ambient;
@@ -132,11 +133,11 @@ OCTOTOMY_VECTOR_CLONES void light_row(const Lighting& lighting, const float* __r
   }
 }
 
-/// The darkening of far pixels, and of pixels behind their surroundings.
+/// The parameters of the darkening of far pixels and of pixels behind their surroundings.
 struct Dimming {
   float nearest_mm = 0.0f;
   float per_range = 0.0f;  ///< 0: no depth cue
-  float per_width = 0.0f;  ///< 12 / the picture's width, 0: no occlusion
+  float per_width = 0.0f;  ///< 12 / the picture's width in mm; 0: no occlusion
 };
 
 OCTOTOMY_VECTOR_CLONES void dim_row(const Dimming& dimming, const float* __restrict depth,
@@ -152,7 +153,7 @@ OCTOTOMY_VECTOR_CLONES void dim_row(const Dimming& dimming, const float* __restr
   }
 }
 
-/// Pass 5 for one channel: indices into the table of tones, clamped to its range for any light.
+/// Pass 5 for one channel: computes indices into the table of tones, clamped to the table's range.
 OCTOTOMY_VECTOR_CLONES void root_row(const float* __restrict colour, const float* __restrict diffuse,
                                      const float* __restrict mirrored, int first, int last,
                                      int* __restrict root) {
@@ -171,7 +172,7 @@ float nearest_mm(const DepthImage& image) {
   return nearest;
 }
 
-/// Rows of numbers for one thread.
+/// The rows of intermediate numbers that one thread uses.
 struct Rows {
   explicit Rows(int width)
       : to_right(static_cast<std::size_t>(width)),
@@ -218,7 +219,7 @@ void slopes_of_normals(std::span<const glm::vec3> normals, const glm::ivec2& lit
   }
 }
 
-/// Runs `row(y, rows)` for every row, in parallel, with rows of numbers to use.
+/// Calls `row(y, rows)` for every row, in parallel. `rows` are the thread's rows of intermediate numbers.
 template <typename Row>
 void each_row(const glm::ivec2& size_px, const Row& row) {
   constexpr int rows_a_task = 8;
@@ -247,7 +248,7 @@ std::vector<glm::vec2> slopes(const DepthImage& image, const Scenery& scenery) {
 
 namespace {
 
-/// Pictures with one tone per object: Depth, Silhouette.
+/// Draws the styles with one tone per object: Depth and Silhouette.
 std::vector<std::uint8_t> flat_picture(const DepthImage& image, const Scenery& scenery) {
   std::vector<std::uint8_t> rgb(3 * image.pixels.size());
   const float nearest = nearest_mm(image);
@@ -260,7 +261,7 @@ std::vector<std::uint8_t> flat_picture(const DepthImage& image, const Scenery& s
     glm::vec3 colour = linear_from_srgb(scenery.background);
     if (seen.lit()) {
       colour = linear_from_srgb(scenery.colours[static_cast<std::size_t>(seen.object)]);
-      // The farthest pixels keep a tenth of their light, so that they are not black.
+      // The farthest pixels keep a tenth of the light, so that they are not black.
       if (scenery.style == Style::Depth) colour *= 1.0f - 0.9f * (seen.depth_mm - nearest) * per_span;
     }
     put_srgb(&rgb[3 * i], colour);
@@ -268,7 +269,7 @@ std::vector<std::uint8_t> flat_picture(const DepthImage& image, const Scenery& s
   return rgb;
 }
 
-/// Lines at the edges of surfaces and at creases.
+/// Draws lines at the edges of surfaces and at creases.
 std::vector<std::uint8_t> outline_picture(const DepthImage& image, const Scenery& scenery) {
   std::vector<std::uint8_t> rgb(3 * image.pixels.size(), 255);
   const auto blacken = [&](std::size_t pixel) {
@@ -310,8 +311,8 @@ void colours_of_row(const DepthImage& image, const std::vector<glm::vec3>& colou
     }
     return;
   }
-  // In most pictures all objects are parts of one bone and have one colour. Colours of background pixels are
-  // not used.
+  // In most pictures all objects are parts of one bone and have one colour, so that colours need not be
+  // looked up. Colours of background pixels are not used.
   const bool same =
       !colours.empty() && std::all_of(colours.begin(), colours.end(),
                                       [&](const glm::vec3& colour) { return colour == colours.front(); });
@@ -397,7 +398,7 @@ std::vector<std::uint8_t> shade(const DepthImage& image, const Scenery& scenery,
 }
 
 std::vector<std::uint32_t> edge_pixels(const DepthImage& image, const Scenery& scenery) {
-  // A break of less than twice break_mm() shows no jagged edge.
+  // At a break of less than twice break_mm() no jagged edge is visible.
   const auto limit_mm = static_cast<float>(2.0 * break_mm(std::max(scenery.pixel_mm, scenery.voxel_mm)));
   std::vector<std::uint32_t> edges;
   const auto ends = [&](const Seen& a, const Seen& b) {

@@ -7,13 +7,14 @@
 
 namespace octotomy::voxel {
 
-/// sRGB and linear light by table: IEC 61966-2-1.
+/// Converts between sRGB and linear light (IEC 61966-2-1), from linear light by a table.
 class SrgbTable {
  public:
   static const SrgbTable& table();
 
-  /// The table runs over square roots, in which sRGB is nearly linear: 1024 steps reach all 256 values.
-  /// `root` is root_steps times the square root of linear light from 0 to 1, rounded to the nearest.
+  /// The sRGB byte of linear light. The table's index is a square root, because sRGB is nearly linear in it,
+  /// so that 1024 steps suffice for all 256 values. `root` is root_steps times the square root of linear
+  /// light from 0 to 1, rounded to the nearest integer.
   static constexpr float root_steps = 1023.0f;
   std::uint8_t srgb_of_root(int root) const { return to_srgb_[static_cast<std::size_t>(root)]; }
   std::uint8_t srgb(float linear) const;

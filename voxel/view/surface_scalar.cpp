@@ -36,10 +36,10 @@ SurfaceScalar distance_to(const Octree& other, const Octree& object, double most
     throw InvalidInput("the range of distances must be positive, in mm");
   if (other.universe() != object.universe())
     throw InvalidInput(
-        "the two objects are of different universes: combine one into the other's universe first");
+        "the two objects have different universes: combine one into the other's universe first");
   if (other.is_empty() || object.is_empty())
-    throw InvalidInput("an empty object has no surface: give objects with at least one voxel");
-  // Adds one voxel, because the surface extends beyond the outermost centres.
+    throw InvalidInput("an empty object has no surface: choose objects with at least one voxel");
+  // One voxel is added, because the surface extends beyond the outermost voxels' centres.
   const VoxelRange range = grown(range_of(object), 1);
   return {other.universe(), range, signed_distances_mm(other, range), most_mm};
 }

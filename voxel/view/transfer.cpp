@@ -78,7 +78,7 @@ void check(const TransferFunction& transfer) {
         fail(where + "has a colour that is not between black and white");
     visible = visible || point.per_mm > 0.0;
   }
-  if (!visible) fail("makes nothing visible: give a point a positive per_mm");
+  if (!visible) fail("makes nothing visible: set per_mm of at least one point above 0");
 }
 
 TransferFunction preset_transfer(const std::string& name) {
@@ -88,7 +88,7 @@ TransferFunction preset_transfer(const std::string& name) {
     known.append(known.empty() ? "" : ", ").append(each);
   }
   throw InvalidInput("there is no transfer function '" + name + "': choose one of " + known +
-                     ", or give a JSON file");
+                     ", or choose a JSON file");
 }
 
 std::vector<std::string> preset_transfers() {
@@ -107,7 +107,8 @@ TransferTable::TransferTable(const TransferFunction& transfer, const MinMax& sam
   assert(transfer.points.size() >= 2 && samples.low <= samples.high);
   const int count = samples.high - samples.low + 1;
   entries_.reserve(static_cast<std::size_t>(count) + 1);
-  // One entry more than the range has samples, so that at() has an upper neighbour for the last sample.
+  // The table has one entry more than the range has samples, so that at() has an upper neighbour for the last
+  // sample.
   for (int i = 0; i <= count; ++i) entries_.push_back(entry_at(transfer, first_ + i));
   visible_before_.assign(entries_.size(), 0);
   for (std::size_t i = 0; i + 1 < entries_.size(); ++i)

@@ -20,7 +20,7 @@ void add_levels(std::vector<LevelCount>& to, const std::vector<LevelCount>& from
   }
 }
 
-/// Share of the nodes without a visit, if `visited` nodes have one.
+/// The share of nodes without a visit if `visited` of them have one; none if there is no node.
 std::optional<double> share_without(const std::vector<LevelCount>& levels, std::uint64_t visited) {
   std::uint64_t nodes = 0;
   for (const LevelCount& level : levels) nodes += level.partial + level.full + level.empty;

@@ -11,13 +11,15 @@
 namespace octotomy::voxel {
 namespace {
 
-/// The smallest page size. In a larger page, every touch after the first costs nothing.
+/// The smallest page size, by which memory is touched. In larger pages, touches after the first take almost
+/// no time.
 constexpr std::size_t page_bytes = 4096;
 /// Twice the size of the largest page that the system uses without an explicit request.
 constexpr std::size_t part_bytes = std::size_t{4} << 20;
 constexpr std::size_t most_parts_ahead = 16;
 
-/// Parts whose pages tasks touch in advance, unless the filling thread reaches a part first.
+/// The parts of the memory. Tasks touch the pages of parts in advance, unless the filling thread reaches a
+/// part first.
 class PartsAhead {
  public:
   PartsAhead(char* memory, std::size_t bytes)
@@ -62,7 +64,8 @@ class PartsAhead {
   std::size_t bytes_;
   std::size_t asked_ = 0;
   std::vector<std::atomic<PartState>> places_;
-  tbb::isolated_task_group tasks_;  ///< isolated: a thread that waits for these tasks runs no others
+  /// Isolated, so that a thread that waits for these tasks runs no other tasks.
+  tbb::isolated_task_group tasks_;
 };
 
 }  // namespace

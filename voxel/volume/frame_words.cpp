@@ -32,7 +32,7 @@ const Direction* direction_of(std::string_view word) {
   return nullptr;
 }
 
-/// Each unit with its names. British and American endings are unified before comparison.
+/// The units of length and their names. British and American endings are unified before comparison.
 constexpr std::array<std::pair<LengthUnit (*)(), std::array<std::string_view, 6>>, 8> all_units{{
     {[] {
        return LengthUnit{"mm", 1.0};
@@ -50,7 +50,7 @@ constexpr std::array<std::pair<LengthUnit (*)(), std::array<std::string_view, 6>
        return LengthUnit{"m", 1e3};
      },
      {"m", "meter"}},
-    // The Greek letter and the sign for micro, in UTF-8 and in Latin-1.
+    // The Greek letter mu and the micro sign in UTF-8, and the micro sign in Latin-1.
     {[] {
        return LengthUnit{"um", 1e-3};
      },

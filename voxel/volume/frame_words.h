@@ -8,15 +8,15 @@
 
 namespace octotomy::voxel {
 
-/// The patient's directions along which the axes of a file's coordinates grow.
+/// The patient's directions in which the coordinates of a file grow, one for each axis.
 struct PatientFrame {
   std::string name =
       "LPS";  ///< one letter per axis: Left or Right, Posterior or Anterior, Superior or Inferior
   glm::dmat3 lps_from_frame{1.0};
 };
 
-/// Reads three letters ("RAS") or three words ("left-anterior-superior"), in any order of the axes and in
-/// upper or lower case. None for anything else.
+/// Reads three letters ("RAS") or three words ("left-anterior-superior"), with the axes in any order, in
+/// upper or lower case. None for any other text.
 std::optional<PatientFrame> patient_frame(std::string_view words);
 
 struct LengthUnit {
@@ -25,15 +25,16 @@ struct LengthUnit {
 };
 
 /// Reads a unit's symbol or its name, singular or plural, British or American: "um", "microns", "inch",
-/// "metres". Quotes around it are ignored. None for anything else.
+/// "metres". Quotes around the text are ignored. None for any other text.
 std::optional<LengthUnit> length_unit(std::string_view word);
 
-/// patient_frame() and length_unit() for a user's input. Throw std::invalid_argument with examples.
+/// Parse a user's input as patient_frame() and length_unit() do, but throw std::invalid_argument with
+/// examples for any other text.
 PatientFrame parse_frame(const std::string& text);
 LengthUnit parse_unit(const std::string& text);
 
-/// The sides of the patient at which axes (in LPS) start, in the letters of MetaImage's
-/// AnatomicalOrientation: "RAI" for axes along LPS.
+/// MetaImage's AnatomicalOrientation for axes given in LPS: the letters of the patient's sides at which the
+/// axes start, "RAI" for axes along LPS.
 std::string sides_of_origin(const glm::dmat3& axes);
 
 }  // namespace octotomy::voxel

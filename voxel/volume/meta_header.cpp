@@ -51,8 +51,8 @@ class MetaReader {
   }
 
  private:
-  /// The numbers under the first of several names that exists. Adds a warning if another of these names has
-  /// different numbers.
+  /// The numbers of the first field that exists among several names. Adds a warning if another of these
+  /// fields has different numbers.
   std::vector<double> first_of(const std::vector<const char*>& names, std::size_t count) {
     std::vector<double> taken;
     std::string taken_name;
@@ -78,7 +78,7 @@ class MetaReader {
     if (!unit) {
       header_.audit.push_back(
           {"length_unit", Verdict::Warn,
-           "the file states the unit '" + *words + "', which is no known unit of length"});
+           "the file states the unit '" + *words + "', which is not a known unit of length"});
       return;
     }
     header_.geometry.unit_says = unit->name + " (DistanceUnits)";
@@ -163,8 +163,8 @@ class MetaReader {
     const std::string type = text_.field("elementtype").value_or("");
     const auto known = meta_types.find(lower_case(type));
     if (known == meta_types.end())
-      refuse(path_,
-             "its MetaImage header is damaged: ElementType is '" + type + "', which is no type of numbers");
+      refuse(path_, "its MetaImage header is damaged: ElementType is '" + type +
+                        "', which is not a type of numbers");
     samples.stored.type = known->second;
     const double channels = text_.number(path_, "elementnumberofchannels").value_or(1.0);
     if (channels != 1.0) refuse(path_, print("has %g values per sample; a scan has one", channels));
@@ -201,7 +201,7 @@ class MetaReader {
     constexpr double most = 1e15;
     if (!(*bytes >= -1.0 && *bytes <= most) || *bytes != std::trunc(*bytes) ||
         (*bytes < 0.0 && *bytes != -1.0))
-      refuse(path_, "its MetaImage header is damaged: HeaderSize is no number of bytes");
+      refuse(path_, "its MetaImage header is damaged: HeaderSize is not a number of bytes");
     samples.at_end = *bytes < 0.0;
     if (samples.at_end && samples.encoding != SampleFiles::Encoding::Raw)
       refuse(path_, "has HeaderSize -1 and samples that are not raw: where they begin is unknown");

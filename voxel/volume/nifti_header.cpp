@@ -40,7 +40,7 @@ Number swapped(Number value) {
   return value;
 }
 
-/// The fields that this reader uses, of either version.
+/// The header fields that this reader uses, for both versions of the format.
 struct Fields {
   int version = 1;
   bool is_swapped = false;
@@ -89,8 +89,8 @@ Fields fields_of(const char* bytes, bool is_swapped) {
   return fields;
 }
 
-/// Bound on the shift of a lattice's corner by single precision: eight roundings, of the steps, the origin
-/// and the operations between quaternion and matrix.
+/// An upper bound of the shift of a lattice's corner by single precision. It covers eight roundings: of the
+/// steps, the origin and the operations between quaternion and matrix.
 double single_precision(const glm::dmat4& file_from_voxel, const glm::ivec3& dims) {
   double extent = glm::length(glm::dvec3(file_from_voxel[3]));
   for (int axis = 0; axis < 3; ++axis) extent += dims[axis] * glm::length(glm::dvec3(file_from_voxel[axis]));
@@ -107,7 +107,7 @@ double worst_shift(const glm::dmat4& a, const glm::dmat4& b, const glm::ivec3& d
   return worst;
 }
 
-/// The coordinates that a form's code denotes.
+/// The name of the coordinates that a form's code denotes.
 std::string name_of_code(int code) {
   switch (code) {
     case NIFTI_XFORM_SCANNER_ANAT:
@@ -159,7 +159,8 @@ class NiftiReader {
 
  private:
   static constexpr int most_code = NIFTI_XFORM_TEMPLATE_OTHER;
-  static constexpr std::size_t most_read = 4096;  ///< the header and this program's own extension after it
+  /// Size of the header and this program's own extension behind it.
+  static constexpr std::size_t most_read = 4096;
 
   void read_fields() {
     bytes_.resize(most_read);
@@ -196,7 +197,7 @@ class NiftiReader {
       geometry.mm_per_unit = glm::dvec3(unit->second.second);
     } else if (code != NIFTI_UNITS_UNKNOWN) {
       header_.audit.push_back(
-          {"length_unit", Verdict::Warn, print("xyzt_units has the code %d, which is no unit", code)});
+          {"length_unit", Verdict::Warn, print("xyzt_units has the code %d, which is not a unit", code)});
     }
   }
 
@@ -208,7 +209,7 @@ class NiftiReader {
     });
   }
 
-  /// The spacing along three axes. For a single slice the header may omit the third.
+  /// The spacing along three axes. For a single slice the header may omit that of the third axis.
   glm::dvec3 spacing(std::size_t axes) {
     glm::dvec3 spacing(fields_.pixdim[1], fields_.pixdim[2], fields_.pixdim[3]);
     const bool has_third = axes >= 3 || std::abs(spacing.z) > 0.0;
@@ -231,7 +232,7 @@ class NiftiReader {
   glm::dmat4 qform(std::size_t axes) {
     const glm::dvec3 length = spacing(axes);
     require(are_lengths({fields_.quaternion, fields_.qoffset}),
-            "its qform has a number that is not finite or beyond all lengths");
+            "its qform has a number that is not finite or larger than any length in a scan");
     const double squared = glm::dot(fields_.quaternion, fields_.quaternion);
     constexpr double rounding = 8.0 * static_cast<double>(std::numeric_limits<float>::epsilon());
     if (squared > 1.0 + rounding)
@@ -263,7 +264,7 @@ class NiftiReader {
       return std::isfinite(column.x) && std::isfinite(column.y) && std::isfinite(column.z);
     };
     if (!is_finite(s[0]) || !is_finite(s[1]) || !is_finite(s[2]) || !is_finite(s[3])) return false;
-    require(are_lengths({s[0], s[1], s[2], s[3]}), "its sform has a number beyond all lengths");
+    require(are_lengths({s[0], s[1], s[2], s[3]}), "its sform has a number larger than any length in a scan");
     third_is_missing_ = axes < 3 && glm::dvec3(s[2]) == glm::dvec3(0.0);
     const glm::dvec3 third =
         third_is_missing_ ? glm::cross(glm::dvec3(s[0]), glm::dvec3(s[1])) : glm::dvec3(s[2]);
@@ -350,15 +351,16 @@ class NiftiReader {
       q = qform(axes);
     } catch (const Error&) {
       header_.audit.push_back(
-          {"forms", Verdict::Warn, "the header's qform is damaged: its sform was taken, which is sound"});
+          {"forms", Verdict::Warn, "the header's qform is damaged: its sform, which is valid, was taken"});
       return;
     }
     header_.audit.resize(lines);  // the qform is not used, so its own flaws are not reported
     third_is_missing_ = false;
     const glm::dmat4& s = fields_.sform;
     const glm::ivec3& dims = header_.geometry.dims;
-    // The quaternion's first number is the root of 1 minus the sum of the others' squares. The rounding of
-    // the squares adds up to `slack`, so near half a turn the root is uncertain by up to the root of `slack`.
+    // The quaternion's first number is the square root of 1 minus the sum of the other numbers' squares. The
+    // rounding of the squares adds up to `slack`, so near half a turn the root is uncertain by up to the root
+    // of `slack`.
     constexpr double slack = 4.0 * static_cast<double>(std::numeric_limits<float>::epsilon());
     const double real = std::sqrt(std::max(0.0, 1.0 - glm::dot(fields_.quaternion, fields_.quaternion)));
     const double turn = 2.0 * slack / std::max(real, std::sqrt(slack));
@@ -378,7 +380,8 @@ class NiftiReader {
                                    shift * header_.geometry.mm_per_unit.x)});
   }
 
-  /// Uses the double-precision geometry in this program's own files if the header still agrees with it.
+  /// Uses the double-precision geometry that this program stores in its own files, if the header still agrees
+  /// with it.
   void take_exact_geometry() {
     const std::optional<glm::dmat4> lps = own_geometry();
     if (!lps) return;
@@ -398,9 +401,11 @@ class NiftiReader {
            "ones in double precision"});
   }
 
-  /// The geometry in this program's own extension, which is the first one; none if it is absent or damaged.
+  /// The geometry in this program's own extension, which is the first extension; none if it is absent or
+  /// damaged.
   std::optional<glm::dmat4> own_geometry() const {
-    const std::size_t at = header_bytes_ + 4;  // after the flags that state whether there are extensions
+    // Extensions begin after the flags that state whether there are any.
+    const std::size_t at = header_bytes_ + 4;
     if (bytes_.size() < at + 8 || bytes_[header_bytes_] == 0) return std::nullopt;
     const auto length = static_cast<std::size_t>(std::max(8, whole_at(at)));
     if (length > bytes_.size() - at || whole_at(at + 4) != nifti_text_extension) return std::nullopt;
@@ -467,9 +472,10 @@ class NiftiReader {
       return;
     }
     if (!std::isfinite(intercept))
-      refuse(path_, print("its slope is %g, but its intercept is no finite number: the values are therefore "
-                          "unknown; save the volume again",
-                          slope));
+      refuse(path_,
+             print("its slope is %g, but its intercept is not a finite number: the values are therefore "
+                   "unknown; save the volume again",
+                   slope));
     stored.slope = slope;
     stored.intercept = intercept;
     header_.audit.push_back(rescale_finding(stored, "scl_slope and scl_inter"));

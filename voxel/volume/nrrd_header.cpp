@@ -51,7 +51,7 @@ const std::map<std::string, SampleType>& nrrd_types() {
   return all;
 }
 
-/// Splits a text at blanks. Text within quotes or brackets stays together; quotes are removed.
+/// Splits a text at blanks, but not within quotes or brackets. Quotes are removed.
 std::vector<std::string> words_in(const std::string& text) {
   std::vector<std::string> words;
   for (std::size_t at = text.find_first_not_of(" \t"); at != std::string::npos;
@@ -100,7 +100,7 @@ class NrrdReader {
     return *text;
   }
 
-  /// The words of a field with one word per axis; empty if the field is absent.
+  /// The words of a field that has one word for each axis; empty if the field is absent.
   std::vector<std::string> words_an_axis(const char* name) const {
     const std::optional<std::string> text = text_.field(name);
     if (!text) return {};
@@ -213,7 +213,7 @@ class NrrdReader {
       if (!unit) {
         header_.audit.push_back(
             {"length_unit", Verdict::Warn,
-             "the file states the unit '" + words[axis] + "', which is no known unit of length"});
+             "the file states the unit '" + words[axis] + "', which is not a known unit of length"});
         return;
       }
       mm[static_cast<int>(axis)] = unit->mm;
@@ -262,8 +262,8 @@ class NrrdReader {
                                "tensors, and a scan holds neither"});
   }
 
-  /// NRRD defines no meaning for axis mins and axis maxs if there are directions. They are not used; the
-  /// audit warns of them.
+  /// NRRD defines no meaning for axis mins and axis maxs if there are directions. They are not used, and the
+  /// audit has a warning.
   void warn_of_ends() {
     for (const char* name : {"axismins", "axismaxs"}) {
       const std::vector<double> ends = numbers_an_axis(name);
@@ -275,8 +275,8 @@ class NrrdReader {
     }
   }
 
-  /// NRRD defines no meaning for spacings if there are directions. Warns if the two differ, because one of
-  /// them is wrong.
+  /// NRRD defines no meaning for spacings if there are directions. Warns if spacings and directions differ,
+  /// because one of them is wrong.
   void warn_of_other_spacings() {
     const std::vector<double> spacings = numbers_an_axis("spacings");
     for (std::size_t i = 0; i < space_axes_.size(); ++i) {
@@ -298,14 +298,15 @@ class NrrdReader {
                              "the file states no origin: its first sample is assumed to lie at 0, 0, 0"});
   }
 
-  /// A field with one number per axis. Some may be nan; all are nan if the field is absent.
+  /// The numbers of a field with one number for each axis. Numbers may be nan; all are nan if the field is
+  /// absent.
   std::vector<double> numbers_an_axis(const char* name) const {
     const std::vector<double> numbers = text_.numbers(path_, name, axis_count_);
     return numbers.empty() ? std::vector<double>(axis_count_, std::numeric_limits<double>::quiet_NaN())
                            : numbers;
   }
 
-  /// Reads the older statements for single axes: spacings, or the ends of the axes.
+  /// Reads the older fields, which state the spacings or the ends of single axes.
   void take_spacings() {
     StatedGeometry& geometry = header_.geometry;
     const std::vector<double> spacings = numbers_an_axis("spacings");
@@ -325,8 +326,8 @@ class NrrdReader {
           std::abs(stretch / (cells + (is_node ? 1 : -1)) - spacing) > 1e-3 * std::abs(spacing))
         header_.audit.push_back(
             {"spacing", Verdict::Warn,
-             print("axis %zu has a spacing of %.6g and ends that make it %.6g: the spacing is taken",
-                   axis + 1, spacing, stretch / cells)});
+             print("axis %zu has a spacing of %.6g, but its ends imply %.6g: the spacing is taken", axis + 1,
+                   spacing, stretch / cells)});
       if (!std::isfinite(spacing)) {
         const double cells = geometry.dims[static_cast<int>(i)] - (is_node ? 1 : 0);
         spacing = cells > 0.0 ? (highs[axis] - lows[axis]) / cells : std::numeric_limits<double>::quiet_NaN();
@@ -350,7 +351,7 @@ class NrrdReader {
       header_.audit.push_back(
           {"origin", Verdict::Warn,
            "the file states where its axes begin, but not whether a sample lies there or half a "
-           "voxel further (centers): half a voxel further is assumed"});
+           "voxel further (centers): the latter is assumed"});
     if (!has_origin) warn_of_origin();
   }
 
@@ -358,7 +359,8 @@ class NrrdReader {
     SampleFiles& samples = header_.samples;
     const std::string type = lower_case(need("type"));
     const auto known = nrrd_types().find(type);
-    if (known == nrrd_types().end()) refuse_field("type", "is '" + type + "', which is no type of numbers");
+    if (known == nrrd_types().end())
+      refuse_field("type", "is '" + type + "', which is not a type of numbers");
     samples.stored.type = known->second;
     take_encoding();
     take_endian();
@@ -416,9 +418,9 @@ class NrrdReader {
     const double bytes = text_.number(path_, "byteskip").value_or(0.0);
     constexpr double most = 1e15;
     if (!(lines >= 0.0 && lines <= most) || lines != std::trunc(lines))
-      refuse_field("line skip", "is no number of lines");
+      refuse_field("line skip", "is not a number of lines");
     if (!(bytes >= -1.0 && bytes <= most) || bytes != std::trunc(bytes))
-      refuse_field("byte skip", "is no number of bytes");
+      refuse_field("byte skip", "is not a number of bytes");
     samples.line_skip = static_cast<std::uintmax_t>(lines);
     samples.at_end = bytes < 0.0;
     if (samples.at_end && samples.encoding != SampleFiles::Encoding::Raw)

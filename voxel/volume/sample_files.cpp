@@ -31,8 +31,8 @@ using Encoding = SampleFiles::Encoding;
   refuse(path, "its samples are cut short: " + std::to_string(held) + " bytes of " + std::to_string(bytes));
 }
 
-/// The offset in a file at which its stored samples begin. `bytes` is their size, needed if they are raw and
-/// at the end of the file.
+/// The offset at which the stored samples begin in a file. `bytes` is the samples' size; it is used only if
+/// they are raw and at the end of the file.
 std::uintmax_t begin_of(const fs::path& path, const SampleFiles& from, const fs::path& file,
                         std::uintmax_t bytes) {
   if (from.at_end) {
@@ -125,13 +125,13 @@ bool is_blank(char letter) {
   return letter == ' ' || letter == ',' || (letter >= '\t' && letter <= '\r');
 }
 
-/// std::from_chars() for a real number; an error if its value is not an integer.
+/// Parses a real number as std::from_chars() does. It is an error if the value is not an integer.
 std::pair<const char*, std::errc> whole_number(const char* begin, const char* end, double& real) {
   const auto [rest, error] = std::from_chars(begin, end, real);
   return {rest, error == std::errc() && real != std::trunc(real) ? std::errc::invalid_argument : error};
 }
 
-/// Parses numbers of a type from text; returns the text after the last number.
+/// Parses numbers of a type from text. Returns the text that follows the last number.
 template <typename Number>
 std::string_view parse(const fs::path& path, std::string_view text, char* to, std::uintmax_t count) {
   for (std::uintmax_t i = 0; i < count; ++i) {
@@ -145,7 +145,7 @@ std::string_view parse(const fs::path& path, std::string_view text, char* to, st
     const auto is_end = [&](const char* at) { return at == text.data() + text.size() || is_blank(*at); };
     auto [end, error] = std::from_chars(begin, text.data() + text.size(), number);
     if (std::is_integral_v<Number> && error == std::errc() && !is_end(end)) {
-      // An integer that is written as a real number: 3.0 or 1e3.
+      // The number may be an integer that is written as a real number: 3.0 or 1e3.
       double real = 0.0;
       std::tie(end, error) = whole_number(begin, text.data() + text.size(), real);
       if (real >= static_cast<double>(std::numeric_limits<Number>::min()) &&

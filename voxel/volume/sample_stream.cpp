@@ -36,7 +36,7 @@ class SampleStream::Reading {
     }
     std::size_t held = 0;
     while (held < count && !ended_) {
-      // The library counts in 32 bits.
+      // zlib counts bytes in 32 bits.
       const std::size_t wanted = std::min(count - held, std::size_t{1} << 30);
       inflating_.next_out = reinterpret_cast<std::uint8_t*>(to + held);
       inflating_.avail_out = static_cast<std::uint32_t>(wanted);
@@ -66,7 +66,7 @@ class SampleStream::Reading {
         if (ended_) return;
         continue;
       }
-      // The file ended before the stream did.
+      // The file ended within the compressed stream.
       if (before == 0 && inflating_.avail_out == room) refuse_damaged();
     }
   }
@@ -90,7 +90,7 @@ class SampleStream::Reading {
     if (!ended_) begin_stream();
   }
 
-  /// The first byte decides: a zlib stream never begins with the first byte of gzip.
+  /// The first byte determines the format, because a zlib stream never begins with the first byte of gzip.
   bool begins_as_gzip() const { return inflating_.avail_in > 0 && *inflating_.next_in == gzip_magic[0]; }
 
   [[noreturn]] void refuse_damaged() const { refuse(path_, "its packed samples are damaged or cut short"); }

@@ -8,9 +8,9 @@
 
 namespace octotomy::voxel {
 
-/// The bytes of a file from an offset on. Packed bytes are inflated while they are read: one or more
-/// consecutive gzip streams, or one zlib stream. Bytes after these are not read. Memory: one megabyte,
-/// independent of the size that the file states.
+/// Reads the bytes of a file from an offset on. Compressed bytes are inflated while they are read: one or
+/// more consecutive gzip streams, or one zlib stream. Bytes after these streams are not read. Memory: one
+/// megabyte, independent of the size that the file states.
 class SampleStream {
  public:
   /// Throws Error (Input) with the path if the file cannot be opened.

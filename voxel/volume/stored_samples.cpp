@@ -35,9 +35,9 @@ constexpr std::array<std::pair<std::string_view, SampleType>, 12> named_types{
 
 /// Facts about the values, collected in one pass.
 struct Values {
-  std::size_t unreal_count = 0;  ///< not finite, or infinite in single precision
+  std::size_t unreal_count = 0;  ///< number of values that are not finite, or infinite in single precision
   bool fits_int16 = true;
-  bool is_exact = true;  ///< every value is exact in single precision
+  bool is_exact = true;  ///< whether every value is exact in single precision
   double low = std::numeric_limits<double>::infinity();
 
   Values operator+(const Values& other) const {
@@ -112,8 +112,8 @@ void turn_bytes(Samples<Stored>& stored, bool big_endian) {
   });
 }
 
-/// A value below every measured sample, in the type in which the samples are stored; an integer for integers.
-/// None if single precision has no such number.
+/// A value below every measured sample that the samples' type can represent; for int16 an integer. None if
+/// single precision has no such number.
 std::optional<double> padding_below(const Values& found) {
   if (found.fits_int16 && found.low > std::numeric_limits<std::int16_t>::min()) return found.low - 1.0;
   const auto low = static_cast<float>(found.low);
@@ -151,7 +151,7 @@ void put_values(const Samples<Stored>& stored, const StoredSamples& how, Scene& 
     fits_int16 = fits_int16 && in_place >= std::numeric_limits<std::int16_t>::min();
     scene.audit.push_back({"finite", Verdict::Warn,
                            std::to_string(found.unreal_count) +
-                               " samples are no finite numbers of single precision; they are " +
+                               " samples are not finite numbers in single precision; they are " +
                                (scene.padding ? "taken as not measured" : "set to the lowest value") +
                                " and hold " + std::to_string(in_place)});
   }

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Segmentations have the longest headers: about ten lines per segment.
+/// The largest length of a header. Segmentations have the longest headers: about ten lines per segment.
 constexpr std::size_t most_header_bytes = std::size_t{4} << 20;
 
 std::string header_bytes_of(const fs::path& path) {
@@ -51,7 +51,7 @@ class HeaderLines {
       format_ == VolumeFormat::Nrrd ? take_nrrd(line) : take_meta(line);
       if (ends_ && !is_list_) break;
       if (!is_list_) continue;
-      list_files();  // the list extends to the end of the file
+      list_files();  // the list of data files extends to the end of the file
       ends_ = false;
     }
     if (!ends_ && !is_whole_)
@@ -70,7 +70,7 @@ class HeaderLines {
     return line;
   }
 
-  /// NRRD's "field: description" or "key:=value", whichever mark comes first.
+  /// Parses NRRD's "field: description" or "key:=value". The mark that comes first determines the form.
   void take_nrrd(const std::string& line) {
     const std::size_t mark = line.find(':');
     if (mark == std::string::npos) refuse(path_, "its NRRD header is damaged: a line has no colon");
@@ -85,7 +85,8 @@ class HeaderLines {
     put(name, value);
   }
 
-  /// "Key = Value" or "Key: Value", whichever mark comes first, as in MetaIO (MET_Read).
+  /// Parses "Key = Value" or "Key: Value". The mark that comes first separates the parts, as in MetaIO
+  /// (MET_Read).
   void take_meta(const std::string& line) {
     const std::size_t mark = line.find_first_of("=:");
     if (mark == std::string::npos || mark == 0)
@@ -125,7 +126,7 @@ class HeaderLines {
 };
 
 fs::path beside(const fs::path& header, const std::string& name) {
-  const fs::path file = fs::absolute(header).parent_path() / name;  // an absolute name is unchanged
+  const fs::path file = fs::absolute(header).parent_path() / name;  // an absolute name remains unchanged
   std::error_code error;
   if (!fs::is_regular_file(file, error))
     refuse(header, "its data file '" + name + "' is missing; keep header and data together");
@@ -231,10 +232,9 @@ std::vector<fs::path> data_files(const fs::path& header, const std::string& stat
   };
   if (!numbered.is_sound() || numbers->size() > 4 || !is_whole(first) || !is_whole(last) || !is_whole(step) ||
       step == 0.0 || (last - first) * step < 0.0)
-    refuse(header,
-           "its data files '" + statement +
-               "' cannot be understood: give a pattern with one %d, the first and the last number and "
-               "the step, for example slice%03d.raw 1 10 1");
+    refuse(header, "its data files '" + statement +
+                       "' cannot be read: use a pattern with one %d, the first and the last number and "
+                       "the step, for example slice%03d.raw 1 10 1");
   for (long number = std::lround(first); step > 0.0 ? number <= last : number >= last;
        number += std::lround(step))
     files.push_back(beside(header, numbered(number)));

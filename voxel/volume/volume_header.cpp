@@ -14,9 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Upper bound on the bytes of samples that a file can hold after its header.
+/// An upper bound of the number of bytes of samples that a file can contain after its header.
 std::uintmax_t most_bytes(const fs::path& file, const SampleFiles& samples) {
-  // Deflate compresses at most 1032 bytes into one.
+  // The limit is above deflate's highest ratio, 1032 bytes in one.
   constexpr std::uintmax_t densest = 1100;
   const std::uintmax_t held = fs::file_size(file);
   const std::uintmax_t before =
@@ -42,10 +42,9 @@ void need_bytes(const fs::path& path, const glm::ivec3& dims, const SampleFiles&
   std::uintmax_t left = most / sample_bytes;
   for (int axis = 0; axis < 3; ++axis) left /= static_cast<std::uintmax_t>(dims[axis]);
   if (left == 0)
-    refuse(path,
-           print("its header claims %d x %d x %d samples of %d bytes, more than its data can hold: that is "
-                 "cut short, or the header is damaged",
-                 dims.x, dims.y, dims.z, static_cast<int>(sample_bytes)));
+    refuse(path, print("its header claims %d x %d x %d samples of %d bytes, more than its data can hold: the "
+                       "data are cut short, or the header is damaged",
+                       dims.x, dims.y, dims.z, static_cast<int>(sample_bytes)));
   const std::uintmax_t count = static_cast<std::uintmax_t>(dims.x) * static_cast<std::uintmax_t>(dims.y) *
                                static_cast<std::uintmax_t>(dims.z);
   if (count % samples.files.size() != 0)
@@ -106,11 +105,12 @@ glm::ivec3 dims_of(const fs::path& path, const std::vector<double>& lengths) {
 Finding rescale_finding(const StoredSamples& stored, const std::string& says) {
   if (!stored.is_rescaled())
     return {"rescale", Verdict::Pass, "values are the stored numbers (" + says + ")"};
-  constexpr double least_step = 0x1p-24;  // rounding error of single precision at 1
+  constexpr double least_step = 0x1p-24;  // relative rounding error of single precision
   if (std::abs(stored.slope) < least_step * std::abs(stored.intercept))
     return {"rescale", Verdict::Warn,
             print("values are %.9g * stored + %.9g (", stored.slope, stored.intercept) + says +
-                "): beside such an intercept single precision loses the steps of the stored numbers"};
+                "): with so large an intercept single precision cannot represent the steps of the stored "
+                "numbers"};
   return {"rescale", Verdict::Pass,
           print("values are %.9g * stored %c %.9g (", stored.slope, stored.intercept < 0.0 ? '-' : '+',
                 std::abs(stored.intercept)) +
@@ -146,7 +146,7 @@ void add_third_axis(VolumeHeader& header) {
 void warn_of_minus_signs(const char* name, const std::vector<double>& spacings, VolumeHeader& header) {
   if (std::none_of(spacings.begin(), spacings.end(), [](double spacing) { return spacing < 0.0; })) return;
   header.audit.push_back({"spacing", Verdict::Warn,
-                          std::string(name) + " has a minus sign, which a spacing cannot have: that axis is "
+                          std::string(name) + " has a minus sign, which a spacing cannot have: the axis is "
                                               "assumed to run backwards; check left and right"});
 }
 

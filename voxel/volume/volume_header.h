@@ -18,13 +18,15 @@ namespace octotomy::voxel {
 /// Formats of volume files.
 enum class VolumeFormat { Nifti, Nrrd, Meta };
 
-/// The format in which write_scene() writes a file, by its extension in upper or lower case; none for others.
+/// The format in which write_scene() writes a file, by its extension in upper or lower case; none for other
+/// extensions.
 std::optional<VolumeFormat> volume_format(const std::filesystem::path& path);
-/// volume_format() for files to read: also pairs of NIfTI, if the path is the .hdr or .img and both exist. A
-/// single .img file is not accepted, because DICOM files have this extension too.
+/// Like volume_format(), but for files to read: also accepts a pair of NIfTI files if the path is the .hdr or
+/// .img and both files exist. A single .img file is not accepted, because DICOM files have this extension
+/// too.
 std::optional<VolumeFormat> readable_volume_format(const std::filesystem::path& path);
 
-/// NIfTI's header and samples in two files.
+/// The two files of a NIfTI volume whose header and samples are separate.
 struct NiftiPair {
   std::filesystem::path header, image;
 };
@@ -41,11 +43,12 @@ struct SampleFiles {
 
   StoredSamples stored;
   Encoding encoding = Encoding::Raw;
-  std::vector<std::filesystem::path> files;  ///< each holds an equal part, in this order
+  /// The files in the order of the samples; each contains an equal part.
+  std::vector<std::filesystem::path> files;
   std::uintmax_t file_at = 0;    ///< offset of the samples, or of their encoded stream, in each file
-  std::uintmax_t line_skip = 0;  ///< lines to skip from there on
-  std::uintmax_t byte_skip = 0;  ///< bytes to skip next, counted after decoding
-  bool at_end = false;           ///< instead, the samples are the last bytes of each file
+  std::uintmax_t line_skip = 0;  ///< number of lines to skip from there on
+  std::uintmax_t byte_skip = 0;  ///< number of bytes to skip after these lines, counted after decoding
+  bool at_end = false;           ///< if set, the samples are the last bytes of each file instead
 };
 
 /// The statements of a volume file's header.
@@ -68,12 +71,12 @@ struct VolumeHeader {
 inline constexpr const char* meaning_key = "octotomy_meaning";
 inline constexpr const char* modality_key = "octotomy_modality";
 inline constexpr const char* padding_key = "octotomy_padding";
-/// NIfTI has one free text, the description. It holds this mark, the meaning, the modality and, after
-/// nifti_padding_mark, the padding.
+/// NIfTI has one free text, the description. In this program's files it consists of this mark, the meaning,
+/// the modality and, after nifti_padding_mark, the padding.
 inline constexpr std::string_view nifti_mark = "octotomy ";
 inline constexpr std::string_view nifti_padding_mark = "padding=";
-/// NIfTI-1 keeps positions in single precision. This program's files add them in double precision, in an
-/// extension of plain text (code 6, which other readers skip): this mark, then the first three rows of
+/// NIfTI-1 stores positions in single precision. This program's files also contain them in double precision,
+/// in an extension of plain text (code 6, which other readers skip): this mark, then the first three rows of
 /// lps_from_voxel.
 inline constexpr std::string_view nifti_geometry_mark = "octotomy lps_from_voxel ";
 inline constexpr std::int32_t nifti_text_extension = 6;
@@ -87,10 +90,10 @@ VolumeHeader read_volume_header(const std::filesystem::path& path, VolumeFormat 
 /// nothing if there is no text.
 void take_padding(const std::optional<std::string>& text, VolumeHeader& header);
 
-/// The audit's line on slope and intercept. `says` contains the format's names for both.
+/// The audit's line about slope and intercept. `says` contains the format's names of both.
 Finding rescale_finding(const StoredSamples& stored, const std::string& says);
-/// Adds a third axis to a header of two axes: perpendicular to both, with a spacing of 1 mm. The audit warns
-/// of the assumption.
+/// Adds a third axis to a header that has two axes: perpendicular to both, with a spacing of 1 mm. The audit
+/// warns of the assumption.
 void add_third_axis(VolumeHeader& header);
 
 /// Adds a line to the audit if a spacing of the field `name` has a minus sign, which the formats do not

@@ -42,7 +42,7 @@ std::string_view bytes_of_samples(const Scene& scene) {
       scene.samples);
 }
 
-/// A file that is being written, either plain or compressed from some offset on.
+/// A file that is being written, without compression or compressed from some offset on.
 class OutFile {
  public:
   explicit OutFile(const fs::path& path) : path_(path) {
@@ -73,7 +73,7 @@ class OutFile {
     z_stream stream{};
     if (deflateInit2(&stream, 1, Z_DEFLATED, is_gzip_stream ? MAX_WBITS + 16 : MAX_WBITS, 9,
                      Z_DEFAULT_STRATEGY) != Z_OK)
-      throw Error(ErrorCode::Resource, path_.string() + ": no memory is left to pack its samples");
+      throw Error(ErrorCode::Resource, path_.string() + ": no memory is left to compress its samples");
     const Ended ended{stream};
     std::string packed(std::size_t{1} << 18, '\0');
     for (std::string_view part : parts)
@@ -91,7 +91,7 @@ class OutFile {
     ~Ended() { deflateEnd(&stream); }
   };
 
-  /// Passes the first bytes of the part to the stream, at most as many as zlib's 32-bit counter holds.
+  /// Passes the first bytes of the part to the stream, at most as many as zlib's 32-bit counter allows.
   /// Returns their number.
   static std::size_t feed(z_stream& stream, std::string_view part) {
     const std::size_t count = std::min(part.size(), std::size_t{1} << 30);
@@ -126,7 +126,7 @@ bool is_perpendicular(const Lattice& lattice) {
   return true;
 }
 
-/// A NIfTI extension with the lattice's geometry: its length, its code and the text.
+/// The bytes of a NIfTI extension with the lattice's geometry: length, code and text.
 std::string nifti_extension(const Lattice& lattice) {
   std::string text(nifti_geometry_mark);
   for (int row = 0; row < 3; ++row)
@@ -154,7 +154,7 @@ std::string padding_text(const Scene& scene) {
   return print("%.17g", *scene.padding);
 }
 
-/// Always writes the sform, and also the qform if it can represent the same geometry.
+/// The sform is always written, the qform only if it can represent the same geometry.
 nifti_1_header nifti_header(const Scene& scene, const fs::path& path, std::size_t samples_at) {
   nifti_1_header header{};
   const glm::ivec3& dims = scene.lattice.dims;
@@ -165,7 +165,7 @@ nifti_1_header nifti_header(const Scene& scene, const fs::path& path, std::size_
   for (int i = 0; i < 7; ++i) {
     const int length = i < 3 ? dims[i] : 1;
     if (length > std::numeric_limits<short>::max())
-      refuse(path, "NIfTI holds at most 32767 samples along an axis; write .nrrd");
+      refuse(path, "NIfTI can store at most 32767 samples along an axis; write .nrrd instead");
     header.dim[i + 1] = static_cast<short>(length);
     header.pixdim[i + 1] = i < 3 ? static_cast<float>(spacing_mm[i]) : 1.0f;
   }

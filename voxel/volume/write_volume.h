@@ -8,8 +8,8 @@
 
 namespace octotomy::voxel {
 
-/// Writes a file under exactly this name; .nhdr and .mhd get a data file beside it. States the frame, the
-/// unit of length, the values' meaning and the modality. Throws as write_scene().
+/// Writes a file under exactly the given name; for .nhdr and .mhd also a data file beside it. The header
+/// states the frame, the unit of length, the values' meaning and the modality. Throws as write_scene() does.
 void write_volume(const Scene& scene, const std::filesystem::path& path, VolumeFormat format);
 
 }  // namespace octotomy::voxel

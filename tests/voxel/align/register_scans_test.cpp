@@ -118,8 +118,7 @@ TEST(RegisterScans, ScansWithoutAnythingInCommonFail) {
     options.by = by;
     const ScanFit fit = register_scans(waves, real_head(), options);
     EXPECT_EQ(fit.verdict, Verdict::Fail) << fit.likeness;
-    EXPECT_NE(testing::PrintToString(fit.findings).find("no motion makes the scans alike"),
-              std::string::npos);
+    EXPECT_NE(testing::PrintToString(fit.findings).find("the scans match at no motion"), std::string::npos);
   }
 }
 

@@ -79,7 +79,7 @@ TEST(CuberilleFaces, ThatAreWrongAreRefusedWithTheFaceOrTheCharacter) {
   EXPECT_EQ(with("y+ (0,3,0), ", "y+ "),
             "cuberille, y+ face of voxel (0,3,0): is missing: the x faces make it part of the boundary");
   EXPECT_EQ(with("z- (0,2,0)", "z- (3,0,0), (0,2,0)"),
-            "cuberille, z- face of voxel (3,0,0): is no boundary by the x faces");
+            "cuberille, z- face of voxel (3,0,0): is not on the boundary of the object between the x faces");
   EXPECT_EQ(with("z- (0,2,0), (1,2,0)", "z- (1,2,0), (0,2,0)"),
             "cuberille, z- face of voxel (0,2,0): does not come after its predecessor, x fastest");
   CuberilleFaces outside{universe_of(2), {}};

@@ -51,8 +51,8 @@ TEST(ExplicitOctree, ThatIsWrongIsRefusedWithTheEntry) {
   EXPECT_EQ(with(2, 077, 'E'), "explicit octree, level 2, entry 77: its parent has no children");
   EXPECT_EQ(with(1, 1, 'F'), "explicit octree, level 2, entry 10: its parent has no children");
   EXPECT_EQ(with(2, 017, 'E'),
-            "explicit octree, level 2, entry 17: it and its seven siblings are alike: their parent is not "
-            "Partial");
+            "explicit octree, level 2, entry 17: it and its seven siblings have the same status, so "
+            "their parent cannot be Partial");
   EXPECT_EQ(with(1, 0, 'x'), "explicit octree, level 1, entry 0: use only E, F, P and '.'");
   ExplicitOctree levels = explicit_octree(tests::figure_3_1());
   levels.levels[1] += 'E';

@@ -136,7 +136,7 @@ TEST(ReadVolume, StatementsThatAreNoPatientsAreTold) {
               h.scl_slope = 1;
               h.scl_inter = 1e30f;
             })["rescale"]
-                .find("loses the steps"),
+                .find("cannot represent the steps"),
             std::string::npos);
 }
 

@@ -268,7 +268,7 @@ TEST(SeriesAudit, OfADirectoryFileAsksForItsFolder) {
     FAIL() << "it holds no image";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::Input);
-    EXPECT_NE(std::string(error.what()).find("give the folder that contains it"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("choose the folder in which it lies"), std::string::npos)
         << error.what();
     EXPECT_EQ(std::string(error.what()).find(".nii"), std::string::npos) << error.what();
   }

@@ -707,7 +707,7 @@ std::vector<SpoiledKind> of_replacements() {
        {"a03"},
        text(0x00280301, "CS", "YES", 3, 3)},
       {"an_animal", "image_kind", warn, "QUADRUPED", names("a", 0, 11), text(0x00102210, "CS", "QUADRUPED")},
-      {"name_in_an_unknown_set", "image_kind", warn, "does not fit the patient's name", names("a", 0, 11),
+      {"name_in_an_unknown_set", "image_kind", warn, "cannot represent the patient's name", names("a", 0, 11),
        both(text(0x00080005, "CS", "FOO_BAR 1"), text(0x00100010, "PN",
                                                       "Sch\xe4"
                                                       "del^J"))},
@@ -822,7 +822,7 @@ std::vector<SpoiledKind> of_statements() {
       {"positions_that_scatter",
        "sideways",
        warn,
-       "kept in line",
+       "put in line",
        {"a00", "a02", "a04", "a06", "a08", "a10"},
        [](Images& images) {
          each(images, [](SpoiledImage& image, int i) {
@@ -840,7 +840,7 @@ std::vector<SpoiledKind> of_statements() {
       {"intercept_that_is_no_number",
        "unusable_images",
        fail,
-       "RescaleIntercept '-1024;0' cannot be read",
+       "RescaleIntercept '-1024;0' is not a number",
        {"a03"},
        text(0x00281052, "DS", "-1024;0", 3, 3)},
       {"aspect_against_the_spacing", "pixel_aspect", warn, "0.5 times as high", names("a", 0, 11),
@@ -921,14 +921,14 @@ std::vector<SpoiledKind> of_statements() {
       {"a_series_for_each_image",
        "series",
        fail,
-       "--join reads them as one",
+       "--join reads all as one series",
        {},
        [](Images& images) {
          each(images, [](SpoiledImage& image, int i) {
            image.text(0x0020000e, "UI", "1.2.3.4." + std::to_string(i));
          });
        }},
-      {"a_frame_of_reference_for_each_image", "frame_of_reference", fail, "--join keeps them",
+      {"a_frame_of_reference_for_each_image", "frame_of_reference", fail, "--join keeps all images",
        names("a", 1, 11),
        [](Images& images) {
          each(images, [](SpoiledImage& image, int i) {
@@ -943,7 +943,7 @@ std::vector<SpoiledKind> of_statements() {
        "transfer syntax 1.2.840.113619.5.2",
        {"a04"},
        [](Images& images) { images[4].syntax = "1.2.840.113619.5.2"; }},
-      {"real_world_values", "real_world_values", warn, "is not applied. It would make a table of values",
+      {"real_world_values", "real_world_values", warn, "is not applied. It would produce a table of values",
        names("a", 0, 11),
        text(0x00409096, "SQ", DicomBytes::item(DicomBytes::element(0x00409210, "SH", "PD")))},
   };

@@ -250,7 +250,7 @@ TEST(OctreeFile, CutShortAnywhereOrGoingOnIsFoundDamaged) {
     }
     Bytes longer = whole;
     longer.push_back(0);
-    EXPECT_NE(damage(longer).find("goes on after its end"), std::string::npos);
+    EXPECT_NE(damage(longer).find("continues after its end"), std::string::npos);
   }
 }
 
@@ -324,7 +324,7 @@ TEST(OctreeFile, ThatIsNoneSaysSo) {
     read_octree(scratch / "not.octree");
     FAIL() << "was read";
   } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("is no octree file"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("is not an octree file"), std::string::npos) << error.what();
   }
   EXPECT_THROW(read_octree(scratch / "absent.octree"), std::runtime_error);
   EXPECT_THROW(read_octree(scratch.path()), std::runtime_error);
