@@ -153,7 +153,7 @@ function jobs(): Child {
   const share = job.share > 0 ? `${Math.round(job.share * 100)} %` : "";
   const left = job.left_s ? `, ${Math.ceil(job.left_s)} s left` : "";
   return el(
-      "span", {class: "job", role: "status"}, el("span", {class: "spinner"}), `${job.what} ${share}${left}`,
+      "span", {class: "job", role: "status"}, el("span", {class: "spinner"}), el("span", {class: "doing"}, `${job.what} ${share}${left}`),
       job.share > 0 ? el("progress", {value: job.share, max: 1}) : null,
       job.id > 0 ? button(
                        icon("close", 12), `Cancel ${job.what}`, () => void try_to("cancel", {target: job.id}),
@@ -184,8 +184,10 @@ export function make_lost(host: HTMLElement): void {
     if (!host.hidden)
       fill(
           host, el("span", {class: "spinner"}),
-          "The connection to the planner's program is lost. No work is lost: the plan is on disk. Trying again …");
+          state.lost_because ?
+              `The planner's program has ended the connection: ${state.lost_because}. Trying again …` :
+              "The connection to the planner's program is lost. No work is lost: the plan is on disk. Trying again …");
   };
-  watch(["link"], again);
+  watch(["link", "lost_because"], again);
   again();
 }

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "planner/browser/server/lane_queue.h"
 #include "planner/browser/server/message.h"
@@ -38,8 +39,8 @@ class Service {
   Service& operator=(const Service&) = delete;
 
   const LineOf& line_of() const { return line_of_; }
-  /// A window with Access::View gets the plan without paths of folders, and answers only to requests that
-  /// look at it.
+  /// A window with Access::View gets all messages without folders, and answers only to requests that look at
+  /// the plan. Throws voxel::Error, Resource, if most_viewers such windows are open.
   std::uint64_t open_window(Send send, Access access);
   void close_window(std::uint64_t window);
   /// Receives a window's message; it is answered later.
@@ -50,6 +51,8 @@ class Service {
   static constexpr int most_waiting = 500;
   /// That of a window that may only look, so that it cannot hold up those that edit.
   static constexpr int most_waiting_of_viewer = 8;
+  /// The largest number of windows that may only look; each keeps the pictures of its panes.
+  static constexpr int most_viewers = 16;
   struct Window {
     Send send;
     Access access = Access::Edit;
@@ -57,9 +60,13 @@ class Service {
   };
   std::shared_ptr<Window> find(std::uint64_t window);
   void send(std::uint64_t window, Message message);
-  /// Sends an event to all windows; to those that may only look without paths of folders.
+  /// Sends an event to all windows; to those that may only look without folders.
   void tell_all(const std::string& name, const Json& said);
   void tell_plan();
+  /// Stores the folders that the open plan names, so that refusals are shortened without waiting for the
+  /// session. Does nothing where no window may only look.
+  void learn_folders();
+  std::vector<std::string> known_folders();
   void take(std::uint64_t window, Request request);
   void answer(std::uint64_t window, const Request& request, const RequestKind& request_kind,
               const std::stop_token& stop);
@@ -80,6 +87,7 @@ class Service {
   std::mutex mutex_;
   std::map<std::uint64_t, std::shared_ptr<Window>> windows_;
   std::uint64_t last_window_ = 0;
+  std::vector<std::string> folders_;  ///< of the plans opened so far, the longest first
   std::map<Lane, std::unique_ptr<LaneQueue>> lanes_;
   std::array<Drawing, 2> drawings_;  ///< of views and slices; along rays
 };

@@ -62,7 +62,7 @@ export function make_panes(host: HTMLElement, acknowledge: (pane: number, frame:
   watch(["looks", "draft_window", "cut_plane"], () => want_all(true));
   watch(["preview"], follow_preview);
   watch(
-      ["panes", "selected", "marked", "tool", "cross_mm", "arch_mm"],
+      ["panes", "selected", "marked", "tool", "cross_mm", "arch_mm", "hides_names"],
       () => panes.forEach((pane) => pane.redraw()));
   watch(["tool"], () => panes.forEach((pane) => {
     pane.canvas.style.cursor = active_tool()?.cursor ?? "default";
@@ -105,7 +105,9 @@ export function fit_all(): void {
   });
 }
 
-const left_at = new Map<string, Pick<State, "panes"|"cross_mm"|"grey">>();
+// What a window shows of one scan, in that scan's frame.
+type OfScan = Pick<State, "panes"|"cross_mm"|"grey"|"arch_mm"|"cut_plane"|"marked">;
+const left_at = new Map<string, OfScan>();
 on_leaving_plan(() => left_at.clear());
 /// Shows a scan of the plan in all panes, with its last settings; null: the patient's.
 export function show_scan(name: string|null): void {
@@ -114,8 +116,10 @@ export function show_scan(name: string|null): void {
   if (next === before || !state.plan) return;
   // A tool's draft belongs to the scan shown before. Landmarks of a procedure may lie on several scans.
   if (state.tool !== "landmark") take_tool("navigate");
-  left_at.set(before, {panes: state.panes, cross_mm: state.cross_mm, grey: state.grey});
-  const {panes: fits, ...looked} = left_at.get(next) ?? fitted(state.plan, next);
+  const {panes: shown, cross_mm, grey, arch_mm, cut_plane, marked} = state;
+  left_at.set(before, {panes: shown, cross_mm, grey, arch_mm, cut_plane, marked});
+  const {panes: fits, ...looked}: OfScan =
+      left_at.get(next) ?? {...fitted(state.plan, next), arch_mm: [], cut_plane: null, marked: null};
   set({
     scan: name,
     preview: null,
@@ -129,8 +133,15 @@ export function show_scan(name: string|null): void {
   }
 }
 
-/// Brings the cross-hair and every pane to a place, and marks it.
+// The edit of the plan about which the mark says something. After another edit it may no longer be true.
+let marked_edit: number|undefined;
+watch(["plan"], () => {
+  if (state.marked && state.plan?.edit !== marked_edit && !shows_one_pane) set({marked: null});
+});
+
+/// Brings the cross-hair and every pane to a place, and marks it until the plan changes.
 export function show_place(at_mm: Vec3, says: string): void {
+  marked_edit = state.plan?.edit;
   set({
     cross_mm: at_mm,
     marked: {at_mm, says},

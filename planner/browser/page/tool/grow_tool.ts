@@ -9,7 +9,7 @@ import {add, dot, hundredths, scaled, Vec2, Vec3} from "../base/vector";
 import type {Pane} from "../pane/panes";
 import {tried_text} from "../panel/live_step";
 import {Json, ScanState, Step} from "../protocol";
-import {is_elsewhere, notify, on_leaving_plan, set, shown_scan, state} from "../state";
+import {notify, on_leaving_plan, set, shown_scan, state} from "../state";
 import {place_at} from "./point_tools";
 import {Tool} from "./tool";
 
@@ -107,10 +107,6 @@ export const grow_tool: Tool = {
   down({pane, at}) {
     if (pane.setting.mode === "panoramic") {
       notify("A panoramic picture is bent: click in a view or in a slice.", "warning");
-      return true;
-    }
-    if (is_elsewhere()) {
-      notify("Objects are made from the patient's scan: show it first.", "warning");
       return true;
     }
     const seed = seed_at(pane, at);
