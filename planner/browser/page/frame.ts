@@ -4,6 +4,7 @@
 import {change_history, try_to} from "./actions";
 import {certify_all, compare_selected, dialogs, map_contacts, mirror_selected, new_branch, switch_cut_plane} from "./commands";
 import {button, Child, el, fill} from "./base/html";
+import {grouped} from "./base/numbers";
 import {icon, IconName, is_icon} from "./base/icons";
 import {cut_selected} from "./tool/region_tool";
 import {dismiss, may_edit, set, shows_one_pane, state, watch} from "./state";
@@ -124,7 +125,7 @@ export function make_rail(host: HTMLElement): void {
 export function make_status(host: HTMLElement): void {
   const again = (): void => {
     const tool = active_tool();
-    const cross = state.cross_mm.map((x) => x.toFixed(1).replace("-", "−")).join("  ");
+    const cross = state.cross_mm.map((x) => grouped(x, 1)).join("  ");
     fill(
         host,
         el("span", {class: "hint"},

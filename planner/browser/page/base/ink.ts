@@ -122,10 +122,10 @@ export function label(
       (row) => [gap, -gap - width].map((x) => ({row, place: [at[0] + x, at[1] + row * px] as Vec2})));
   const box = ([x, y]: Vec2): {low: Vec2; high: Vec2} =>
       ({low: [x, y - px / 2], high: [x + width, y + px / 2]});
-  const edge = 4 * ratio;
+  const edge = 4 * ratio, head = 34 * ratio;  // the pane's choices lie at its top
   const is_free = ({place}: {place: Vec2}): boolean => {
     const {low, high} = box(place);
-    return low[0] >= edge && high[0] <= context.canvas.width - edge && low[1] >= edge &&
+    return low[0] >= edge && high[0] <= context.canvas.width - edge && low[1] >= head &&
         high[1] <= context.canvas.height - edge &&
         labelled.every(
             (one) =>

@@ -22,6 +22,7 @@ export function draw_overlay(pane: Pane, context: CanvasRenderingContext2D): voi
     draw_cross(pane, context);
     draw_trace(pane, context);
     if (!is_elsewhere()) draw_regions(pane, context);
+    for (const at of Object.values(letter_places(pane))) keep_words_off_dot(at, 9 * pane.ratio);
     for (const {point} of drawn_landmarks(pane)) keep_words_off_dot(pane.pixel_at(point), landmark_px * pane.ratio);
     if (!is_elsewhere()) draw_measures(pane, context);
     if (!is_elsewhere()) draw_mirror_plane(pane, context, step_of(state.selected));
@@ -193,14 +194,16 @@ function draw_mark(pane: Pane, context: CanvasRenderingContext2D, p_mm: Vec3): v
   }
 }
 
-function draw_letters(pane: Pane, context: CanvasRenderingContext2D): void {
+function letter_places(pane: Pane): {left: Vec2; right: Vec2; bottom: Vec2} {
   const [width, height] = pane.size;
   const inset = 12 * pane.ratio;
-  const letters = edge_letters(pane.frame);
+  return {left: [inset, height / 2], right: [width - inset, height / 2], bottom: [width / 2, height - inset]};
+}
+
+function draw_letters(pane: Pane, context: CanvasRenderingContext2D): void {
+  const letters = edge_letters(pane.frame), places = letter_places(pane);
   const look: TextLook = {align: "center", colour: ink.faint, px: 12};
-  text(context, letters.left, [inset, height / 2], pane.ratio, look);
-  text(context, letters.right, [width - inset, height / 2], pane.ratio, look);
-  text(context, letters.bottom, [width / 2, height - inset], pane.ratio, look);
+  for (const edge of ["left", "right", "bottom"] as const) text(context, letters[edge], places[edge], pane.ratio, look);
 }
 
 // Draws a scale bar of 1, 2 or 5 times a power of ten millimetres, about a fifth of the pane's width.

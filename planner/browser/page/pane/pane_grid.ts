@@ -4,6 +4,7 @@
 import {fitted} from "../actions";
 import {button, Child, el, fill} from "../base/html";
 import {icon} from "../base/icons";
+import {grouped, unit_text} from "../base/numbers";
 import {change_pane, Pane} from "./panes";
 import {FrameHeader} from "../protocol";
 import {first_scan, on_leaving_plan, PaneSetting, set, shown_scan, shows_one_pane, State, state, watch} from "../state";
@@ -234,9 +235,9 @@ export function show_in(index: number, name: string): void {
 function tell_pointer(pane: Pane, at: Vec2): void {
   const picked = pane.pick(at);
   const value = pane.value_at(at);
-  const unit = state.plan?.scans.find((scan) => scan.name === shown_scan())?.unit ?? "HU";
-  const words = picked ? `${picked.point.map((x) => x.toFixed(1).replace("-", "−")).join("  ")} mm${
-                             value === null ? "" : `   ${value.toFixed(0).replace("-", "−")} ${unit}`}${
+  const unit = unit_text(state.plan?.scans.find((scan) => scan.name === shown_scan())?.unit ?? "HU");
+  const words = picked ? `${picked.point.map((x) => grouped(x, 1)).join("  ")} mm${
+                             value === null ? "" : `   ${grouped(value)} ${unit}`.trimEnd()}${
                              picked.object ? `   ${picked.object}` : ""}` :
                                              "";
   if (words !== state.pointer) set({pointer: words});

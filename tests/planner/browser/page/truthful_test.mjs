@@ -305,8 +305,15 @@ test('the point about which a piece turns is the plan\'s', async () => {
   await one.type('move-pitch_deg', 2);
   await one.until(() => turn().pitch_deg === 2, 'a turn');
   assert.deepEqual(turn().about_mm, before);
+  // A number that is typed and not entered is no other piece's.
+  await one.page.locator('[data-key="move-up_mm"]').fill('9');
+  await one.press('Control+z');
+  await one.until(() => turn().pitch_deg === undefined, 'the turn taken back');
+  await one.select('rest');
+  await one.until(async () => (await one.page.locator('[data-key="move-up_mm"]').inputValue()) === '0', 'the motion of another piece');
+  assert.equal(one.plan(other_path).steps.find((each) => each.id === 'moved').by.up_mm, 3);
   await one.press('Escape');
-  for (let i = 0; i < 2; ++i) await one.press('Control+z');
+  await one.press('Control+z');
   await one.until(() => !turn(), 'the plan as before');
 });
 

@@ -39,7 +39,7 @@ TEST(PlanFolders, TheFoldersOfAPlanAreThoseOfItsScansAndOfTheFilesOfItsSteps) {
   voxel::write_scene(tests::ball_scene(4.0, 12), (scratch / "Doe Jane") / "ct.nrrd");
   tests::write_bytes(
       (scratch / "plans") / "a.plan.json",
-      R"({"octotomy_plan": 1, "scans": {"ct": {"path": "../Doe Jane/ct.nrrd"}}, "steps": []})");
+      R"({"octotomy_plan": 1, "name": "a", "scans": {"ct": {"path": "../Doe Jane/ct.nrrd"}}, "steps": []})");
   Session session(scratch.path());
   session.open((scratch / "plans") / "a.plan.json", {});
   const std::string plans = (scratch / "plans").string();
