@@ -305,15 +305,17 @@ test('the point about which a piece turns is the plan\'s', async () => {
   await one.type('move-pitch_deg', 2);
   await one.until(() => turn().pitch_deg === 2, 'a turn');
   assert.deepEqual(turn().about_mm, before);
-  // A number that is typed and not entered is no other piece's.
-  await one.page.locator('[data-key="move-up_mm"]').fill('9');
+  // A number that is typed is taken back by an undo, in the form too, and is no other piece's.
+  const up = one.page.locator('[data-key="move-up_mm"]');
+  const up_mm = () => one.plan(other_path).steps.find((each) => each.id === 'moved').by.up_mm;
+  await up.fill('9');
+  await one.until(() => one.waiting.size === 0, 'what is typed is shown');
   await one.press('Control+z');
-  await one.until(() => turn().pitch_deg === undefined, 'the turn taken back');
+  await one.until(async () => up_mm() === 3 && (await up.inputValue()) === '3', 'the plan\'s number in the form');
   await one.select('rest');
-  await one.until(async () => (await one.page.locator('[data-key="move-up_mm"]').inputValue()) === '0', 'the motion of another piece');
-  assert.equal(one.plan(other_path).steps.find((each) => each.id === 'moved').by.up_mm, 3);
+  await one.until(async () => (await up.inputValue()) === '0', 'the motion of another piece');
   await one.press('Escape');
-  await one.press('Control+z');
+  for (let i = 0; i < 2; ++i) await one.press('Control+z');
   await one.until(() => !turn(), 'the plan as before');
 });
 
