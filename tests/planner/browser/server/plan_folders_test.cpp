@@ -34,17 +34,18 @@ TEST(PlanFolders, EveryTextOfAValueIsShortenedAndEachPathIsAName) {
 
 TEST(PlanFolders, TheFoldersOfAPlanAreThoseOfItsScansAndOfTheFilesOfItsSteps) {
   const tests::ScratchFolder scratch;
-  std::filesystem::create_directories(scratch / "Doe Jane");
-  std::filesystem::create_directories(scratch / "plans");
-  voxel::write_scene(tests::ball_scene(4.0, 12), (scratch / "Doe Jane") / "ct.nrrd");
+  const std::filesystem::path patient = scratch / "Doe Jane", plans = scratch / "plans";
+  std::filesystem::create_directories(patient);
+  std::filesystem::create_directories(plans);
+  voxel::write_scene(tests::ball_scene(4.0, 12), patient / "ct.nrrd");
   tests::write_bytes(
-      (scratch / "plans") / "a.plan.json",
-      R"({"octotomy_plan": 1, "name": "a", "scans": {"ct": {"path": "../Doe Jane/ct.nrrd"}}, "steps": []})");
+      plans / "a.plan.json",
+      R"({"octotomy_plan": 1, "name": "a", "scans": {"ct": {"path": "../Doe Jane/ct.nrrd"}}, "steps": [
+          {"id": "bone", "do": "window", "scan": "ct", "low": 300}]})");
   Session session(scratch.path());
-  session.open((scratch / "plans") / "a.plan.json", {});
-  const std::string plans = (scratch / "plans").string();
+  session.open(plans / "a.plan.json", {});
   for (const std::string& folder :
-       {plans, plans + "/../Doe Jane", (scratch / "Doe Jane").string(), std::string("../Doe Jane")})
+       {plans.string(), plans.string() + "/../Doe Jane", patient.string(), std::string("../Doe Jane")})
     EXPECT_EQ(without_folders(folder + "/ct.nrrd: damaged", folders_of(session)), "ct.nrrd: damaged")
         << folder;
 }
