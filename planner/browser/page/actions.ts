@@ -186,6 +186,8 @@ export async function change_plan(word: string, fields: object = {}): Promise<Pl
 
 export async function change_history(
     word: "undo"|"redo"|"branch"|"go_to"|"name_version", fields: object = {}): Promise<void> {
+  // A field that has the focus keeps its text, which is not the plan's any more. Leaving it enters the text first.
+  if (document.activeElement instanceof HTMLInputElement) document.activeElement.blur();
   if (await change_plan(word, fields)) void evaluate();
 }
 

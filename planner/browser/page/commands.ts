@@ -11,7 +11,7 @@ import {guess_landmarks} from "./tool/point_tools";
 import {cut_selected} from "./tool/region_tool";
 import {new_step} from "./panel/schema_form";
 import {operations} from "./operations";
-import {hide_patient, may_edit, notify, selected_step, set, shows_one_pane, state, steps, step_of, usual_panes} from "./state";
+import {hide_patient, may_edit, notify, selected_step, set, shows_one_pane, state, steps, step_of, usual_panes, watch} from "./state";
 import {open_second_screen} from "./second_screen";
 import {change_theme} from "./base/theme";
 import {all_tools, take_tool} from "./tool/tool";
@@ -136,6 +136,12 @@ export function clear_compare(): void {
   for (const pane of all_panes()) pane.want(false);
 }
 
+// Colours end when an undo, or another window, takes one of their objects out of the plan.
+watch(["plan"], () => {
+  const {compare} = state;
+  if (compare && [compare.object, compare.reference].some((id) => !step_of(id))) clear_compare();
+});
+
 /// Commands that change only how this window shows the plan.
 function looking_commands(): Command[] {
   const of_a_pane: Command[] = [
@@ -179,6 +185,11 @@ function looking_commands(): Command[] {
       name: state.hides_patient ? "Show the patient" : "Hide the patient",
       says: "Hides or shows name, number and dates on every screen of this browser and in new reports.",
       run: () => hide_patient(!state.hides_patient)
+    },
+    {
+      name: state.hides_names ? "Show the landmarks' names" : "Hide the landmarks' names",
+      says: "Their dots stay in the panes.",
+      run: () => set({hides_names: !state.hides_names})
     },
     {name: "Screenshot of the panes", run: () => dialogs.screenshot()},
     ...of_a_pane,

@@ -4,6 +4,7 @@
 import {change_history, try_to} from "./actions";
 import {certify_all, compare_selected, dialogs, map_contacts, mirror_selected, new_branch, switch_cut_plane} from "./commands";
 import {button, Child, el, fill} from "./base/html";
+import {grouped} from "./base/numbers";
 import {icon, IconName, is_icon} from "./base/icons";
 import {cut_selected} from "./tool/region_tool";
 import {dismiss, may_edit, set, shows_one_pane, state, watch} from "./state";
@@ -124,7 +125,7 @@ export function make_rail(host: HTMLElement): void {
 export function make_status(host: HTMLElement): void {
   const again = (): void => {
     const tool = active_tool();
-    const cross = state.cross_mm.map((x) => x.toFixed(1).replace("-", "−")).join("  ");
+    const cross = state.cross_mm.map((x) => grouped(x, 1)).join("  ");
     fill(
         host,
         el("span", {class: "hint"},
@@ -153,7 +154,7 @@ function jobs(): Child {
   const share = job.share > 0 ? `${Math.round(job.share * 100)} %` : "";
   const left = job.left_s ? `, ${Math.ceil(job.left_s)} s left` : "";
   return el(
-      "span", {class: "job", role: "status"}, el("span", {class: "spinner"}), `${job.what} ${share}${left}`,
+      "span", {class: "job", role: "status"}, el("span", {class: "spinner"}), el("span", {class: "doing"}, `${job.what} ${share}${left}`),
       job.share > 0 ? el("progress", {value: job.share, max: 1}) : null,
       job.id > 0 ? button(
                        icon("close", 12), `Cancel ${job.what}`, () => void try_to("cancel", {target: job.id}),
@@ -184,8 +185,10 @@ export function make_lost(host: HTMLElement): void {
     if (!host.hidden)
       fill(
           host, el("span", {class: "spinner"}),
-          "The connection to the planner's program is lost. No work is lost: the plan is on disk. Trying again …");
+          state.lost_because ?
+              `The planner's program has ended the connection: ${state.lost_because}. Trying again …` :
+              "The connection to the planner's program is lost. No work is lost: the plan is on disk. Trying again …");
   };
-  watch(["link"], again);
+  watch(["link", "lost_because"], again);
   again();
 }

@@ -42,7 +42,8 @@ const navigate: Tool = {
   title: "Look",
   says: "Drag turns a view, the wheel zooms, a click selects.",
   key: "v",
-  cursor: "default"
+  cursor: "default",
+  is_for_any_scan: true
 };
 
 function take_event(word: string, message: {[key: string]: Json}): void {
@@ -139,7 +140,7 @@ const wire = new Wire(socket_url, {
       reconnected();
     });
   },
-  lost: () => set({link: "lost", jobs: []}),
+  lost: (lost_because) => set({link: "lost", lost_because, jobs: []}),
   event: take_event,
   picture: take_picture,
 });

@@ -5,7 +5,7 @@ import {PaneSetting, set, shows_one_pane, State, state, watch} from "./state";
 
 /// Parts of the state that the second window takes over from the first one.
 const followed = [
-  "looks", "selected", "scan", "cross_mm", "grey", "draft_window", "preview", "compare", "cut_plane", "arch_mm", "marked",
+  "looks", "selected", "scan", "cross_mm", "grey", "draft_window", "preview", "compare", "cut_plane", "arch_mm", "hides_names", "marked",
   "theme", "hides_patient"
 ] as const;
 type Followed = Pick<State, typeof followed[number]>;

@@ -70,6 +70,7 @@ export interface Compare {
 
 export interface State {
   link: "opening"|"open"|"lost";
+  lost_because: string;  // why the server ended the connection; empty if it stated no reason
   hello: Hello|null;
   plan: PlanState|null;
   scan: string|null;  // the scan that panes show; null: the patient's
@@ -94,6 +95,7 @@ export interface State {
   compare: Compare|null;
   cut_plane: CutPlane|null;
   arch_mm: Vec3[];                           // points of the panoramic sheet, left to right
+  hides_names: boolean;                      // of landmarks; their dots stay
   marked: {at_mm: Vec3; says: string}|null;  // the place that a certificate names
   guesses: LandmarkGuess[];                  // proposed landmarks that are not in the plan
   tool: string;
@@ -141,6 +143,7 @@ const without_plan = () => ({
   compare: null,
   cut_plane: null,
   arch_mm: [],
+  hides_names: false,
   marked: null,
   guesses: [],
   pointer: "",
@@ -149,6 +152,7 @@ const without_plan = () => ({
 const first: State = {
   ...without_plan(),
   link: "opening",
+  lost_because: "",
   hello: null,
   plan: null,
   page: "start",
@@ -253,6 +257,7 @@ const kept: Key[] = [
   "cut_plane",
   "compare",
   "arch_mm",
+  "hides_names",
   "maximised",
 ];
 

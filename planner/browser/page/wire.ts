@@ -13,7 +13,7 @@ export class Refusal extends Error {
 
 export interface WireEvents {
   opened(): void;
-  lost(in_s: number): void;
+  lost(why: string): void;  // empty if the server stated no reason
   event(word: string, message: {[key: string]: Json}): void;
   picture(header: FrameHeader, parts: Uint8Array[]): void;
 }
@@ -25,6 +25,8 @@ interface Waiting {
 
 const first_retry_ms = 400;
 const last_retry_ms = 5000;
+/// The code with which the server closes a connection that it has no room for.
+const try_again_later = 1013;
 
 /// Time between two tests of the connection, and the time without any message after which it counts as
 /// broken. A network that drops packets reports no error.
@@ -58,7 +60,10 @@ export class Wire {
       else
         this.see(message.data);
     };
-    socket.onclose = () => this.closed();
+    socket.onclose = (event) => {
+      if (event.code === try_again_later) this.retry_ms = last_retry_ms;
+      this.closed(event.reason);
+    };
     const alive = window.setInterval(() => {
       if (this.socket === socket)
         this.ask_alive(socket);
@@ -81,7 +86,7 @@ export class Wire {
       // close() alone would call onclose only after the server's answer, which may never arrive.
       socket.onopen = socket.onmessage = socket.onclose = null;
       socket.close();
-      this.closed();
+      this.closed("");
     } else if (socket.readyState === WebSocket.OPEN) {
       socket.send(JSON.stringify({id: this.next_id++, do: "alive"}));
     }
@@ -142,11 +147,11 @@ export class Wire {
     this.events.picture(header, parts);
   }
 
-  private closed(): void {
+  private closed(why: string): void {
     this.socket = null;
     for (const asked of this.waiting.values()) asked.reject(new Refusal("The connection was lost.", "lost"));
     this.waiting.clear();
-    this.events.lost(this.retry_ms / 1000);
+    this.events.lost(why);
     window.setTimeout(() => this.open(), this.retry_ms);
     this.retry_ms = Math.min(last_retry_ms, this.retry_ms * 2);
   }

@@ -21,6 +21,7 @@
 #include "planner/operation/table/fault.h"
 #include "planner/operation/table/json_file.h"
 #include "planner/result/report/drawn_page.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner::serve {
 namespace {
@@ -34,6 +35,8 @@ using Tcp = net::ip::tcp;
 /// The largest message from a page. The longest ones are steps with a mask of many polygons.
 constexpr std::uint64_t most_message_bytes = std::uint64_t{4} << 20;
 constexpr std::uint32_t most_header_bytes = 16384;
+/// The longest reason that a WebSocket's close frame can state.
+constexpr std::size_t most_reason_bytes = 123;
 /// While more bytes than this wait to be sent to a page, the page's messages are not read.
 constexpr std::size_t most_unsent_bytes = std::size_t{64} << 20;
 constexpr std::chrono::seconds patience{30};
@@ -92,7 +95,11 @@ class Socket : public std::enable_shared_from_this<Socket> {
           if (const auto socket = weak.lock()) socket->send(message);
         });
       };
-      self->window_ = self->context_.service.open_window(send_to, self->access_);
+      try {
+        self->window_ = self->context_.service.open_window(send_to, self->access_);
+      } catch (const voxel::Error& error) {
+        return self->turn_away(error.what());
+      }
       self->read();
     });
   }
@@ -112,6 +119,14 @@ class Socket : public std::enable_shared_from_this<Socket> {
       self->buffer_.consume(self->buffer_.size());
       if (self->unsent_ < most_unsent_bytes) self->read();
     });
+  }
+
+  /// Ends the connection with a reason, which the page shows.
+  void turn_away(const std::string& why) {
+    is_closed_ = true;
+    const beast::websocket::close_reason reason(beast::websocket::close_code::try_again_later,
+                                                why.substr(0, most_reason_bytes));
+    stream_.async_close(reason, [self = shared_from_this()](beast::error_code) {});
   }
 
   void send(const std::shared_ptr<Message>& message) {

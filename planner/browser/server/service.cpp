@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <utility>
 
+#include "planner/browser/server/plan_folders.h"
 #include "planner/browser/server/slice_pane.h"
 #include "planner/operation/picture/ray_pictures.h"
 #include "planner/operation/table/fault.h"
@@ -29,28 +29,6 @@ bool is_ray_shading(const Json& said) {
   const std::vector<std::string> names = ray_picture_names();
   const Json shading = said.value("shading", Json());
   return std::any_of(names.begin(), names.end(), [&](const std::string& name) { return shading == name; });
-}
-
-/// A plan's state, or a part of it, with file names in place of paths, for windows that only show the plan:
-/// folders may be named after patients.
-Json without_folders(Json said) {
-  const auto shorten = [](Json& value) {
-    if (!value.is_object() || !value.contains("path") || !value["path"].is_string()) return;
-    value["path"] = std::filesystem::path(value["path"].get<std::string>()).filename().string();
-  };
-  const auto shorten_all = [&](Json& parent, const char* key) {
-    if (const auto list = parent.find(key); list != parent.end())
-      for (Json& value : *list) shorten(value);
-  };
-  if (!said.is_object()) return said;
-  shorten(said);
-  shorten_all(said, "scans");
-  if (const auto plan = said.find("plan"); plan != said.end() && plan->is_object()) {
-    shorten_all(*plan, "scans");
-    shorten_all(*plan, "steps");
-  }
-  if (const auto state = said.find("plan_state"); state != said.end()) *state = without_folders(*state);
-  return said;
 }
 
 [[noreturn]] void refuse_viewer(const std::string& what) {
@@ -90,6 +68,13 @@ Service::~Service() {
 
 std::uint64_t Service::open_window(Send send_to, Access access) {
   const std::lock_guard lock(mutex_);
+  const auto viewers = std::count_if(windows_.begin(), windows_.end(), [](const auto& window) {
+    return window.second->access == Access::View;
+  });
+  if (access == Access::View && viewers >= most_viewers)
+    throw voxel::Error(voxel::ErrorCode::Resource,
+                       std::to_string(most_viewers) +
+                           " windows look at this plan already, and no more may: close one of them");
   auto window = std::make_shared<Window>();
   window->send = std::move(send_to);
   window->access = access;
@@ -129,9 +114,27 @@ void Service::tell_all(const std::string& name, const Json& said) {
       window->send(message);
       continue;
     }
-    if (!shortened) shortened = event(name, without_folders(said));
+    if (!shortened) shortened = event(name, without_folders(said, known_folders()));
     window->send(*shortened);
   }
+}
+
+void Service::learn_folders() {
+  if (!view_token_) return;
+  std::vector<std::string> folders = folders_of(session_);
+  const std::lock_guard lock(mutex_);
+  // An earlier plan's work may still end with a message about its files.
+  for (std::string& folder : folders_)
+    if (std::find(folders.begin(), folders.end(), folder) == folders.end())
+      folders.push_back(std::move(folder));
+  std::stable_sort(folders.begin(), folders.end(),
+                   [](const std::string& a, const std::string& b) { return a.size() > b.size(); });
+  folders_ = std::move(folders);
+}
+
+std::vector<std::string> Service::known_folders() {
+  const std::lock_guard lock(mutex_);
+  return folders_;
 }
 
 void Service::tell_plan() {
@@ -220,6 +223,11 @@ void Service::answer(std::uint64_t window, const Request& request, const Request
   Clock::time_point told{};
   bool was_told = false;
   const Clock::time_point start = Clock::now();
+  const auto shown = [&](Json said) {
+    if (request.access == Access::View) said = without_folders(std::move(said), known_folders());
+    return said;
+  };
+  guarded([&] { learn_folders(); }, [](const auto&) {});
   Watched watched{stop,
                   [&](const std::string& doing, double share) {
                     if (Clock::now() - told < tell_every) return;
@@ -228,7 +236,7 @@ void Service::answer(std::uint64_t window, const Request& request, const Request
                     const double spent_s = std::chrono::duration<double>(told - start).count();
                     send(window,
                          event("progress", {{"job", request.id},
-                                            {"what", doing},
+                                            {"what", shown(doing)},
                                             {"share", share},
                                             {"left_s", share > 0.02 ? Json(spent_s * (1.0 - share) / share)
                                                                     : Json(nullptr)}}));
@@ -238,6 +246,7 @@ void Service::answer(std::uint64_t window, const Request& request, const Request
       [&] {
         Json ok = request_kind.answer(session_, request.said, watched);
         if (request_kind.changes_plan) {
+          learn_folders();
           Json state = session_.state();
           tell_all("plan", {{"plan_state", state}});
           if (ok.is_object()) state.update(ok);
@@ -245,7 +254,7 @@ void Service::answer(std::uint64_t window, const Request& request, const Request
         }
         if (request_kind.lane == Lane::Evaluate) tell_all("objects", ok);
         if (request_kind.changes_objects) tell_plan();
-        if (request.access == Access::View) ok = without_folders(std::move(ok));
+        ok = shown(std::move(ok));
         if (request.what == "hello" && request.access == Access::Edit && view_token_)
           ok["view_token"] = *view_token_;
         send(window, answer_to(request.id, ok));
@@ -255,7 +264,13 @@ void Service::answer(std::uint64_t window, const Request& request, const Request
 }
 
 void Service::refuse(std::uint64_t window, std::int64_t id, const std::exception& error) {
-  send(window, refusal_to(id, error, line_of_));
+  const auto sender = find(window);
+  if (sender == nullptr) return;
+  if (sender->access == Access::Edit) return sender->send(refusal_to(id, error, line_of_));
+  const auto line_of = [&](const std::string& text) {
+    return line_of_(without_folders(text, known_folders()));
+  };
+  sender->send(refusal_to(id, error, line_of));
 }
 
 void Service::drop(const PaneQueue::PaneRequest& asked, const char* why) {

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "planner/browser/server/lane_queue.h"
 #include "planner/browser/server/message.h"
@@ -38,8 +39,9 @@ class Service {
   Service& operator=(const Service&) = delete;
 
   const LineOf& line_of() const { return line_of_; }
-  /// Adds a window and returns its number. With Access::View, the window receives no paths of folders and may
-  /// send only requests with `may_view`.
+  /// Adds a window and returns its number. With Access::View, the window receives all messages without folders
+  /// and may send only requests with `may_view`. Throws voxel::Error, Resource, if most_viewers such windows are
+  /// open.
   std::uint64_t open_window(Send send, Access access);
   void close_window(std::uint64_t window);
   /// Handles a message of a window. The answer is sent later, from another thread.
@@ -50,6 +52,8 @@ class Service {
   static constexpr int most_waiting = 500;
   /// The same for a window that only shows the plan, so that it cannot delay windows that edit.
   static constexpr int most_waiting_of_viewer = 8;
+  /// The largest number of windows that may only look; each keeps the pictures of its panes.
+  static constexpr int most_viewers = 16;
   struct Window {
     Send send;
     Access access = Access::Edit;
@@ -57,9 +61,13 @@ class Service {
   };
   std::shared_ptr<Window> find(std::uint64_t window);
   void send(std::uint64_t window, Message message);
-  /// Sends an event to all windows. Those that only show the plan receive it without paths of folders.
+  /// Sends an event to all windows. Those that only show the plan receive it without folders.
   void tell_all(const std::string& name, const Json& said);
   void tell_plan();
+  /// Stores the folders that the open plan names, so that refusals are shortened without waiting for the
+  /// session. Does nothing where no window may only look.
+  void learn_folders();
+  std::vector<std::string> known_folders();
   void take(std::uint64_t window, Request request);
   void answer(std::uint64_t window, const Request& request, const RequestKind& request_kind,
               const std::stop_token& stop);
@@ -80,6 +88,7 @@ class Service {
   std::mutex mutex_;
   std::map<std::uint64_t, std::shared_ptr<Window>> windows_;
   std::uint64_t last_window_ = 0;
+  std::vector<std::string> folders_;  ///< of the plans opened so far, the longest first
   std::map<Lane, std::unique_ptr<LaneQueue>> lanes_;
   std::array<Drawing, 2> drawings_;  ///< first views and slices, then pictures along rays
 };

@@ -2,10 +2,12 @@
 #include "planner/procedure/cephalometry/cephalogram.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 #include <utility>
 
+#include "planner/procedure/cephalometry/name_places.h"
 #include "voxel/view/lettering.h"
 #include "voxel/view/pen.h"
 #include "voxel/view/radiograph.h"
@@ -93,49 +95,78 @@ voxel::RayImage enlarged(const voxel::RayImage& image, int size_px) {
   return made;
 }
 
+/// Draws a line from a point to its name from this many heights of a letter on.
+constexpr double led_from_caps = 1.8;
+
 class Tracing {
  public:
   Tracing(Cephalogram& picture, const voxel::ImagePlane& plane)
-      : canvas_{picture.size_px, &picture.rgb}, plane_(plane) {}
+      : canvas_{picture.size_px, &picture.rgb},
+        plane_(plane),
+        names_(picture.size_px, letter_px_of(picture.size_px)) {}
 
+  /// Draws the landmarks of `places` and the measures' lines; those that have not moved since `before`, which may
+  /// be null, are left out.
   void draw(const Cephalometry& definitions, const Places& places, const Places* before,
             const glm::vec3& colour) {
     const auto moved = [&](const std::string& name) {
       return before == nullptr || glm::length(before->at(name) - places.at(name)) > seen_mm;
     };
-    std::vector<voxel::Polyline> lines, dots, letters;
+    std::vector<voxel::Polyline> lines, dots;
     for (const auto& [a, b] : lines_of(definitions))
       if (places.contains(a) && places.contains(b) && (moved(a) || moved(b)))
         lines.push_back({pixel(places.at(a)), pixel(places.at(b))});
-    for (const auto& [name, p_mm] : places) {
-      if (!moved(name)) continue;
-      dots.push_back({pixel(p_mm), pixel(p_mm)});
-      if (before == nullptr && is_written(definitions, name))
-        for (voxel::Polyline& stroke :
-             voxel::strokes_of_text(name, pixel(p_mm) + glm::dvec2(0.6, -0.5) * letter_px(), letter_px()))
-          letters.push_back(std::move(stroke));
+    for (const auto& [name, p_mm] : places)
+      if (moved(name)) dots.push_back({pixel(p_mm), pixel(p_mm)});
+    voxel::draw_lines(canvas_, lines, {width(), colour, 0.5 * width(), dark});
+    voxel::draw_lines(canvas_, dots, {dot_widths * width(), colour, width(), dark});
+    for (const voxel::Polyline& line : lines) names_.keep_off_line(line.front(), line.back());
+    for (const voxel::Polyline& dot : dots) {
+      const glm::dvec2 reach(0.5 * (dot_widths + 2.0) * width());
+      names_.keep_off({dot.front() - reach, dot.front() + reach});
     }
-    const double width = std::max(canvas_.size_px.x / 700.0, 1.0);
-    voxel::draw_lines(canvas_, lines, {width, colour, 0.5 * width, dark});
-    voxel::draw_lines(canvas_, dots, {5.0 * width, colour, width, dark});
-    voxel::draw_lines(canvas_, letters, {width, colour, width, dark});
+  }
+
+  /// Writes the names of landmarks, after everything else is drawn.
+  void write_names(const Cephalometry& definitions, const Places& places) {
+    std::vector<voxel::Polyline> leads, letters;
+    for (const auto& [name, p_mm] : places) {
+      if (!is_written(definitions, places, name)) continue;
+      std::string words = name;
+      std::replace(words.begin(), words.end(), '_', ' ');
+      const glm::dvec2 at = pixel(p_mm);
+      const auto start = names_.place(words, at);
+      if (!start) continue;
+      const glm::dvec2 middle = *start - glm::dvec2(0.0, 0.5 * letter_px());
+      const double left = std::abs(at.x - middle.x), text_px = voxel::text_width_px(words, letter_px());
+      const glm::dvec2 near = middle.x > at.x ? middle : middle + glm::dvec2(text_px, 0.0);
+      if (std::max(std::abs(middle.y - at.y), std::min(left, std::abs(left - text_px))) >
+          led_from_caps * letter_px())
+        leads.push_back({at, near});
+      for (voxel::Polyline& stroke : voxel::strokes_of_text(words, *start, letter_px()))
+        letters.push_back(std::move(stroke));
+    }
+    voxel::draw_lines(canvas_, leads, {0.5 * width(), as_is, 0.5 * width(), dark});
+    voxel::draw_lines(canvas_, letters, {width(), as_is, 1.5 * width(), dark});
   }
 
  private:
-  double letter_px() const { return std::max(canvas_.size_px.x / 75.0, 7.0); }
+  static constexpr double dot_widths = 5.0;
+  double width() const { return std::max(canvas_.size_px.x / 700.0, 1.0); }
+  double letter_px() const { return letter_px_of(canvas_.size_px); }
+  static double letter_px_of(const glm::ivec2& size_px) { return std::max(size_px.x / 60.0, 7.0); }
   glm::dvec2 pixel(const glm::dvec3& p_mm) const {
     const glm::dvec2 off = (plane_.view.project(p_mm) - plane_.centre_mm) / plane_.pixel_mm;
     return 0.5 * glm::dvec2(canvas_.size_px) + glm::dvec2(off.x, -off.y);
   }
-  /// Whether the name of a landmark is written: only for placed landmarks, and for a pair of left and right
-  /// only at their mean.
-  static bool is_written(const Cephalometry& definitions, const std::string& name) {
+  /// Names are written for placed landmarks; for landmarks of both sides once, at their mean if there is one.
+  static bool is_written(const Cephalometry& definitions, const Places& places, const std::string& name) {
     bool is_placed = true;
     for (const CephalometricLandmark& landmark : definitions.landmarks) {
       const auto is_side = [&](const std::string& side) { return side.starts_with(landmark.name + "_"); };
       const bool of_sides =
           !landmark.mean_of.empty() && std::all_of(landmark.mean_of.begin(), landmark.mean_of.end(), is_side);
-      if (of_sides && is_side(name)) return false;
+      if (of_sides && is_side(name)) return !places.contains(landmark.name);
       if (landmark.name == name) is_placed = landmark.mean_of.empty() || of_sides;
     }
     return is_placed;
@@ -143,6 +174,7 @@ class Tracing {
 
   voxel::Canvas canvas_;
   const voxel::ImagePlane& plane_;
+  NamePlaces names_;
 };
 
 }  // namespace
@@ -176,6 +208,7 @@ Cephalogram draw_cephalogram(const voxel::GreyOctree& grey, const Cephalometry& 
   Tracing tracing(made, plane);
   tracing.draw(definitions, before, nullptr, as_is);
   tracing.draw(definitions, after, &before, as_planned);
+  tracing.write_names(definitions, before);
   return made;
 }
 

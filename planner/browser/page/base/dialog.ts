@@ -26,7 +26,12 @@ export function open_dialog(title: string, name: string, closed: () => void = ()
   });
   document.body.append(box);
   box.showModal();
-  return {refill: (...children) => fill(body, ...children), close};
+  const refill = (...children: Child[]): void => {
+    fill(body, ...children);
+    // Where it has no control, the body itself takes the keys that scroll it.
+    body.tabIndex = body.querySelector("button, a, input, select, textarea, summary, [tabindex]") ? -1 : 0;
+  };
+  return {refill, close};
 }
 
 /// Opens a dialog with a field for one line of text, which contains `usual` at first. Resolves with the text,

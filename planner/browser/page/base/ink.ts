@@ -101,27 +101,48 @@ export function sentence(
           {...look, align: "center"}));
 }
 
-/// Draws words to the right or left of a point, moved up or down if labels are in the way.
+/// Makes later labels avoid a dot.
+export function keep_words_off_dot(at: Vec2, radius: number): void {
+  labelled.push({low: [at[0] - radius, at[1] - radius], high: [at[0] + radius, at[1] + radius]});
+}
+
+/// The rows of text, counted from a point's own, in which its label may stand: the nearest first.
+const label_rows = [0, ...Array.from({length: 9}, (_, i) => [-i - 1, i + 1]).flat()];
+/// From this row on, a line leads from the point to its label.
+const led_from_row = 2;
+
+/// Draws words to the right or left of a point, moved up or down if labels are in the way. Without room, a label that
+/// `may_be_left_out` is not drawn, and any other one covers what is there.
 export function label(
-    context: CanvasRenderingContext2D, words: string, at: Vec2, ratio: number, look: TextLook): void {
+    context: CanvasRenderingContext2D, words: string, at: Vec2, ratio: number,
+    look: TextLook&{may_be_left_out?: boolean}): void {
   const px = (look.px ?? 12) * ratio;
   context.font = font_of(look, ratio);
   const width = context.measureText(words).width;
   const gap = 7 * ratio;
-  const rows = [0, -1, 1, -2, 2, -3, 3];
-  const places = rows.flatMap((row): Vec2[] => [gap, -gap - width].map((x) => [at[0] + x, at[1] + row * px]));
+  const places = label_rows.flatMap(
+      (row) => [gap, -gap - width].map((x) => ({row, place: [at[0] + x, at[1] + row * px] as Vec2})));
   const box = ([x, y]: Vec2): {low: Vec2; high: Vec2} =>
       ({low: [x, y - px / 2], high: [x + width, y + px / 2]});
-  const edge = 4 * ratio;
-  const is_free = (place: Vec2): boolean => {
+  const edge = 4 * ratio, head = 34 * ratio;  // the pane's choices lie at its top
+  const is_free = ({place}: {place: Vec2}): boolean => {
     const {low, high} = box(place);
-    return low[0] >= edge && high[0] <= context.canvas.width - edge &&
+    return low[0] >= edge && high[0] <= context.canvas.width - edge && low[1] >= head &&
+        high[1] <= context.canvas.height - edge &&
         labelled.every(
             (one) =>
                 one.low[0] > high[0] || one.high[0] < low[0] || one.low[1] > high[1] || one.high[1] < low[1]);
   };
-  const place = places.find(is_free) ?? places[0]!;
+  const found = places.find(is_free) ?? (look.may_be_left_out ? null : places[0]!);
+  if (!found) return;
+  const {row, place} = found;
   labelled.push(box(place));
+  if (Math.abs(row) >= led_from_row) {
+    const end: Vec2 = [place[0] > at[0] ? place[0] - 2 * ratio : place[0] + width + 2 * ratio, place[1]];
+    context.globalAlpha = 0.6;
+    line(context, [at, end], look.colour ?? ink.text, 0.75 * ratio);
+    context.globalAlpha = 1;
+  }
   text(context, words, place, ratio, {...look, align: "left"});
 }
 

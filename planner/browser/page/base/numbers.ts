@@ -31,6 +31,6 @@ export function round_length(most: number): number {
   return ([5, 2, 1].find((digit) => digit * ten <= most * (1 + 1e-12)) ?? 1) * ten;
 }
 
-/// A unit as it is shown: "mm³" for "mm3".
+/// A unit as it is shown: "mm³" for "mm3", nothing for "1", the unit of numbers without one.
 export const unit_text = (unit: string): string =>
-    unit.replace("mm3", "mm³").replace("mm2", "mm²").replace("deg", "°").replace("per_mm", "per mm");
+    unit.replace(/^1$/, "").replace("mm3", "mm³").replace("mm2", "mm²").replace("deg", "°").replace("per_mm", "per mm");

@@ -17,6 +17,7 @@ export async function open_signatures(): Promise<void> {
   const typed = {by: "", as: "reader", note: ""};
   const again = async(): Promise<void> => {
     const job = busy("Reading the scans' checksums");
+    dialog.refill(el("p", {class: "says", role: "status"}, "Reading the scans' checksums …"));
     const found = await try_to<{signatures: Signature[]}>("signatures");
     done(job);
     const field = (key: keyof typeof typed, label: string): Child =>

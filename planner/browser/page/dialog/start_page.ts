@@ -3,7 +3,7 @@
 import {open_plan, try_to} from "../actions";
 import {audit_rows} from "../panel/audit";
 import {doubtful_places} from "../panel/doubtful_places";
-import {grouped} from "../base/numbers";
+import {grouped, unit_text} from "../base/numbers";
 import {dialogs} from "../commands";
 import {patient_button, patient_facts} from "../panel/patient";
 import {file_chooser, most_upload_words} from "./files";
@@ -116,7 +116,7 @@ export function scan_facts(scan: ScanState): Child {
           "Extent",
           `${scan.bounds_mm[1].map((high, i) => (high - scan.bounds_mm[0][i]!).toFixed(0)).join(" × ")} mm`),
       scan.range ?
-          fact("Range", `${grouped(scan.range[0])} to ${grouped(scan.range[1])} ${scan.unit ?? ""}`) :
+          fact("Range", `${grouped(scan.range[0])} to ${grouped(scan.range[1])} ${unit_text(scan.unit ?? "")}`) :
           null,
       fact("File", scan.path));
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What is drawn over a pane's picture: edge letters, scale, cross-hair, regions, landmarks, measured lines,
 // marks and the handles of the chosen tool.
-import {begin_ink, dot_at, ink, keep_words_off, label, line, sentence, text, TextLook} from "../base/ink";
+import {begin_ink, dot_at, ink, keep_words_off, keep_words_off_dot, label, line, sentence, text, TextLook} from "../base/ink";
 import {draw_mirror_plane} from "./mirror_plane";
 import {draw_trace} from "./oblique";
 import type {Pane} from "./panes";
-import {Json, Measurement, Step} from "../protocol";
+import {Json, Measurement, PlanState, Step} from "../protocol";
 import {is_elsewhere, shown_scan, state, step_of, steps} from "../state";
 import {active_tool} from "../tool/tool";
 import {round_length} from "../base/numbers";
@@ -22,6 +22,8 @@ export function draw_overlay(pane: Pane, context: CanvasRenderingContext2D): voi
     draw_cross(pane, context);
     draw_trace(pane, context);
     if (!is_elsewhere()) draw_regions(pane, context);
+    for (const at of Object.values(letter_places(pane))) keep_words_off_dot(at, 9 * pane.ratio);
+    for (const {point} of drawn_landmarks(pane)) keep_words_off_dot(pane.pixel_at(point), landmark_px * pane.ratio);
     if (!is_elsewhere()) draw_measures(pane, context);
     if (!is_elsewhere()) draw_mirror_plane(pane, context, step_of(state.selected));
     draw_landmarks(pane, context);
@@ -152,12 +154,12 @@ function draw_measures(pane: Pane, context: CanvasRenderingContext2D): void {
     if (is_handled() || Math.hypot(middle[0] - before[0], middle[1] - before[1]) < 24 * pane.ratio) continue;
     label(
         context, words, [(middle[0] + before[0]) / 2, (middle[1] + before[1]) / 2], pane.ratio,
-        {colour: ink.measure});
+        {colour: ink.measure, may_be_left_out: true});
   }
 }
 
 /// The name of the additional scan on which a procedure places a landmark; empty for the patient's scan.
-const scan_of_landmark = (name: string): string => (state.hello?.procedures ?? [])
+export const scan_of_landmark = (name: string): string => (state.hello?.procedures ?? [])
                                                        .flatMap((one) => one.landmarks)
                                                        .find((mark) => mark.name === name)
                                                        ?.scan ??
@@ -167,14 +169,19 @@ const scan_of_landmark = (name: string): string => (state.hello?.procedures ?? [
 export const is_drawn = (pane: Pane, mark: {name: string; point: Vec3}): boolean =>
     scan_of_landmark(mark.name) === (is_elsewhere() ? shown_scan() : "") && is_near(pane, mark.point);
 
+const landmark_px = 3.5;
+const drawn_landmarks = (pane: Pane): PlanState["landmarks"] =>
+    (state.plan?.landmarks ?? []).filter((mark) => is_drawn(pane, mark));
+
 function draw_landmarks(pane: Pane, context: CanvasRenderingContext2D): void {
-  for (const landmark of state.plan?.landmarks ?? []) {
-    if (!is_drawn(pane, landmark)) continue;
-    const at = pane.pixel_at(landmark.point);
-    dot_at(context, at, 3.5 * pane.ratio, ink.landmark);
-    if (is_handled()) continue;
-    label(context, landmark.name.replace(/_/g, " "), at, pane.ratio, {colour: ink.landmark, px: 11});
-  }
+  const drawn = drawn_landmarks(pane);
+  if (!is_handled() && !state.hides_names)
+    for (const {name, point} of drawn)
+      label(
+          context, name.replace(/_/g, " "), pane.pixel_at(point), pane.ratio,
+          {colour: ink.landmark, px: 11, may_be_left_out: true});
+  // The dots lie over the lines that lead to their names.
+  for (const {point} of drawn) dot_at(context, pane.pixel_at(point), landmark_px * pane.ratio, ink.landmark);
 }
 
 function draw_mark(pane: Pane, context: CanvasRenderingContext2D, p_mm: Vec3): void {
@@ -188,14 +195,16 @@ function draw_mark(pane: Pane, context: CanvasRenderingContext2D, p_mm: Vec3): v
   }
 }
 
-function draw_letters(pane: Pane, context: CanvasRenderingContext2D): void {
+function letter_places(pane: Pane): {left: Vec2; right: Vec2; bottom: Vec2} {
   const [width, height] = pane.size;
   const inset = 12 * pane.ratio;
-  const letters = edge_letters(pane.frame);
+  return {left: [inset, height / 2], right: [width - inset, height / 2], bottom: [width / 2, height - inset]};
+}
+
+function draw_letters(pane: Pane, context: CanvasRenderingContext2D): void {
+  const letters = edge_letters(pane.frame), places = letter_places(pane);
   const look: TextLook = {align: "center", colour: ink.faint, px: 12};
-  text(context, letters.left, [inset, height / 2], pane.ratio, look);
-  text(context, letters.right, [width - inset, height / 2], pane.ratio, look);
-  text(context, letters.bottom, [width / 2, height - inset], pane.ratio, look);
+  for (const edge of ["left", "right", "bottom"] as const) text(context, letters[edge], places[edge], pane.ratio, look);
 }
 
 // Draws a scale bar of 1, 2 or 5 times a power of ten millimetres, about a fifth of the pane's width.

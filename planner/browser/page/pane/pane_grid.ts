@@ -4,6 +4,7 @@
 import {fitted} from "../actions";
 import {button, Child, el, fill} from "../base/html";
 import {icon} from "../base/icons";
+import {grouped, unit_text} from "../base/numbers";
 import {change_pane, Pane} from "./panes";
 import {FrameHeader} from "../protocol";
 import {first_scan, on_leaving_plan, PaneSetting, set, shown_scan, shows_one_pane, State, state, watch} from "../state";
@@ -62,7 +63,7 @@ export function make_panes(host: HTMLElement, acknowledge: (pane: number, frame:
   watch(["looks", "draft_window", "cut_plane"], () => want_all(true));
   watch(["preview"], follow_preview);
   watch(
-      ["panes", "selected", "marked", "tool", "cross_mm", "arch_mm"],
+      ["panes", "selected", "marked", "tool", "cross_mm", "arch_mm", "hides_names"],
       () => panes.forEach((pane) => pane.redraw()));
   watch(["tool"], () => panes.forEach((pane) => {
     pane.canvas.style.cursor = active_tool()?.cursor ?? "default";
@@ -105,7 +106,9 @@ export function fit_all(): void {
   });
 }
 
-const left_at = new Map<string, Pick<State, "panes"|"cross_mm"|"grey">>();
+// What a window shows of one scan, in that scan's frame.
+type OfScan = Pick<State, "panes"|"cross_mm"|"grey"|"arch_mm"|"cut_plane"|"marked">;
+const left_at = new Map<string, OfScan>();
 on_leaving_plan(() => left_at.clear());
 /// Shows a scan of the plan in all panes, with the settings that it had last. Null means the patient's scan.
 export function show_scan(name: string|null): void {
@@ -115,8 +118,10 @@ export function show_scan(name: string|null): void {
   // A tool's unfinished work belongs to the previous scan. Only the landmark tool stays, because a procedure
   // may need landmarks on several scans.
   if (state.tool !== "landmark") take_tool("navigate");
-  left_at.set(before, {panes: state.panes, cross_mm: state.cross_mm, grey: state.grey});
-  const {panes: fits, ...looked} = left_at.get(next) ?? fitted(state.plan, next);
+  const {panes: shown, cross_mm, grey, arch_mm, cut_plane, marked} = state;
+  left_at.set(before, {panes: shown, cross_mm, grey, arch_mm, cut_plane, marked});
+  const {panes: fits, ...looked}: OfScan =
+      left_at.get(next) ?? {...fitted(state.plan, next), arch_mm: [], cut_plane: null, marked: null};
   set({
     scan: name,
     preview: null,
@@ -130,8 +135,15 @@ export function show_scan(name: string|null): void {
   }
 }
 
-/// Moves the cross-hair and the middle of every pane to a place, and marks it with words.
+// The edit of the plan about which the mark says something. After another edit it may no longer be true.
+let marked_edit: number|undefined;
+watch(["plan"], () => {
+  if (state.marked && state.plan?.edit !== marked_edit && !shows_one_pane) set({marked: null});
+});
+
+/// Moves the cross-hair and the middle of every pane to a place, and marks it with words until the plan changes.
 export function show_place(at_mm: Vec3, says: string): void {
+  marked_edit = state.plan?.edit;
   set({
     cross_mm: at_mm,
     marked: {at_mm, says},
@@ -224,9 +236,9 @@ export function show_in(index: number, name: string): void {
 function tell_pointer(pane: Pane, at: Vec2): void {
   const picked = pane.pick(at);
   const value = pane.value_at(at);
-  const unit = state.plan?.scans.find((scan) => scan.name === shown_scan())?.unit ?? "HU";
-  const words = picked ? `${picked.point.map((x) => x.toFixed(1).replace("-", "−")).join("  ")} mm${
-                             value === null ? "" : `   ${value.toFixed(0).replace("-", "−")} ${unit}`}${
+  const unit = unit_text(state.plan?.scans.find((scan) => scan.name === shown_scan())?.unit ?? "HU");
+  const words = picked ? `${picked.point.map((x) => grouped(x, 1)).join("  ")} mm${
+                             value === null ? "" : `   ${grouped(value)} ${unit}`.trimEnd()}${
                              picked.object ? `   ${picked.object}` : ""}` :
                                              "";
   if (words !== state.pointer) set({pointer: words});

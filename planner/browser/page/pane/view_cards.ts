@@ -6,13 +6,14 @@ import {clear_compare} from "../commands";
 import {object_ids} from "../drawn_objects";
 import {button, Child, el} from "../base/html";
 import {icon} from "../base/icons";
-import {set, state} from "../state";
+import {grouped} from "../base/numbers";
+import {set, shown_scan, state} from "../state";
 
 export function cut_plane_card(): Child {
   const cut = state.cut_plane!;
-  const bounds = state.plan?.scans[0]?.bounds_mm;
+  const bounds = state.plan?.scans.find((scan) => scan.name === shown_scan())?.bounds_mm;
   const names = ["Sagittal", "Coronal", "Axial"];
-  const place = (offset_mm: number): string => `${offset_mm.toFixed(1)} mm`;
+  const place = (offset_mm: number): string => `${grouped(offset_mm, 1)} mm`;
   const shown = el("output", {}, place(cut.offset_mm));
   return el(
       "section", {class: "card"},

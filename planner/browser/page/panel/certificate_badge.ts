@@ -78,6 +78,6 @@ export function measured_text(measured: Measured|null|undefined): string {
   const digits = unit === "per mm" ? 4 : is_length ? 2 : Math.abs(measured.value) < 100 ? 1 : 0;
   const number = grouped(measured.value, digits);
   return half === null || half === 0 ?
-      `${number} ${unit}` :
-      `${number} ± ${grouped(half, half < 10 ? Math.max(digits, 1) : 0)} ${unit}`;
+      `${number} ${unit}`.trimEnd() :
+      `${number} ± ${grouped(half, half < 10 ? Math.max(digits, 1) : 0)} ${unit}`.trimEnd();
 }

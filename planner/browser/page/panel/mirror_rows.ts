@@ -3,6 +3,7 @@
 // it.
 import {replace_step} from "../actions";
 import {Child, el} from "../base/html";
+import {grouped} from "../base/numbers";
 import {plane_of} from "../pane/mirror_plane";
 import {Step} from "../protocol";
 import {state} from "../state";
@@ -31,8 +32,8 @@ export function mirror_rows(step: Step): Child {
   return [
     el("p", {class: "says"}, residual),
     el("p", {class: "says"},
-       `Plane through ${point_mm.map((x) => x.toFixed(1)).join(", ")} mm, normal ${
-           normal.map((x) => x.toFixed(3)).join(", ")}; drawn in the panes.`),
+       `Plane through ${point_mm.map((x) => grouped(x, 1)).join(", ")} mm, normal ${
+           normal.map((x) => grouped(x, 3)).join(", ")}; drawn in the panes.`),
     el("label", {class: "field", "data-tip": "Moves the plane along its normal. The plane is then no longer fitted"},
        el("span", {}, "Move the plane by"), el("input", {
          type: "number",

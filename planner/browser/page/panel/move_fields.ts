@@ -15,6 +15,8 @@ import {
 } from "../tool/piece_motion";
 import {Motion} from "../protocol";
 import {state} from "../state";
+import {grouped} from "../base/numbers";
+import {distance, Vec3} from "../base/vector";
 
 const titles: Record<Direction|Turn, [string, string]> = {
   forward_mm: ["Forward", "negative: back"],
@@ -24,6 +26,9 @@ const titles: Record<Direction|Turn, [string, string]> = {
   yaw_deg: ["Yaw", "the front goes to the patient's left"],
   roll_deg: ["Roll", "the patient's left side goes up"],
 };
+
+/// Whether a turn is about a point, to the last digit that is shown.
+const is_at = (about: string|Vec3|undefined, p: Vec3): boolean => Array.isArray(about) && distance(about, p) < 0.05;
 
 /// Fields for a piece's motion in anatomical directions; null if the selected step moves no piece.
 export function movement_fields(): Child {
@@ -64,6 +69,7 @@ export function movement_fields(): Child {
   };
   const landmarks = state.plan?.landmarks ?? [];
   const about = move.turn?.about_mm;
+  const is_typed = Array.isArray(about) && !is_at(about, centre_of(one.source));
   return el(
       "section", {class: "card"}, el("h3", {}, one.step ? `Motion of ${one.source}` : `Move ${one.source}`),
       el("div", {class: "grid-3"}, directions.map(field)), el("div", {class: "grid-3"}, turns.map(field)),
@@ -75,11 +81,12 @@ export function movement_fields(): Child {
              const about_mm = value === "" ? centre_of(one.source) :
                  value === "cross"         ? state.cross_mm :
                                              value;
-             void commit_motion({...move, turn: {...move.turn, about_mm}});
+             if (value !== "typed") void commit_motion({...move, turn: {...move.turn, about_mm}});
            },
          },
-            el("option", {value: "", selected: typeof about !== "string"}, "its middle"),
+            el("option", {value: "", selected: about === undefined || is_at(about, centre_of(one.source))}, "its middle"),
             el("option", {value: "cross"}, "the cross-hair"),
+            is_typed ? el("option", {value: "typed", selected: true}, about.map((x) => grouped(x, 1)).join(", ")) : null,
             landmarks.map(
                 (mark) =>
                     el("option", {value: mark.name, selected: about === mark.name},

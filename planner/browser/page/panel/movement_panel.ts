@@ -14,6 +14,7 @@ interface MovementRow {
   landmarks?: {name: string; words: string; since_scan?: {words: string}}[];
 }
 const movements = new Map<string, MovementRow[]>();
+let is_fetching = false;
 let fetched = "";  // the edit and evaluation for which the rows were fetched
 on_leaving_plan(() => {
   movements.clear();
@@ -27,10 +28,12 @@ export async function fetch_movement(): Promise<void> {
   if (!plan || state.right_tab !== "movement" || fetched === present) return;
   fetched = present;
   movements.clear();
+  is_fetching = true;
   for (const step of steps().filter((one) => moves_object(one))) {
     const answer = await try_to<{rows: MovementRow[]}>("movement", {object: step.id});
     if (answer) movements.set(step.id, answer.rows ?? []);
   }
+  is_fetching = false;
   set({right_tab: "movement"});
 }
 
@@ -41,7 +44,10 @@ export function movement(): Child {
           () => dialogs.cephalometry(), {"data-key": "cephalometry"}) :
       null;
   if (!movements.size)
-    return [face, el("p", {class: "says empty"}, "No piece moves yet. Select a piece and press G to move it.")];
+    return [face, el("p", {class: "says empty", role: "status"},
+                     is_fetching && steps().some((step) => moves_object(step)) ?
+                         "The motions are being read …" :
+                         "No piece moves yet. Select a piece and press G to move it.")];
   return [face, ...[...movements].map(
       ([id, rows]) =>
           el("table", {class: "numbers"}, el("caption", {}, id.replace(/_/g, " ")),

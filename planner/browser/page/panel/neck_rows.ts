@@ -20,7 +20,7 @@ function decide(step: Step, field: Decision, necks: Neck[], what: string): void 
 }
 
 function row(step: Step, neck: Neck): Child {
-  const place = neck.at_mm.map((x) => x.toFixed(0)).join(", ");
+  const place = neck.at_mm.map((x) => grouped(x)).join(", ");
   const what = `${size(neck)} beyond the neck near ${place}`;
   const choice = (word: "Keep"|"Cut", tip: string, field: Decision): Child => button(
       word, `${word} ${what}. ${tip}`, () => decide(step, field, [neck], `${word.toLowerCase()} ${what} of ${step.id}`),

@@ -21,9 +21,9 @@ export function patient_button(): Child {
   if (!scan) return null;
   const words = state.hides_patient ? hidden : short_words(scan.patient);
   return button(
-      [icon(state.hides_patient ? "eye_off" : "eye", 14), words],
+      [icon(state.hides_patient ? "eye_off" : "eye", 14), el("span", {class: "words"}, words)],
       state.hides_patient ? "Shows the patient's name, number and dates, here and in new reports" :
-                            "Hides the patient's name, number and dates, here and in new reports",
+                            `${words}. A click hides the patient's name, number and dates, here and in new reports`,
       () => hide_patient(!state.hides_patient),
       {class: "ghost small patient", "aria-label": `${words}. ${state.hides_patient ? "Show" : "Hide"} the patient`});
 }

@@ -5,7 +5,7 @@ import {add_step, replace_step, window_step} from "../actions";
 import {look_for_cleaning} from "./cleaning";
 import {button, Child, el, slider} from "../base/html";
 import {ScanState, Step, Tissue} from "../protocol";
-import {bone_low, DraftWindow, first_scan, selected_step, set, state, step_of, steps} from "../state";
+import {bone_low, DraftWindow, first_scan, selected_step, set, shows_one_pane, state, step_of, steps, watch} from "../state";
 import {take_tool, Tool} from "../tool/tool";
 
 const usual: Tissue[] = [
@@ -26,6 +26,30 @@ function range(scan: string): [number, number] {
 }
 const edited = (): Step|undefined => (selected_step()?.do === "window" ? selected_step() : undefined);
 
+// The step that the draft began with, as a text; empty for a new window.
+let begun_with = "";
+/// Begins a draft with a step's window, or with bone.
+function begin(step: Step|undefined): void {
+  begun_with = step ? JSON.stringify(step) : "";
+  const draft: DraftWindow = step ? {
+    scan: String(step.scan),
+    low: Number(step.low),
+    replaces: step.id,
+    ...(step.high === undefined ? {} : {high: Number(step.high)})
+  } :
+                                    {scan: first_scan(), low: bone_low(first_scan())};
+  set({draft_window: draft, selected: step?.id ?? null});
+}
+
+// An undo, or another window, may change the step or take it out of the plan. The draft then shows a window that the plan
+// no longer has, so it begins again.
+watch(["plan"], () => {
+  const replaced = state.draft_window?.replaces;
+  if (replaced === undefined || is_applying || shows_one_pane) return;
+  const step = step_of(replaced);
+  if (!step || JSON.stringify(step) !== begun_with) begin(step);
+});
+
 export const window_tool: Tool = {
   name: "window",
   title: "Tissue window",
@@ -33,22 +57,16 @@ export const window_tool: Tool = {
   key: "w",
   cursor: "default",
   taken() {
-    const step =
-        edited() ?? (state.selected === null ? steps().find((one) => one.do === "window") : undefined);
-    const draft: DraftWindow = step ? {
-      scan: String(step.scan),
-      low: Number(step.low),
-      replaces: step.id,
-      ...(step.high === undefined ? {} : {high: Number(step.high)})
-    } :
-                                      {scan: first_scan(), low: bone_low(first_scan())};
-    set({draft_window: draft, selected: step?.id ?? null});
+    begin(edited() ?? (state.selected === null ? steps().find((one) => one.do === "window") : undefined));
   },
   left() {
     set({draft_window: null});
   },
   panel,
 };
+
+// Whether the draft's own change of the plan is on its way.
+let is_applying = false;
 
 async function apply(): Promise<void> {
   const draft = state.draft_window;
@@ -58,7 +76,10 @@ async function apply(): Promise<void> {
   const next: Step = {...kept, low: draft.low, ...(draft.high === undefined ? {} : {high: draft.high})} as
       Step;
   const what = `window from ${draft.low}${draft.high === undefined ? "" : ` to ${draft.high}`}`;
+  is_applying = true;
   const is_made = await (step ? replace_step(step.id, next, what) : add_step(next, what));
+  is_applying = false;
+  begun_with = JSON.stringify(step_of(next.id) ?? "");
   if (is_made) void look_for_cleaning(next.id);
   if (state.draft_window === draft)
     take_tool("navigate");

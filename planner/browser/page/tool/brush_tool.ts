@@ -8,7 +8,7 @@ import {add, distance, dot, hundredths, normalised, scaled, sub, length, Vec2, V
 import {makes_body} from "../operations";
 import type {Pane} from "../pane/panes";
 import {Json, Step} from "../protocol";
-import {is_elsewhere, notify, on_leaving_plan, selected_step, set, state, steps} from "../state";
+import {notify, on_leaving_plan, selected_step, set, state, steps} from "../state";
 import {place_at} from "./point_tools";
 import {Pointer, Tool} from "./tool";
 
@@ -112,10 +112,6 @@ function forget(): void {
 function begin(pane: Pane, at: Vec2, by_keys: boolean): boolean {
   if (pane.setting.mode === "panoramic") {
     notify("A panoramic picture is bent: draw in a view or in a slice.", "warning");
-    return false;
-  }
-  if (is_elsewhere()) {
-    notify("This scan has no objects of the plan: show the patient's scan.", "warning");
     return false;
   }
   if (!target(mode)) {

@@ -11,7 +11,7 @@ import {look_of} from "../drawn_objects";
 import {makes_body} from "../operations";
 import type {Pane} from "../pane/panes";
 import {Json, Step} from "../protocol";
-import {is_elsewhere, notify, on_leaving_plan, selected_step, set, shown_scan, state, steps} from "../state";
+import {notify, on_leaving_plan, selected_step, set, shown_scan, state, steps} from "../state";
 import {closed_line, contains, dragged, nearest_on, overlap, Polygon, refined, smoothed, spliced, tidy, gap} from "./contour_shape";
 import {Pointer, Tool} from "./tool";
 
@@ -58,7 +58,6 @@ function frame_of(view: string): {right: Vec3; up: Vec3; look: Vec3} {
 /// The slice that a pane shows. A message if contours cannot be drawn in the pane.
 function place_of(pane: Pane|null): Place|string {
   if (!pane || pane.setting.mode !== "slice") return "Contours are drawn in slices: choose a slice.";
-  if (is_elsewhere()) return "This scan has no objects of the plan: show the patient's scan.";
   const view = view_text(view_of_plane(pane.setting.plane, pane.setting.tilt));
   const frame = frame_of(view);
   if (dot(frame.look, pane.frame.look) < 1 - 1e-9)

@@ -4,12 +4,12 @@
 import {add_step, free_id, try_to} from "../actions";
 import {button, Child, el, slider} from "../base/html";
 import {dot_at, ink, label} from "../base/ink";
-import {grouped} from "../base/numbers";
+import {grouped, unit_text} from "../base/numbers";
 import {add, dot, hundredths, scaled, Vec2, Vec3} from "../base/vector";
 import type {Pane} from "../pane/panes";
 import {tried_text} from "../panel/live_step";
 import {Json, ScanState, Step} from "../protocol";
-import {is_elsewhere, notify, on_leaving_plan, set, shown_scan, state} from "../state";
+import {notify, on_leaving_plan, set, shown_scan, state} from "../state";
 import {place_at} from "./point_tools";
 import {Tool} from "./tool";
 
@@ -27,7 +27,7 @@ const usual_hounsfield = 60, usual_share = 1 / 25;
 const most_seeds = 64;
 
 const scan_of = (): ScanState|undefined => state.plan?.scans.find((scan) => scan.name === shown_scan());
-const unit = (): string => scan_of()?.unit ?? "HU";
+const unit = (): string => unit_text(scan_of()?.unit ?? "HU");
 const span = (): number => {
   const [low, high] = scan_of()?.range ?? [-1000, 3000];
   return Math.max(1e-6, high - low);
@@ -39,7 +39,7 @@ const rounded = (value: number): number => {
   return Number(Math.min(65535, Math.max(0, value)).toFixed(digits));
 };
 const tolerance = (): number => typed ?? rounded(is_in_hu() ? usual_hounsfield : span() * usual_share);
-const tolerance_text = (): string => `±${grouped(tolerance(), tolerance() % 1 ? 2 : 0)} ${unit()}`;
+const tolerance_text = (): string => `±${grouped(tolerance(), tolerance() % 1 ? 2 : 0)} ${unit()}`.trim();
 
 const step_of_seeds = (): Step => ({
   id: free_id("region"),
@@ -110,10 +110,6 @@ export const grow_tool: Tool = {
       notify("A panoramic picture is bent: click in a view or in a slice.", "warning");
       return true;
     }
-    if (is_elsewhere()) {
-      notify("Objects are made from the patient's scan: show it first.", "warning");
-      return true;
-    }
     const seed = seed_at(pane, at);
     if (!seed) return true;
     if (!is_in_scan(seed)) {
@@ -180,8 +176,8 @@ function panel(): Child {
   const most = is_in_hu() ? 1000 : span() / 2;
   return [
     slider(
-        unit(), "grow-tolerance",
-        {min: 0, step: is_in_hu() ? 1 : "any", value: tolerance(), "aria-label": `Tolerance in ${unit()}`},
+        unit() || "±", "grow-tolerance",
+        {min: 0, step: is_in_hu() ? 1 : "any", value: tolerance(), "aria-label": unit() ? `Tolerance in ${unit()}` : "Tolerance"},
         {max: Math.max(most, tolerance())}, set_tolerance),
     el("div", {class: "presets", role: "group", "aria-label": "What the tolerance is measured from"},
        choose("Seed", "Samples that differ from the seeds' samples by at most the tolerance", "seed", !running_mean, () => running_mean = false),

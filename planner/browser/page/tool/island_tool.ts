@@ -8,7 +8,7 @@ import {Vec3} from "../base/vector";
 import {makes_body} from "../operations";
 import {Part} from "../panel/cleaning";
 import {Json, Step} from "../protocol";
-import {is_elsewhere, notify, selected_step, set, state, step_of, steps} from "../state";
+import {notify, selected_step, set, state, step_of, steps} from "../state";
 import {place_at} from "./point_tools";
 import {Tool} from "./tool";
 
@@ -83,10 +83,6 @@ export const island_tool: Tool = {
     if (last) set({selected: last.id});
   },
   down({pane, at}) {
-    if (is_elsewhere()) {
-      notify("This scan has no objects of the plan: show the patient's scan.", "warning");
-      return true;
-    }
     const point = place_at(pane, at);
     if (point) void take_part(point);
     return true;

@@ -7,7 +7,7 @@ import {is_overlap, look_of} from "../drawn_objects";
 import {makes_body} from "../operations";
 import {mark_mm} from "../pane/overlay";
 import {Json, Motion, Step} from "../protocol";
-import {selected_step, set, state, steps, watch} from "../state";
+import {selected_step, set, shows_one_pane, state, steps, watch} from "../state";
 import {add, scaled, Vec3} from "../base/vector";
 
 /// The piece that the tool moves: the object of the selected move, or the selected object. `step` is its
@@ -25,7 +25,11 @@ const motion_of = (step: Step|undefined): Motion =>
       by: {...((step?.by as Motion["by"]) ?? {})},
       ...(step?.turn ? {turn: {...(step.turn as unknown as NonNullable<Motion["turn"]>)}} : {}),
     });
-export const current = (): Motion => state.preview?.move ?? motion_of(piece()?.step);
+/// The motion of the piece: that of its preview, if there is one, else that of its step.
+export function current(): Motion {
+  const one = piece(), {preview} = state;
+  return preview?.move && preview.of === one?.source ? preview.move : motion_of(one?.step);
+}
 
 /// The position of a piece's handles in mm: the centre of its rotation, after the motion.
 export function pivot_mm(source: string, move: Motion): Vec3 {
@@ -80,6 +84,11 @@ const place_in_plan = (): string => `${state.plan?.edit} ${state.selected}`;
 watch(["plan", "selected"], () => {
   if (state.preview?.move && state.preview.difference && place_in_plan() !== shown_at)
     set({preview: null, difference: null});
+});
+// A motion that was typed and not taken over ends with another piece, or when an undo takes its piece out of the plan.
+watch(["plan", "selected"], () => {
+  const {preview} = state;
+  if (preview?.move && preview.of !== piece()?.source && !shows_one_pane) set({preview: null, overlap_mm3: null, difference: null});
 });
 
 /// Chooses the object with which the piece is compared, and shows the difference at the piece's present

@@ -5,11 +5,11 @@ import {add_step, free_id, put_landmark} from "../actions";
 import {button, el} from "../base/html";
 import {ask_guesses, draw_guesses, guess_card, open_guesses, pass_over} from "./guesses";
 import {dot_at, ink, line, text} from "../base/ink";
-import {is_drawn} from "../pane/overlay";
-import {show_in, show_scan} from "../pane/pane_grid";
+import {is_drawn, scan_of_landmark} from "../pane/overlay";
+import {show_in, show_scan, want_all} from "../pane/pane_grid";
 import type {Pane} from "../pane/panes";
 import {Json, LandmarkGuess} from "../protocol";
-import {first_scan, is_elsewhere, notify, on_leaving_plan, selected_step, set, state} from "../state";
+import {first_scan, is_elsewhere, notify, on_leaving_plan, selected_step, set, shown_scan, state} from "../state";
 import {take_tool, Tool} from "./tool";
 import {angle_deg, distance, hundredths, Vec2, Vec3} from "../base/vector";
 
@@ -171,10 +171,20 @@ function next_guess(placed = ""): void {
   show_guess();
 }
 
-/// Shows the guess for the next landmark in the panel, and moves the cross-hair to it.
+/// The largest pixel of a pane that shows a guess: the surroundings by which a person judges it are some 10 cm.
+const guess_pixel_mm = 0.35;
+
+/// Shows the guess for the next landmark in the panel, and moves the cross-hair and all panes to it.
 function show_guess(): void {
   const guess = current_guess();
-  set(guess ? {tool: state.tool, cross_mm: hundredths(guess.point_mm)} : {tool: state.tool});
+  if (!guess) return set({tool: state.tool});
+  const at_mm = hundredths(guess.point_mm);
+  set({
+    tool: state.tool,
+    cross_mm: at_mm,
+    panes: state.panes.map((pane) => ({...pane, centre_mm: at_mm, pixel_mm: Math.min(pane.pixel_mm, guess_pixel_mm)}))
+  });
+  want_all(false);
 }
 
 async function place(name: string, point: Vec3, snap: boolean): Promise<void> {
@@ -191,6 +201,16 @@ async function place(name: string, point: Vec3, snap: boolean): Promise<void> {
     landmark_name = "";
 }
 
+/// Why a landmark of this name cannot be placed on the shown scan: its position would be taken for one of
+/// another scan. Empty: it can be placed.
+function refusal_here(name: string): string {
+  const wanted = scan_of_landmark(name), words = name.replace(/_/g, " ");
+  if (wanted === (is_elsewhere() ? shown_scan() : "")) return "";
+  return wanted ? `${words} lies on the scan '${wanted}': show that scan first.` :
+                  `On the scan '${shown_scan()}' only landmarks can be placed that a procedure expects there. ${
+                      words} would belong to the patient's scan: show that scan first.`;
+}
+
 export const landmark_tool: Tool = {
   name: "landmark",
   title: "Landmark",
@@ -198,6 +218,7 @@ export const landmark_tool: Tool = {
       "Name a landmark, then click it in a view or slice. It snaps to the surface; drag a placed one to move it.",
   key: "l",
   cursor: "crosshair",
+  is_for_any_scan: true,
   is_pointed: true,
   down({pane, at}) {
     const known = landmark_at(pane, at);
@@ -205,11 +226,15 @@ export const landmark_tool: Tool = {
       held = {...known};
       return true;
     }
-    const point = place_at(pane, at);
-    if (!point) return true;
     const name =
         landmark_name.trim().replace(/\s+/g, "_") || `point_${(state.plan?.landmarks.length ?? 0) + 1}`;
-    void place(name, point, snaps(pane));
+    const refusal = refusal_here(name);
+    if (refusal) {
+      notify(refusal, "warning");
+      return true;
+    }
+    const point = place_at(pane, at);
+    if (point) void place(name, point, snaps(pane));
     return true;
   },
   move({pane, at}) {
@@ -312,6 +337,7 @@ export const arch_tool: Tool = {
       "In an axial slice click along the arch from the patient's right to the left; Enter shows the panoramic slice.",
   key: "",
   cursor: "crosshair",
+  is_for_any_scan: true,
   is_pointed: true,
   taken() {
     set({arch_mm: []});

@@ -3,7 +3,7 @@
 // own navigation.
 import type {Child} from "../base/html";
 import type {Pane} from "../pane/panes";
-import {may_edit, on_leaving_plan, set, state} from "../state";
+import {is_elsewhere, may_edit, notify, on_leaving_plan, set, state} from "../state";
 import {Vec2} from "../base/vector";
 
 export interface Pointer {
@@ -17,6 +17,7 @@ export interface Tool {
   says: string;  // one sentence that explains the tool
   key: string;   // the key that chooses the tool
   cursor: string;
+  is_for_any_scan?: boolean;  // it also works while the panes show a scan that is not the patient's
   is_pointed?: boolean;  // works on positions: arrow keys move one in the pane, Space clicks it
   down?(pointer: Pointer): boolean;  // returns true if the tool takes the drag
   move?(pointer: Pointer): void;
@@ -38,8 +39,13 @@ export function register_tools(more: Tool[]): void {
 }
 export const active_tool = (): Tool|undefined => tools.find((tool) => tool.name === state.tool);
 
+/// Chooses a tool. Refuses one that makes something of the patient's scan while the panes show another one,
+/// because positions in that scan's frame would then be taken for the patient's.
 export function take_tool(name: string): void {
   if (name === state.tool || (name !== "navigate" && !may_edit())) return;
+  const next = tools.find((tool) => tool.name === name);
+  if (is_elsewhere() && !next?.is_for_any_scan)
+    return notify(`${next?.title ?? name} works on the patient's scan: show that scan first.`, "warning");
   active_tool()?.left?.();
   set({tool: name});
   // The inspector shows the tool's rows.

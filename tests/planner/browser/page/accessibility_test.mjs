@@ -64,6 +64,9 @@ for (const [width, height] of [[390, 844], [820, 1180], [1024, 768], [1440, 900]
       if (await go_on.isVisible()) await go_on.click();
       await one.press('Escape');
       await one.at_rest();
+      // Scanners state numbers of 64 letters.
+      await one.page.locator('.bar .patient .words').evaluate((words) => { words.textContent = `head_neck_ex1 · ${'1.3.6.1.4.1.9590'.repeat(4)}`; });
+      found.push(...(await one.page.evaluate(beside, 'a long patient')));
       for (const name of ['steps', 'window', 'numbers', 'Procedure from landmarks', 'help', 'export']) {
         await screens[name](one);
         await one.page.waitForTimeout(200);

@@ -145,6 +145,11 @@ test('landmarks are guessed: one is kept, one is put elsewhere, one is passed ov
   await one.until(() => placed().length === 1, 'the kept guess');
   assert.equal(placed()[0].name, first.replace(/ /g, '_'));
   const [, , second] = await one.until(async () => { const found = await asked(); return found?.[2] === first ? null : found; }, 'the next guess');
+  // The panes show it close up, about the cross-hair; the whole head comes back by a key.
+  const { panes, cross_mm } = await one.look();
+  for (const pane of panes) assert.ok(pane.pixel_mm <= 0.35 && pane.centre_mm.join() === cross_mm.join(), JSON.stringify(pane));
+  await one.press('0');
+  await one.until(async () => (await one.setting(0)).pixel_mm > 0.35, 'the whole head');
   // The next is clicked where the arrows carry it.
   await enter(0);
   await take(0, [0, 40]);

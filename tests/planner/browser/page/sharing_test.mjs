@@ -199,6 +199,31 @@ for (const [width, height] of [[390, 844], [820, 1180], [1024, 768], [1600, 900]
       }
     });
 
+test('a window too many is told why it sees nothing, and comes in when another one leaves', async () => {
+  const one = await PlannerWindow.open(server.url);
+  try {
+    await one.at_rest();
+    await one.page.evaluate((token) => new Promise((done) => {
+      window.viewers = Array.from({ length: 16 }, () => new WebSocket(`ws://${location.host}/socket?token=${token}`));
+      let open = 0;
+      for (const socket of window.viewers) socket.onopen = () => { if (++open === 16) done(); };
+    }), new URL(server.view_url).searchParams.get('token'));
+    const late = await PlannerWindow.open(server.view_url);
+    try {
+      await late.page.locator('.lost', { hasText: /16 windows look at this plan already/ }).waitFor();
+      await one.page.evaluate(() => window.viewers[0].close());
+      await late.page.locator('.plan-name', { hasText: 'jaw' }).waitFor();
+      assert.equal(await late.page.locator('.lost').isVisible(), false);
+    } finally {
+      await late.close();
+    }
+    await one.page.evaluate(() => window.viewers.forEach((socket) => socket.close()));
+    assert.deepEqual(one.problems, []);
+  } finally {
+    await one.close();
+  }
+});
+
 test('the start page stays in sight while another window edits', async () => {
   const one = await PlannerWindow.open(server.url);
   const other = await PlannerWindow.open(server.url);

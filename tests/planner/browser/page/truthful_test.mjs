@@ -58,6 +58,8 @@ test('the page says whom the plan is about, and hides it on demand', async () =>
   await one.until(async () => /patient hidden/.test(await patient.innerText()), 'the patient hidden');
   await one.command("Show the scan's audit");
   assert.match(await one.page.locator('dialog .facts').first().innerText(), /patient hidden/);
+  const [controls, tab_index] = await one.page.locator('dialog .dialog-body').evaluate((body) => [body.querySelectorAll('button, a, input').length, body.tabIndex]);
+  assert.ok(controls > 0 || tab_index === 0, 'keys can scroll the audit');
   await one.press('Escape');
   await one.click(patient);
   await one.until(async () => /not stated/.test(await patient.innerText()), 'the patient shown');
@@ -276,7 +278,89 @@ test('interference shows through bone, and a button goes to it', async () => {
   await one.at_rest();
   assert.ok((await red_pixels(0)) > 50, 'red shows through the bone');
   await one.click(one.page.locator('[data-key="show-both"]'));
-  await one.page.locator('.status', { hasText: /largest of \d+ parts? of both/ }).waitFor();
+  const mark = one.page.locator('.status', { hasText: /largest of \d+ parts? of both/ });
+  await mark.waitFor();
+  // What it says need not be true of another state of the plan.
+  await one.select('moved');
+  await one.press('g');
+  await one.type('move-up_mm', 3.5);
+  await one.until(async () => (await mark.count()) === 0, 'the mark gone');
+  await one.press('Escape');
+  await one.press('Control+z');
+  await one.until(() => one.plan(other_path).steps.find((each) => each.id === 'moved').by.up_mm === 3, 'the plan as before');
+});
+
+test('the point about which a piece turns is the plan\'s', async () => {
+  const about = one.page.locator('[data-key="move-about"]');
+  const turn = () => one.plan(other_path).steps.find((each) => each.id === 'moved').turn;
+  await one.select('moved');
+  await one.press('g');
+  assert.equal(await about.locator('option:checked').innerText(), 'its middle');
+  await about.selectOption('cross');
+  await one.until(() => turn(), 'the cross-hair in the plan');
+  const stated = turn().about_mm.map((x) => x.toFixed(1).replace('-', '−')).join(', ');
+  await one.until(async () => (await about.locator('option:checked').innerText()) === stated, `${stated} in the form`);
+  // Another number leaves it there.
+  const before = turn().about_mm;
+  await one.type('move-pitch_deg', 2);
+  await one.until(() => turn().pitch_deg === 2, 'a turn');
+  assert.deepEqual(turn().about_mm, before);
+  // A number that is typed is taken back by an undo, in the form too, and is no other piece's.
+  const up = one.page.locator('[data-key="move-up_mm"]');
+  const up_mm = () => one.plan(other_path).steps.find((each) => each.id === 'moved').by.up_mm;
+  await up.fill('9');
+  await one.until(() => one.waiting.size === 0, 'what is typed is shown');
+  await one.press('Control+z');
+  await one.until(async () => up_mm() === 3 && (await up.inputValue()) === '3', 'the plan\'s number in the form');
+  await one.select('rest');
+  await one.until(async () => (await up.inputValue()) === '0', 'the motion of another piece');
+  await one.press('Escape');
+  for (let i = 0; i < 2; ++i) await one.press('Control+z');
+  await one.until(() => !turn(), 'the plan as before');
+});
+
+test('colours of a distance end with their objects', async () => {
+  const edits = () => one.plan(other_path).steps.map((step) => step.id);
+  await one.select('piece');
+  await one.command('Mirror the selected object');
+  await one.until(() => edits().includes('piece_mirrored'), 'a mirror image');
+  await one.until(() => one.waiting.size === 0, 'it is evaluated');
+  await one.select('piece_mirrored');
+  for (const key of ['c', 't']) {
+    await one.press(key);
+    await one.page.locator('[data-key="compare-object"]').waitFor();
+    await one.press('Control+z');
+    await one.until(() => !edits().includes('piece_mirrored'), 'the mirror image taken back');
+    await one.until(async () => (await one.page.locator('[data-key="compare-object"]').count()) === 0, 'the choice of colours gone');
+    await one.until(async () => (await one.page.locator('.legend:visible').count()) === 0, 'the legend gone');
+    assert.ok((await one.look()).panes.every((pane) => pane.only === undefined), 'no pane shows one object alone');
+    if (key === 't') break;
+    await one.press('Control+y');
+    await one.until(() => edits().includes('piece_mirrored'), 'the mirror image again');
+    await one.until(() => one.waiting.size === 0, 'it is evaluated');
+    await one.select('piece_mirrored');
+  }
+  await one.press('Shift+1');
+  await one.at_rest();
+});
+
+test('the tissue window follows an undo of its step', async () => {
+  const low = one.page.locator('[data-key="low"]'), make = one.page.locator('[data-key="apply-window"]');
+  const bone = () => one.plan(other_path).steps.find((step) => step.id === 'bone').low;
+  await one.select('bone');
+  await one.press('w');
+  const first = bone();
+  await low.fill('444');
+  await low.press('Tab');
+  await one.click(make);
+  await one.until(() => bone() === 444, 'the threshold in the plan');
+  await one.press('w');
+  assert.equal(await low.inputValue(), '444');
+  await one.press('Control+z');
+  await one.until(() => bone() === first, 'the threshold taken back');
+  await one.until(async () => (await low.inputValue()) === String(first), 'the threshold of the plan in the tool');
+  assert.equal(await make.innerText(), 'Set bone');
+  await one.press('Escape');
 });
 
 test('the difference to another object is redrawn at each step of a drag', async () => {

@@ -815,6 +815,49 @@ class Shared(unittest.TestCase):
         edits = self.editor.ask("hello")
         self.assertEqual((edits["may_edit"], edits["view_token"]), (True, self.server.view_token))
 
+    def test_no_message_to_it_names_a_folder(self):
+        patient = self.folder / "Doe Jane"
+        patient.mkdir()
+        (patient / "jaw.stl").write_text("solid, but cut off")
+        for path in ("Doe Jane/jaw.stl", str(patient / "jaw.stl"), f"{self.folder}/uploads/../Doe Jane/jaw.stl"):
+            self.editor.ask("edit", what="a file", add={"step": {"id": "jaw", "do": "import", "path": path}})
+            made = self.viewer.ask("evaluate", objects=["skull", "jaw"])
+            errors = [one["error"] for one in made["objects"] if "error" in one]
+            self.assertEqual(len(errors), 1, made["objects"])
+            self.assertIn("jaw.stl", errors[0])
+            own = [one["error"] for one in self.editor.ask("evaluate", objects=["skull", "jaw"])["objects"] if "error" in one]
+            self.assertIn("Doe Jane", own[0])
+            told = json.dumps([made, self.viewer.ask("hello"), self.viewer.events])
+            for secret in ("Doe Jane", str(self.folder)):
+                self.assertNotIn(secret, told)
+            self.editor.ask("undo")
+
+    def test_more_windows_than_may_look_are_turned_away_with_a_reason(self):
+        most = 16
+        others = [Window(self.server, token=self.server.view_token) for _ in range(most - 1)]
+        for window in others:
+            self.addCleanup(window.close)
+            self.assertEqual(window.ask("hello")["may_edit"], False)
+        refused = Window(self.server, token=self.server.view_token)
+        self.addCleanup(refused.close)
+        with self.assertRaisesRegex(ConnectionError, f"{most} windows look at this plan already"):
+            refused.ask("hello")
+        # Windows that edit are not counted, and one that leaves makes room.
+        editor = Window(self.server)
+        self.addCleanup(editor.close)
+        self.assertEqual(editor.ask("hello")["may_edit"], True)
+        others.pop().close()
+        for _ in range(100):
+            next_one = Window(self.server, token=self.server.view_token)
+            self.addCleanup(next_one.close)
+            try:
+                self.assertEqual(next_one.ask("hello")["may_edit"], False)
+                break
+            except ConnectionError:
+                time.sleep(0.05)
+        else:
+            self.fail("no window may look, although one was closed")
+
     def test_a_viewer_that_floods_leaves_the_editor_its_answers(self):
         waiting = {self.viewer.post("movement", object="skull") for _ in range(200)}
         self.assertGreater(self.editor.ask("part", object="skull")["parts"], 0)

@@ -110,7 +110,7 @@ class Window:
                 size, = struct.unpack(">Q", self._take(8))
             part = self._take(size)
             if first & 0x0F == 8:
-                raise ConnectionError("the server closed the socket")
+                raise ConnectionError("the server closed the socket: " + part[2:].decode())
             if first & 0x0F == 9:
                 self.send_bytes(part, 10)
                 continue
