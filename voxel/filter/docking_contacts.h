@@ -25,7 +25,8 @@ struct DockingContact {
 
 struct DockingContactsOptions {
   double within_mm = 0.4;  ///< the largest gap that counts as contact; above 0
-  /// Normals are of planes through contacts within this distance, but at least two voxels, on one smooth face.
+  /// Normals are of planes through the object's surface within this distance, but at least two voxels, as far
+  /// as it faces the same way to 37 degrees; which way a place faces is the mean within half of it.
   double smooth_mm = 2.0;
   Progress progress = {};
 };
