@@ -4,15 +4,18 @@
 //   of large triangles first.
 // 2 A candidate near the objects whose foot faces it becomes a contact, one in each cube of the spacing's
 //   edge.
-// 3 Each normal becomes the mean of its neighbours'.
+// 3 Each normal becomes the mean of the objects' surface about it, as far as that faces the same way. The
+//   surface beyond the part counts, too: a mean over contacts alone leans outward at the part's rim.
 #include "brep/measure/docking_contacts.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
+#include <tbb/parallel_for.h>
 #include <tuple>
 
 #include "brep/mesh/distance.h"
@@ -130,17 +133,108 @@ Triangles near_triangles(const std::vector<Solid>& objects, const glm::dvec3& lo
   return near;
 }
 
-void smooth_normals(std::vector<DockingContact>& contacts, double within_mm) {
-  std::vector<glm::dvec3> smooth;
-  for (const DockingContact& one : contacts) {
-    glm::dvec3 sum(0.0);
-    for (const DockingContact& other : contacts)
-      if (glm::distance(one.p_mm, other.p_mm) <= within_mm &&
-          glm::dot(one.normal, other.normal) > least_alike)
-        sum += other.normal;
-    smooth.push_back(glm::normalize(sum));
+/// The objects' surface in pieces, for means of its normals.
+class SurfacePieces {
+ public:
+  /// Of triangles, as far as they lie within a distance of places.
+  SurfacePieces(const Triangles& surface, const std::vector<DockingContact>& places, double within_mm)
+      : edge_mm_(within_mm) {
+    std::set<Cell> wanted;
+    for (const DockingContact& place : places)
+      for_cells(cell_of(place.p_mm), [&](const Cell& cell) { wanted.insert(cell); });
+    for (std::uint32_t face = 0; face < surface.faces.size(); ++face) {
+      const TrianglePoints triangle = triangle_of(surface, face);
+      if (touches(triangle, wanted)) split(triangle, wanted);
+    }
   }
-  for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i].normal = smooth[i];
+
+  /// The sum of the pieces' outward area vectors within a distance, at most that of the constructor, as far as
+  /// `counts` accepts them.
+  template <typename Counts>
+  glm::dvec3 area_about(const glm::dvec3& p_mm, double within_mm, const Counts& counts) const {
+    glm::dvec3 sum(0.0);
+    for_cells(cell_of(p_mm), [&](const Cell& cell) {
+      const auto found = cells_.find(cell);
+      if (found == cells_.end()) return;
+      for (const std::uint32_t i : found->second)
+        if (glm::distance(middles_mm_[i], p_mm) <= within_mm && counts(areas_mm2_[i])) sum += areas_mm2_[i];
+    });
+    return sum;
+  }
+
+ private:
+  using Cell = std::array<double, 3>;
+
+  Cell cell_of(const glm::dvec3& p_mm) const {
+    const glm::dvec3 at = glm::floor(p_mm / edge_mm_);
+    return {at.x, at.y, at.z};
+  }
+  template <typename Visit>
+  static void for_cells(const Cell& middle, const Visit& visit) {
+    for (double x = -1.0; x <= 1.0; ++x)
+      for (double y = -1.0; y <= 1.0; ++y)
+        for (double z = -1.0; z <= 1.0; ++z) visit(Cell{middle[0] + x, middle[1] + y, middle[2] + z});
+  }
+  bool touches(const TrianglePoints& triangle, const std::set<Cell>& wanted) const {
+    const auto& [a, b, c] = triangle;
+    const Cell low = cell_of(glm::min(glm::min(a, b), c)), high = cell_of(glm::max(glm::max(a, b), c));
+    for (double x = low[0]; x <= high[0]; ++x)
+      for (double y = low[1]; y <= high[1]; ++y)
+        for (double z = low[2]; z <= high[2]; ++z)
+          if (wanted.count({x, y, z}) > 0) return true;
+    return false;
+  }
+  /// Halves the longest side until no side is longer than a quarter of the distance.
+  void split(const TrianglePoints& triangle, const std::set<Cell>& wanted) {
+    int longest = 0;
+    double length = 0.0;
+    for (int i = 0; i < 3; ++i)
+      if (const double side = glm::distance(triangle[i], triangle[(i + 1) % 3]); side > length) {
+        longest = i;
+        length = side;
+      }
+    if (length > 0.25 * edge_mm_) {
+      if (length > edge_mm_ && !touches(triangle, wanted)) return;
+      const glm::dvec3 a = triangle[longest], b = triangle[(longest + 1) % 3],
+                       c = triangle[(longest + 2) % 3], half = 0.5 * (a + b);
+      split({a, half, c}, wanted);
+      split({half, b, c}, wanted);
+      return;
+    }
+    const glm::dvec3 middle = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
+    const Cell cell = cell_of(middle);
+    if (wanted.count(cell) == 0) return;
+    cells_[cell].push_back(static_cast<std::uint32_t>(middles_mm_.size()));
+    middles_mm_.push_back(middle);
+    areas_mm2_.push_back(0.5 * across(triangle));
+  }
+
+  double edge_mm_;
+  std::map<Cell, std::vector<std::uint32_t>> cells_;
+  std::vector<glm::dvec3> middles_mm_, areas_mm2_;
+};
+
+glm::dvec3 direction_or(const glm::dvec3& sum, const glm::dvec3& otherwise) {
+  const double length = glm::length(sum);
+  return length > 0.0 ? sum / length : otherwise;
+}
+
+/// Each contact's normal becomes the mean over the surface within the distance that faces the same way: as the
+/// mean within half of the distance or, beside a sharp edge, as the contact's own triangle.
+void smooth_normals(std::vector<DockingContact>& contacts, const Triangles& surface, double within_mm) {
+  if (!(within_mm > 0.0)) return;
+  const SurfacePieces pieces(surface, contacts, within_mm);
+  tbb::parallel_for(std::size_t{0}, contacts.size(), [&](std::size_t i) {
+    DockingContact& contact = contacts[i];
+    const glm::dvec3 about =
+        direction_or(pieces.area_about(contact.p_mm, 0.5 * within_mm, [](const glm::dvec3&) { return true; }),
+                     contact.normal);
+    const glm::dvec3 first = glm::dot(about, contact.normal) > least_alike ? about : contact.normal;
+    const auto is_alike = [&](const glm::dvec3& area) {
+      return glm::dot(area, first) > least_alike * glm::length(area);
+    };
+    contact.normal = direction_or(pieces.area_about(contact.p_mm, within_mm, is_alike), first);
+  });
 }
 
 }  // namespace
@@ -151,7 +245,7 @@ std::vector<DockingContact> docking_contacts(const Solid& part, const std::vecto
   if (!(options.spacing_mm > 0.0)) throw InvalidInput("the spacing of contacts must be above 0 mm");
   if (!(options.smooth_mm >= 0.0)) throw InvalidInput("normals cannot be smoothed over less than 0 mm");
   if (part.empty() || objects.empty()) throw InvalidInput("contacts need a part and an object");
-  const glm::dvec3 margin(options.within_mm);
+  const glm::dvec3 margin(options.within_mm + 2.0 * options.smooth_mm);
   const Triangles near = near_triangles(objects, part.size().low_mm - margin, part.size().high_mm + margin);
   if (near.faces.empty()) return {};
   glm::dvec3 low = near.points_mm.front(), high = low;
@@ -173,7 +267,7 @@ std::vector<DockingContact> docking_contacts(const Solid& part, const std::vecto
     if (!normal || glm::dot(*normal, places[i].normal) > -least_facing) continue;
     if (thinning.is_first(feet[i].p_mm)) contacts.push_back({feet[i].p_mm, *normal, feet[i].distance_mm});
   }
-  smooth_normals(contacts, options.smooth_mm);
+  smooth_normals(contacts, near, options.smooth_mm);
   options.progress.at(1.0);
   return contacts;
 }

@@ -19,8 +19,8 @@ struct DockingContact {
 struct DockingContactsOptions {
   double within_mm = 0.4;   ///< the largest gap that counts as contact; above 0
   double spacing_mm = 1.0;  ///< about the distance of neighbouring contacts; above 0
-  /// Normals are means over contacts within this distance whose normals differ by less than 37 degrees; at
-  /// least 0.
+  /// Normals are means over the objects' surface within this distance, as far as it faces the same way to 37
+  /// degrees; which way a place faces is the mean within half of it. 0: normals of triangles.
   double smooth_mm = 2.0;
   Progress progress = {};
 };

@@ -3,12 +3,15 @@
 // 1 Find where edges between centres cross an object's surface, near the part.
 // 2 The directions about a crossing that lead out of the object add up to a first normal.
 // 3 A crossing is a contact if a step along that normal, no longer than the largest gap, ends in the part.
-// 4 A plane through the contacts nearby on the same face gives the normal.
+// 4 A plane through the crossings nearby that face the same way gives the normal. Crossings beyond the part
+//   count, too: a plane through contacts alone leans at the part's rim.
 #include "voxel/filter/docking_contacts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <map>
 #include <stdexcept>
 #include <tbb/parallel_for.h>
 
@@ -35,11 +38,11 @@ std::vector<glm::dvec3> spread_directions(int count) {
 /// Where a solid's surface crosses edges between neighbouring voxels' centres, with estimates of its normals.
 class Crossings {
  public:
-  /// Examines only voxels within the box, LPS.
-  Crossings(const PlacedSolid& of, const Box& near)
-      : lattice_(of.octree.universe().lattice()), contains_(of.octree.universe(), of.solid) {
-    const glm::dvec3 spacing_mm = lattice_.spacing_mm();
-    reach_mm_ = std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+  /// Examines only voxels within the box, LPS. First normals are those of the surface within `reach_mm`.
+  Crossings(const PlacedSolid& of, const Box& near, double reach_mm)
+      : lattice_(of.octree.universe().lattice()),
+        contains_(of.octree.universe(), of.solid),
+        reach_mm_(reach_mm) {
     const Octree part = combine(of.octree.universe(), Expression(of.octree) & Expression(near));
     const int side = of.octree.universe().side();
     for (const VoxelFace& face : voxel_boundary(part)) {
@@ -65,7 +68,8 @@ class Crossings {
     return lattice_.lps_mm(glm::dvec3(face.voxel) + 0.5 * (in + out) * step);
   }
 
-  /// The outward normal, accurate to some degrees; zero if all surroundings are inside or all are outside.
+  /// The outward normal, accurate to some degrees; zero if all surroundings are inside or all are outside. By Gauss's theorem the area vectors of
+  /// a surface within a ball add up to those of the part of the sphere that lies outside of the solid.
   glm::dvec3 first_normal(const glm::dvec3& p_mm) const {
     static const std::vector<glm::dvec3> directions = spread_directions(120);
     glm::dvec3 sum(0.0);
@@ -77,7 +81,7 @@ class Crossings {
  private:
   Lattice lattice_;
   Membership contains_;
-  double reach_mm_ = 1.0;
+  double reach_mm_;
   std::vector<VoxelFace> faces_;
 };
 
@@ -97,19 +101,43 @@ glm::dvec3 plane_normal(const std::vector<glm::dvec3>& points, const glm::dvec3&
   return glm::dot(normal, first) < 0.0 ? -normal : normal;
 }
 
-void fit_planes(std::vector<DockingContact>& contacts, double within_mm) {
-  constexpr double least_alike = 0.8;
-  std::vector<glm::dvec3> normals(contacts.size());
-  tbb::parallel_for(std::size_t{0}, contacts.size(), [&](std::size_t i) {
-    std::vector<glm::dvec3> nearby;
-    for (const DockingContact& other : contacts)
-      if (glm::distance(other.p_mm, contacts[i].p_mm) <= within_mm &&
-          glm::dot(other.normal, contacts[i].normal) > least_alike)
-        nearby.push_back(other.p_mm);
-    normals[i] = plane_normal(nearby, contacts[i].normal);
-  });
-  for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i].normal = normals[i];
-}
+/// A crossing with its first normal.
+using Place = DockingContact;
+
+/// Places in cubes of an edge.
+class PlaceGrid {
+ public:
+  PlaceGrid(const std::vector<Place>& places, double edge_mm) : places_(places), edge_mm_(edge_mm) {
+    for (std::size_t i = 0; i < places.size(); ++i) cells_[cell_of(places[i].p_mm)].push_back(i);
+  }
+  /// Those within the edge of a point whose first normals are within 37 degrees of a direction.
+  std::vector<glm::dvec3> alike(const glm::dvec3& p_mm, const glm::dvec3& normal) const {
+    constexpr double least_alike = 0.8;
+    std::vector<glm::dvec3> found;
+    const Cell middle = cell_of(p_mm);
+    for (int cell = 0; cell < 27; ++cell) {
+      const auto places =
+          cells_.find({middle[0] + cell % 3 - 1, middle[1] + cell / 3 % 3 - 1, middle[2] + cell / 9 - 1});
+      if (places == cells_.end()) continue;
+      for (const std::size_t i : places->second)
+        if (glm::distance(places_[i].p_mm, p_mm) <= edge_mm_ &&
+            glm::dot(places_[i].normal, normal) > least_alike)
+          found.push_back(places_[i].p_mm);
+    }
+    return found;
+  }
+
+ private:
+  using Cell = std::array<int, 3>;
+  Cell cell_of(const glm::dvec3& p_mm) const {
+    const glm::ivec3 at(glm::floor(p_mm / edge_mm_));
+    return {at.x, at.y, at.z};
+  }
+
+  const std::vector<Place>& places_;
+  double edge_mm_;
+  std::map<Cell, std::vector<std::size_t>> cells_;
+};
 
 /// The box around a solid's voxels and a margin, LPS. Precondition: the octree is not empty.
 Box box_about(const Octree& octree, double margin_mm) {
@@ -137,25 +165,35 @@ std::vector<DockingContact> docking_contacts(const PlacedSolid& part, const std:
   const glm::dvec3 spacing_mm = part.octree.universe().lattice().spacing_mm();
   const double edge_mm = std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   const Membership in_part(part.octree.universe(), part.solid);
-  const Box near = box_about(part.octree, options.within_mm + 2.0 * edge_mm);
+  const double plane_mm = std::max(options.smooth_mm, 2.0 * edge_mm);
+  const Box near = box_about(part.octree, options.within_mm + 2.0 * edge_mm + plane_mm);
   std::vector<DockingContact> contacts;
   for (const PlacedSolid& object : objects) {
     options.progress.at(0.5);
-    const Crossings crossings(object, near);
-    std::vector<DockingContact> found(crossings.size());
+    const Crossings crossings(object, near, std::max(edge_mm, 0.5 * plane_mm));
+    std::vector<Place> places(crossings.size());
+    std::vector<char> bears(crossings.size(), 0);
     tbb::parallel_for(std::size_t{0}, crossings.size(), [&](std::size_t i) {
-      const glm::dvec3 p = crossings.at(i), normal = crossings.first_normal(p);
+      places[i] = {crossings.at(i), {}};
+      places[i].normal = crossings.first_normal(places[i].p_mm);
       constexpr int steps = 8;
-      for (int step = 1; step <= steps; ++step)
-        if (in_part(p + options.within_mm * step / steps * normal)) {
-          found[i] = {p, normal};
-          break;
-        }
+      for (int step = 1; step <= steps && bears[i] == 0; ++step)
+        if (in_part(places[i].p_mm + options.within_mm * step / steps * places[i].normal)) bears[i] = 1;
     });
-    for (const DockingContact& one : found)
-      if (one.normal != glm::dvec3(0.0)) contacts.push_back(one);
+    std::vector<std::size_t> borne;
+    for (std::size_t i = 0; i < places.size(); ++i)
+      if (bears[i] != 0 && places[i].normal != glm::dvec3(0.0)) borne.push_back(i);
+    const PlaceGrid grid(places, plane_mm);
+    const std::size_t before = contacts.size();
+    contacts.resize(before + borne.size());
+    tbb::parallel_for(std::size_t{0}, borne.size(), [&](std::size_t i) {
+      const Place& place = places[borne[i]];
+      glm::dvec3 normal = place.normal;
+      // Beside an edge the first plane still counts crossings of the other side.
+      for (int pass = 0; pass < 2; ++pass) normal = plane_normal(grid.alike(place.p_mm, normal), normal);
+      contacts[before + i] = {place.p_mm, normal};
+    });
   }
-  fit_planes(contacts, std::max(options.smooth_mm, 2.0 * edge_mm));
   options.progress.at(1.0);
   return contacts;
 }
@@ -163,8 +201,9 @@ std::vector<DockingContact> docking_contacts(const PlacedSolid& part, const std:
 std::vector<glm::dvec3> pushed_surface(const PlacedSolid& part, const glm::dvec3& push) {
   if (part.octree.is_empty()) return {};
   constexpr double least_facing = 0.5;
-  const Crossings crossings(
-      part, box_about(part.octree, glm::length(part.octree.universe().lattice().spacing_mm())));
+  const glm::dvec3 spacing_mm = part.octree.universe().lattice().spacing_mm();
+  const Crossings crossings(part, box_about(part.octree, glm::length(spacing_mm)),
+                            std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z}));
   std::vector<std::pair<bool, glm::dvec3>> found(crossings.size());
   tbb::parallel_for(std::size_t{0}, crossings.size(), [&](std::size_t i) {
     const glm::dvec3 p = crossings.at(i);

@@ -26,8 +26,9 @@ struct DockingContact {
 
 struct DockingContactsOptions {
   double within_mm = 0.4;  ///< the largest gap that counts as contact; above 0
-  /// A contact's normal is that of a plane fitted to the contacts on the same smooth face within this
-  /// distance, or within two voxel edges if these are longer.
+  /// A contact's normal is that of a plane fitted to the object's surface within this distance, or within two
+  /// voxel edges if these are longer, where the surface faces the same way to 37 degrees. The direction in which
+  /// a place faces is the mean normal within half of the distance.
   double smooth_mm = 2.0;
   Progress progress = {};
 };

@@ -15,6 +15,7 @@
 
 #include "brep/measure/docking.h"
 #include "planner/operation/measure/result_json.h"
+#include "planner/operation/part/docking_dispute.h"
 #include "planner/operation/part/insertion.h"
 #include "planner/operation/part/seated_part.h"
 #include "planner/operation/table/number_format.h"
@@ -50,6 +51,9 @@ constexpr double nothing_deg = 1.0;
 constexpr double patch_mm = 4.0;
 /// Walls whose normal has a smaller cosine with the push, about six degrees, count as parallel to the push.
 constexpr double least_facing = 0.1;
+/// The voxels' angle of the same contacts may exceed the mesh's by 0.1 % (voxel/filter/docking.h); twice that,
+/// and what rounding leaves of an angle of 0.
+constexpr double same_contacts_share = 0.002, same_contacts_deg = 0.01;
 /// Only this number of the worst points are used in trials.
 constexpr std::size_t tried_points = 4;
 
@@ -104,7 +108,7 @@ std::vector<brep::DockingContact> mesh_contacts(const Question& question, const 
 
 /// The voxel kernel's answer.
 struct VoxelAnswer {
-  std::size_t contacts = 0;
+  std::vector<brep::DockingContact> contacts;
   std::optional<voxel::Docking> worst;
 };
 
@@ -122,7 +126,8 @@ VoxelAnswer answer_by_voxels(const Question& question, const Rocking& asked, con
       voxel::docking_contacts(part, objects, {asked.contact_mm, smooth_mm, {bench.stop, {}}});
   const std::vector<glm::dvec3> points =
       pushed_points(voxel::pushed_surface(part, question.push), asked, question);
-  VoxelAnswer made{contacts.size(), {}};
+  VoxelAnswer made;
+  for (const voxel::DockingContact& one : contacts) made.contacts.push_back({one.p_mm, one.normal, 0.0});
   if (!contacts.empty() && !points.empty())
     made.worst = voxel::docking(contacts, question.push, points, {bench.stop, {}});
   return made;
@@ -246,6 +251,8 @@ Json empty_answer(const Rocking& asked, const Question& question) {
           {"allowed_deg", nullptr},
           {"at_mm", nullptr},
           {"voxel_at_mm", nullptr},
+          {"voxel_again_deg", nullptr},
+          {"dispute", nullptr},
           {"gives_way", nullptr},
           {"best_deg", nullptr},
           {"best_at_mm", nullptr},
@@ -301,11 +308,60 @@ void judge(Json& json, const Question& question, const brep::Docking& worst) {
                                " may not deviate" + best);
   else
     json["verdict"] = "PASS";
-  const double by_voxels = json["voxel_angle_deg"];
-  if (std::abs(angle - by_voxels) <= json["allowed_deg"].get<double>()) return;
-  json["verdict"] = "WARN";
-  json["findings"].push_back("the kernels disagree: the push may deviate by " + three_figures(angle) +
-                             " degrees in meshes, by " + three_figures(by_voxels) + " in voxels");
+}
+
+std::string in_words(const DockingDispute& dispute, double voxel_mm) {
+  const std::string holds = dispute.first_holds ? "meshes" : "voxels",
+                    other = dispute.first_holds ? "voxels" : "meshes";
+  std::string words = holds + " find bone at " + voxel::rounded(dispute.at_mm) + " mm that holds the part";
+  words +=
+      ", " + other +
+      (dispute.normals_deg ? " find it turned by " + three_figures(*dispute.normals_deg) + " degrees there"
+                           : " find none there");
+  words += "; with " + std::to_string(dispute.places) +
+           (dispute.places == 1 ? " such place " : " such places ") + "more, " + other + " find " +
+           three_figures(dispute.explained_deg) + " degrees";
+  return words + "; rely on the smaller angle, or choose voxels finer than " + three_figures(voxel_mm) +
+         " mm";
+}
+
+/// Compares the kernels. Their angles for the same contacts must be equal but for the voxels' samples of
+/// sides. Where their own contacts give angles too far apart, the interval reaches to both.
+void compare(Json& json, const Question& question, const std::vector<brep::DockingContact>& contacts,
+             const std::vector<glm::dvec3>& points, const VoxelAnswer& by_voxels, double voxel_mm) {
+  const double angle = json["angle_deg"];
+  double by_voxels_deg = 0.0;
+  if (by_voxels.worst) {
+    by_voxels_deg = by_voxels.worst->angle_deg;
+    const double again = angle_of(by_voxels.contacts, question.push, {by_voxels.worst->at_mm});
+    json["voxel_at_mm"] = to_json(by_voxels.worst->at_mm);
+    json["voxel_again_deg"] = again;
+    if (std::abs(again - by_voxels_deg) > same_contacts_deg + same_contacts_share * again) {
+      json["verdict"] = "FAIL";
+      json["findings"].push_back(
+          "the kernels compute different angles from the same contacts: " + three_figures(again) +
+          " degrees in meshes, " + three_figures(by_voxels_deg) + " in voxels, of a push at " +
+          voxel::rounded(by_voxels.worst->at_mm) + " mm");
+    }
+  }
+  json["voxel_angle_deg"] = by_voxels_deg;
+  const double allowed = json["allowed_deg"];
+  if (std::abs(angle - by_voxels_deg) <= allowed) return;
+  json["low_deg"] = std::min(json["low_deg"].get<double>(), by_voxels_deg);
+  json["high_deg"] = std::max(json["high_deg"].get<double>(), by_voxels_deg);
+  if (json["verdict"] == "PASS") json["verdict"] = "WARN";
+  std::string finding = "the kernels disagree: the push may deviate by " + three_figures(angle) +
+                        " degrees in meshes, by " + three_figures(by_voxels_deg) + " in voxels";
+  if (const auto why = dispute(contacts, by_voxels.contacts, question.push, points,
+                               {voxel_mm + contact_spacing_mm, patch_mm, allowed})) {
+    finding += "; " + in_words(*why, voxel_mm);
+    json["dispute"] = {{"holds_in", why->first_holds ? "mesh" : "voxel"},
+                       {"at_mm", to_json(why->at_mm)},
+                       {"normals_deg", why->normals_deg ? Json(*why->normals_deg) : Json(nullptr)},
+                       {"places", why->places},
+                       {"explained_deg", why->explained_deg}};
+  }
+  json["findings"].push_back(std::move(finding));
 }
 
 Json measure(const Rocking& asked, const AnswerBench& bench) {
@@ -353,14 +409,15 @@ Json measure(const Rocking& asked, const AnswerBench& bench) {
   std::vector<brep::Docking> worst = brep::worst_dockings(contacts, question.push, points, {bench.stop, {}});
   worst.resize(std::min(worst.size(), tried_points));
   const VoxelAnswer by_voxels = answer_by_voxels(question, asked, bench);
-  json["voxel_contacts"] = by_voxels.contacts;
+  json["voxel_contacts"] = by_voxels.contacts.size();
   std::vector<glm::dvec3> tried;
   for (const brep::Docking& one : worst) tried.push_back(one.at_mm);
   const double angle = worst.front().angle_deg;
   const std::vector<double> angles =
       trial_angles(contacts, asked, question.push, tried, angle, bench.progress("rocking"));
   const brep::Docking best = best_of(contacts, question, bench);
-  const glm::dvec3 voxel_mm = bench.universe.lattice().spacing_mm();
+  const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
+  const double voxel_mm = std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   json["angle_deg"] = angle;
   json["low_deg"] = std::min(angle, percentile(angles, 0.005));
   json["high_deg"] = std::max(angle, percentile(angles, 0.995));
@@ -369,11 +426,9 @@ Json measure(const Rocking& asked, const AnswerBench& bench) {
   if (worst.front().loosening) json["gives_way"] = json_of(*worst.front().loosening);
   json["best_deg"] = best.angle_deg;
   json["best_at_mm"] = to_json(best.at_mm);
-  json["voxel_angle_deg"] = by_voxels.worst ? by_voxels.worst->angle_deg : 0.0;
-  if (by_voxels.worst) json["voxel_at_mm"] = to_json(by_voxels.worst->at_mm);
-  json["allowed_deg"] = allowed_deg(contacts, angle, asked, question.push, tried,
-                                    std::max({voxel_mm.x, voxel_mm.y, voxel_mm.z}));
+  json["allowed_deg"] = allowed_deg(contacts, angle, asked, question.push, tried, voxel_mm);
   judge(json, question, worst.front());
+  compare(json, question, contacts, points, by_voxels, voxel_mm);
   return json;
 }
 
