@@ -173,16 +173,18 @@ Operation affine_operation() {
           field("scale", &Affine::scale,
                 "Factors along the head's directions, which are done first: across, front to back, upwards.")
               .for_example("[1.1, 1, 1]"))
-      .takes(record(
-          "shear", &Affine::shear, "A shear, which is done after the scale.",
-          {field("by", &Shear::by, "Movement in mm per mm of distance from the plane through 'about_mm'.")
-               .required(),
-           field("along", &Shear::along, "The direction of the movement, LPS.").direction(),
-           field("normal", &Shear::normal, "The normal of the plane, LPS, at right angles to it.")
-               .direction()}))
+      .takes(record("shear", &Affine::shear, "A shear, which is done after the scale.",
+                    {field("by", &Shear::by,
+                           "Movement in mm per mm of distance from the plane through 'about_mm'.")
+                         .required(),
+                     field("along", &Shear::along, "The direction of the movement, LPS.").direction(),
+                     field("normal", &Shear::normal, "The normal of the plane, LPS, at right angles to it.")
+                         .direction()})
+                 .for_example(R"({"by": 0.2, "along": [1, 0, 0], "normal": [0, 0, 1]})"))
       .takes(field("about_mm", &Affine::about_mm,
                    "The point that stays where it is, for 'scale' and 'shear': [x, y, z] or a landmark."))
-      .takes(field("matrix", &Affine::matrix, "The whole map instead, as four rows of four numbers, LPS."))
+      .takes(field("matrix", &Affine::matrix, "The whole map instead, as four rows of four numbers, LPS.")
+                 .for_example("[[1.1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"))
       .takes(field("file", &Affine::file,
                    "The whole map instead: a linear transform of 3D Slicer or ITK, .tfm or .h5.")
                  .a_file())
