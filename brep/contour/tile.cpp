@@ -17,11 +17,13 @@
 #include <cassert>
 #include <cmath>
 #include <compare>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
+#include <utility>
 
 #include "brep/mesh/error.h"
 #include "brep/mesh/short_text.h"
@@ -71,83 +73,31 @@ std::vector<glm::dvec2> in_box(const std::vector<glm::dvec2>& points, const Poin
   return scaled;
 }
 
-/// Scores the spans between two rings; lower is better. 0: the span lies over the area of exactly one ring
-/// and crosses no side. 1: it lies over both areas or neither, as where the rings cross. Otherwise more for
-/// each side that it crosses.
-class Blame {
- public:
-  Blame(const Ring& lower, const Ring& upper, const SpanClearance& sides,
-        const std::vector<std::array<std::uint32_t, 3>>& avoided, std::vector<std::uint8_t>& scores)
-      : lower_(lower),
-        upper_(upper),
-        sides_(sides),
-        m_(lower.points_mm.size()),
-        n_(upper.points_mm.size()),
-        reach_mm_(reach_of(lower, upper)),
-        of_(scores) {
-    of_.resize(m_ * n_, unknown);
-    for (const auto& face : avoided) {
-      const Step step = face[2] < m_ ? along_upper : along_lower;
-      const std::size_t i = step == along_lower ? face[0] : face[2];
-      const std::size_t j = (step == along_lower ? face[2] : face[1]) - m_;
-      ++of_step_[step][i * n_ + j];
-    }
-  }
+double cross(const glm::dvec2& a, const glm::dvec2& b) {
+  return a.x * b.y - a.y * b.x;
+}
 
-  /// The score of the span between two points; numbers beyond the rings' ends continue at their starts. Not for
-  /// two threads at once, because scores are computed when they are first needed.
+/// The most crossings of a span that are counted.
+constexpr int most_crossed = 6;
+
+/// The score of a span between two points, by their numbers in the rings; lower is better.
+using SpanScore = std::function<int(std::size_t, std::size_t)>;
+
+/// Scores spans in projection. 0: the span lies over the area of exactly one ring and crosses no side. 1: it
+/// lies over both areas or neither, as where the rings cross. Otherwise more for each side that it crosses.
+class ScoreInPlane {
+ public:
+  ScoreInPlane(const Ring& lower, const Ring& upper, const SpanClearance& sides)
+      : lower_(lower), upper_(upper), sides_(sides), reach_mm_(reach_of(lower, upper)) {}
+
   int operator()(std::size_t i, std::size_t j) const {
-    std::uint8_t& score = of_[i % m_ * n_ + j % n_];
-    if (score == unknown) score = scored(i % m_, j % n_);
-    return score;
-  }
-  /// For each lower point, the lowest score of its spans; then the same for each upper point.
-  std::array<std::vector<int>, 2> least() const {
-    return {least_of(m_, n_, [&](std::size_t i, std::size_t j) { return (*this)(i, j); }),
-            least_of(n_, m_, [&](std::size_t j, std::size_t i) { return (*this)(i, j); })};
-  }
-  /// The score of a step from a span: the score of the step's triangle plus the score of the span to which
-  /// the step leads.
-  int of(std::size_t i, std::size_t j, Step step) const {
-    const int of_span = (*this)(i + (step == along_lower), j + (step == along_upper));
-    if (of_step_[step].empty()) return of_span;
-    const auto avoided = of_step_[step].find(i % m_ * n_ + j % n_);
-    return of_span + (avoided == of_step_[step].end() ? 0 : avoided->second);
+    const glm::dvec2 &a = lower_.points_mm[i], &b = upper_.points_mm[j];
+    const int crossed = glm::distance(a, b) > reach_mm_ ? most_crossed : sides_.crossed(a, b, most_crossed);
+    const bool is_beside = starts_inside(lower_, i, b) != starts_inside(upper_, j, a);
+    return crossed > 0 ? 1 + crossed : is_beside ? 0 : 1;
   }
 
  private:
-  static constexpr std::uint8_t unknown = 255;
-
-  /// The lowest score at each point of one ring, over the points of the other ring. Each search begins at the
-  /// point at which the one before it ended, and ends at the first score of 0.
-  template <typename Score>
-  static std::vector<int> least_of(std::size_t count, std::size_t others, const Score& score) {
-    std::vector<int> least(count, unknown);
-    std::size_t near = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-      std::size_t found = near;
-      for (std::size_t away = 0; 2 * away <= others && least[k] > 0; ++away)
-        for (const std::size_t other : {(near + away) % others, (near + others - away) % others}) {
-          const int here = score(k, other);
-          if (here >= least[k]) continue;
-          least[k] = here;
-          found = other;
-        }
-      near = found;
-    }
-    return least;
-  }
-
-  std::uint8_t scored(std::size_t i, std::size_t j) const {
-    constexpr int most_sides = 6;
-    const glm::dvec2 &a = lower_.points_mm[i], &b = upper_.points_mm[j];
-    const int crossed = glm::distance(a, b) > reach_mm_ ? most_sides : sides_.crossed(a, b, most_sides);
-    const bool is_beside = starts_inside(lower_, i, b) != starts_inside(upper_, j, a);
-    return static_cast<std::uint8_t>(crossed > 0 ? 1 + crossed : is_beside ? 0 : 1);
-  }
-
-  static double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
-
   /// Twice the largest distance from a point to the nearest point of the other ring, plus the longest side.
   /// Every strip has a span of at least the largest distance. Longer spans than this limit leave their
   /// neighbourhood and score as those that cross the most sides. Without the limit, most of the time would be
@@ -187,8 +137,70 @@ class Blame {
 
   const Ring &lower_, &upper_;
   const SpanClearance& sides_;
-  std::size_t m_, n_;
   double reach_mm_;
+};
+
+/// Scores the spans between two rings, each once.
+class Blame {
+ public:
+  Blame(const Ring& lower, const Ring& upper, SpanScore score,
+        const std::vector<std::array<std::uint32_t, 3>>& avoided, std::vector<std::uint8_t>& scores)
+      : m_(lower.points_mm.size()), n_(upper.points_mm.size()), score_(std::move(score)), of_(scores) {
+    of_.resize(m_ * n_, unknown);
+    for (const auto& face : avoided) {
+      const Step step = face[2] < m_ ? along_upper : along_lower;
+      const std::size_t i = step == along_lower ? face[0] : face[2];
+      const std::size_t j = (step == along_lower ? face[2] : face[1]) - m_;
+      ++of_step_[step][i * n_ + j];
+    }
+  }
+
+  /// The score of the span between two points; numbers beyond the rings' ends continue at their starts. Not for
+  /// two threads at once, because scores are computed when they are first needed.
+  int operator()(std::size_t i, std::size_t j) const {
+    std::uint8_t& score = of_[i % m_ * n_ + j % n_];
+    if (score == unknown) score = static_cast<std::uint8_t>(score_(i % m_, j % n_));
+    return score;
+  }
+  /// For each lower point, the lowest score of its spans; then the same for each upper point.
+  std::array<std::vector<int>, 2> least() const {
+    return {least_of(m_, n_, [&](std::size_t i, std::size_t j) { return (*this)(i, j); }),
+            least_of(n_, m_, [&](std::size_t j, std::size_t i) { return (*this)(i, j); })};
+  }
+  /// The score of a step from a span: the score of the step's triangle plus the score of the span to which
+  /// the step leads.
+  int of(std::size_t i, std::size_t j, Step step) const {
+    const int of_span = (*this)(i + (step == along_lower), j + (step == along_upper));
+    if (of_step_[step].empty()) return of_span;
+    const auto avoided = of_step_[step].find(i % m_ * n_ + j % n_);
+    return of_span + (avoided == of_step_[step].end() ? 0 : avoided->second);
+  }
+
+ private:
+  static constexpr std::uint8_t unknown = 255;
+
+  /// The lowest score at each point of one ring, over the points of the other ring. Each search begins at the
+  /// point at which the one before it ended, and ends at the first score of 0.
+  template <typename Score>
+  static std::vector<int> least_of(std::size_t count, std::size_t others, const Score& score) {
+    std::vector<int> least(count, unknown);
+    std::size_t near = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      std::size_t found = near;
+      for (std::size_t away = 0; 2 * away <= others && least[k] > 0; ++away)
+        for (const std::size_t other : {(near + away) % others, (near + others - away) % others}) {
+          const int here = score(k, other);
+          if (here >= least[k]) continue;
+          least[k] = here;
+          found = other;
+        }
+      near = found;
+    }
+    return least;
+  }
+
+  std::size_t m_, n_;
+  SpanScore score_;
   std::vector<std::uint8_t>& of_;
   std::array<std::unordered_map<std::size_t, int>, 2> of_step_;  ///< scores of triangles to be avoided
 };
@@ -748,7 +760,7 @@ std::vector<std::array<std::uint32_t, 3>> tile_clear(
     const Ring& lower, const Ring& upper, TileCost cost, const SpanClearance& sides,
     std::vector<std::uint8_t>& scores, const std::vector<std::array<std::uint32_t, 3>>& avoided) {
   check(lower, upper, cost);
-  const Blame blame(lower, upper, sides, avoided, scores);
+  const Blame blame(lower, upper, ScoreInPlane(lower, upper, sides), avoided, scores);
   return blamed_strip(lower, upper, cost, blame, !avoided.empty());
 }
 
@@ -758,8 +770,20 @@ std::vector<std::array<std::uint32_t, 3>> tile_clear_aligned(
   check(lower, upper, cost);
   const Ring above{in_box(upper.points_mm, box_of(lower.points_mm)), upper.z_mm};
   const SpanClearance sides({{lower.points_mm}}, {{above.points_mm}});
-  const Blame blame(lower, above, sides, avoided, scores);
+  const Blame blame(lower, above, ScoreInPlane(lower, above, sides), avoided, scores);
   return blamed_strip(lower, upper, cost, blame, !avoided.empty());
+}
+
+std::vector<std::array<std::uint32_t, 3>> tile_apart(
+    const Ring& lower, const Ring& upper, const SurfaceClearance& others,
+    const std::vector<std::array<std::uint32_t, 3>>& avoided) {
+  check(lower, upper, TileCost::shortest_span);
+  const auto score = [&](std::size_t i, std::size_t j) {
+    return others.crossed({lower.points_mm[i], lower.z_mm}, {upper.points_mm[j], upper.z_mm}, most_crossed);
+  };
+  std::vector<std::uint8_t> scores;
+  const Blame blame(lower, upper, score, avoided, scores);
+  return blamed_strip(lower, upper, TileCost::shortest_span, blame, !avoided.empty());
 }
 
 std::vector<std::array<std::uint32_t, 3>> tile_near(const Ring& lower, const Ring& upper, TileCost cost,
@@ -770,6 +794,24 @@ std::vector<std::array<std::uint32_t, 3>> tile_near(const Ring& lower, const Rin
   if (cost == TileCost::shortest_span || band == 0) return faces_of(lower, upper, start, shortest);
   const Pair pair{turned(lower, start[0]), turned(upper, start[1])};
   return faces_of(lower, upper, start, LeastPath(pair, cost, start).find_in(about(shortest, band)).steps);
+}
+
+std::vector<std::array<std::uint32_t, 3>> tile_about(const Ring& lower, const Ring& upper, TileCost cost,
+                                                     std::size_t band,
+                                                     const std::vector<std::array<std::uint32_t, 3>>& strip) {
+  check(lower, upper, cost);
+  const std::size_t m = lower.points_mm.size();
+  if (strip.size() != m + upper.points_mm.size())
+    throw std::invalid_argument("tile_about: the strip is none of these rings");
+  const auto is_along_upper = [&](const std::array<std::uint32_t, 3>& face) { return face[2] < m; };
+  const auto& first = strip.front();
+  const std::array<std::size_t, 2> start = is_along_upper(first)
+                                               ? std::array<std::size_t, 2>{first[2], first[1] - m}
+                                               : std::array<std::size_t, 2>{first[0], first[2] - m};
+  std::vector<Step> steps;
+  for (const auto& face : strip) steps.push_back(is_along_upper(face) ? along_upper : along_lower);
+  const Pair pair{turned(lower, start[0]), turned(upper, start[1])};
+  return faces_of(lower, upper, start, LeastPath(pair, cost, start).find_in(about(steps, band)).steps);
 }
 
 }  // namespace octotomy::brep

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "brep/contour/span_clearance.h"
+#include "brep/contour/surface_clearance.h"
 
 namespace octotomy::brep {
 
@@ -65,5 +66,19 @@ std::vector<std::array<std::uint32_t, 3>> tile_clear(
 std::vector<std::array<std::uint32_t, 3>> tile_clear_aligned(
     const Ring& lower, const Ring& upper, TileCost cost, std::vector<std::uint8_t>& scores,
     const std::vector<std::array<std::uint32_t, 3>>& avoided = {});
+
+/// The strip of shortest spans among those whose spans cross the fewest triangles of other surfaces, in space.
+/// This serves rings one of which reaches past the end of the other, beside a further contour: every strip crosses
+/// that contour in projection, but there may be one below its roof. The strip may cross itself; `avoided` is as for
+/// tile_clear(). Throws and costs as tile_clear().
+std::vector<std::array<std::uint32_t, 3>> tile_apart(
+    const Ring& lower, const Ring& upper, const SurfaceClearance& others,
+    const std::vector<std::array<std::uint32_t, 3>>& avoided = {});
+
+/// As tile_near(), about a given strip of these rings instead of the strip of shortest spans. Throws
+/// std::invalid_argument, too, if the strip has another number of triangles.
+std::vector<std::array<std::uint32_t, 3>> tile_about(const Ring& lower, const Ring& upper, TileCost cost,
+                                                     std::size_t band,
+                                                     const std::vector<std::array<std::uint32_t, 3>>& strip);
 
 }  // namespace octotomy::brep

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 turn all contours with the object on their left and move every other section a little; 2 for each slab
 // overlay its sections, then put strips where a contour has one counterpart; replace a strip that crosses
-// anything by one whose spans are clear of contours, then by one near the shortest spans, at last by the
-// overlay; 3 number all points in one sequence.
+// anything by one whose spans are clear of contours, then by one near the shortest spans, then by one that passes
+// the other surfaces in space, at last by the overlay; 3 number all points in one sequence.
 #include "brep/contour/tile_sections.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -156,7 +156,7 @@ class Strips {
   }
 
   /// Retries strips that cross anything until none does, and drops those for which every attempt crosses
-  /// something.
+  /// something. Then improves those that were joined by shortest spans only because they pass the other surfaces.
   void settle() {
     while (count() > 0) {
       std::vector<std::uint32_t> group;
@@ -176,6 +176,9 @@ class Strips {
         retry(g);
       }
     }
+    for (std::size_t g = 0; g < strips_.size(); ++g)
+      if (!strips_[g].empty() && attempts_[g] >= apart_attempt && cost_ != TileCost::shortest_span)
+        improve(g);
     std::vector<std::uint32_t> group;
     surface_.faces = with_strips(group).faces;
     surface_.group = std::move(group);
@@ -185,9 +188,11 @@ class Strips {
   /// Attempts after the best strip, in order. 1: the best strip whose spans cross no contour. 2: the same, with
   /// both contours scaled to one box. Up to 12: both in turn, while avoiding triangles of earlier attempts that
   /// crossed something. Then the best strips near the shortest spans: within an eighth and a thirty-second of
-  /// the rings' points, and within two points. Then the shortest spans themselves. Last the least area, which
-  /// crosses itself least, near the shortest spans and anywhere.
-  static constexpr int clear_attempt = 1, last_clear_attempt = 12, shortest_attempt = 16, most_attempts = 18;
+  /// the rings' points, and within two points. Then the shortest spans themselves. Then the least area, which
+  /// crosses itself least, near the shortest spans and anywhere. Last, up to 30, the shortest spans that cross no
+  /// other surface in space, while avoiding triangles of earlier attempts of this kind.
+  static constexpr int clear_attempt = 1, last_clear_attempt = 12, shortest_attempt = 16, area_attempt = 18,
+                       apart_attempt = 19, most_attempts = 30;
   /// The strip of greatest volume may cross itself and enclose a region twice, so it is not tried first.
   static int first_attempt(TileCost cost) { return cost == TileCost::greatest_volume ? clear_attempt : 0; }
 
@@ -199,6 +204,22 @@ class Strips {
     return count;
   }
 
+  /// Replaces a strip that crosses nothing by the best one near it that crosses nothing either.
+  void improve(std::size_t g) {
+    const Place place = place_of(surface_.groups[g]);
+    const Ring below{place.lower.points_mm, slab_.low_mm}, above{place.upper.points_mm, slab_.high_mm};
+    const FaceList known = strips_[g];
+    FaceList of_rings = known;
+    for (auto& face : of_rings) face = in_rings(face, place);
+    const std::size_t points = std::max(below.points_mm.size(), above.points_mm.size());
+    for (int attempt = last_clear_attempt + 1; attempt < shortest_attempt; ++attempt) {
+      strips_[g] = in_slab(tile_about(below, above, cost_, band(points, attempt), of_rings), place);
+      std::vector<std::uint32_t> group;
+      if (is_allowed(strips_[g]) && crossing_pairs(with_strips(group)).empty()) return;
+    }
+    strips_[g] = known;
+  }
+
   static std::size_t eighth(std::size_t points) { return std::max<std::size_t>(2, points / 8); }
   static std::size_t band(std::size_t points, int attempt) {
     if (attempt == shortest_attempt) return 0;
@@ -206,25 +227,34 @@ class Strips {
     return narrowing == 1 ? eighth(points) : narrowing == 2 ? std::max<std::size_t>(2, points / 32) : 2;
   }
 
-  /// Skips the remaining clear attempts of a group after three in a row of which none crossed less than the
-  /// best before. Contours that no strip can join would otherwise take most of the time.
+  /// Skips the remaining attempts of one kind of a group after three in a row of which none crossed less than
+  /// the best before. Contours that no strip can join would otherwise take most of the time.
   void give_up_stale(std::size_t g) {
     constexpr int most_stale = 3;
-    if (attempts_[g] < clear_attempt || attempts_[g] > last_clear_attempt) return;
+    const bool is_clear = attempts_[g] >= clear_attempt && attempts_[g] <= last_clear_attempt;
+    if (!is_clear && attempts_[g] < apart_attempt) return;
     const std::size_t crossing = avoided_[g].size() - known_avoided_[g];
     known_avoided_[g] = avoided_[g].size();
     if (crossing < fewest_[g]) {
       fewest_[g] = crossing;
       stale_[g] = 0;
     } else if (++stale_[g] == most_stale) {
-      attempts_[g] = last_clear_attempt;
+      attempts_[g] = is_clear ? last_clear_attempt : most_attempts;
     }
+  }
+
+  /// Forgets which triangles of a group have crossed something.
+  void forget(std::size_t g) {
+    avoided_[g].clear();
+    known_avoided_[g] = 0;
+    fewest_[g] = std::numeric_limits<std::size_t>::max();
+    stale_[g] = 0;
   }
 
   /// Whether an attempt would repeat an earlier one.
   bool is_repeated(int attempt) const {
     if (cost_ == TileCost::shortest_span) return attempt > last_clear_attempt && attempt <= shortest_attempt;
-    return cost_ == TileCost::least_area && attempt > shortest_attempt;
+    return cost_ == TileCost::least_area && attempt > shortest_attempt && attempt <= area_attempt;
   }
 
   FaceList attempted(const Ring& below, const Ring& above, std::size_t g) {
@@ -239,8 +269,10 @@ class Strips {
     }
     for (auto& scores : scores_) scores[g] = {};
     if (attempt <= shortest_attempt) return tile_near(below, above, cost_, band(points, attempt));
-    return attempt < most_attempts ? tile_near(below, above, TileCost::least_area, eighth(points))
-                                   : tile(below, above, TileCost::least_area);
+    if (attempt < area_attempt) return tile_near(below, above, TileCost::least_area, eighth(points));
+    if (attempt == area_attempt) return tile(below, above, TileCost::least_area);
+    if (attempt == apart_attempt) forget(g);
+    return tile_apart(below, above, SurfaceClearance(others(g)), avoided_[g]);
   }
 
   /// Tries the next strip of a group whose present strip is missing or crosses something. After all attempts
@@ -306,18 +338,36 @@ class Strips {
   FaceList strip_of(std::size_t g) {
     const Place place = place_of(surface_.groups[g]);
     const Ring below{place.lower.points_mm, slab_.low_mm}, above{place.upper.points_mm, slab_.high_mm};
-    FaceList strip = attempted(below, above, g);
+    return in_slab(attempted(below, above, g), place);
+  }
+
+  /// Numbers a strip's points by the array of all points instead of by the rings.
+  static FaceList in_slab(FaceList strip, const Place& place) {
     for (auto& face : strip)
       for (std::uint32_t& v : face) v = v < place.m ? place.of_lower + v : place.of_upper + (v - place.m);
     return strip;
   }
+  /// The reverse for one triangle.
+  static std::array<std::uint32_t, 3> in_rings(std::array<std::uint32_t, 3> face, const Place& place) {
+    for (std::uint32_t& v : face) v = v < place.of_upper ? v - place.of_lower : v - place.of_upper + place.m;
+    return face;
+  }
 
   /// Records that a triangle of a group's clear strip crosses something, numbered by the group's rings.
-  void avoid(std::size_t g, std::array<std::uint32_t, 3> face) {
+  void avoid(std::size_t g, const std::array<std::uint32_t, 3>& face) {
     if (strips_[g].empty() || attempts_[g] < clear_attempt) return;
-    const Place place = place_of(surface_.groups[g]);
-    for (std::uint32_t& v : face) v = v < place.of_upper ? v - place.of_lower : v - place.of_upper + place.m;
-    avoided_[g].push_back(face);
+    avoided_[g].push_back(in_rings(face, place_of(surface_.groups[g])));
+  }
+
+  /// The present surfaces of all other groups.
+  Triangles others(std::size_t g) const {
+    std::vector<std::uint32_t> group;
+    Triangles all = with_strips(group);
+    std::size_t kept = 0;
+    for (std::size_t f = 0; f < all.faces.size(); ++f)
+      if (group[f] != g) all.faces[kept++] = all.faces[f];
+    all.faces.resize(kept);
+    return all;
   }
 
   Triangles with_strips(std::vector<std::uint32_t>& group) const {

@@ -38,7 +38,8 @@ struct TiledSections {
   /// were joined by the best strip whose spans cross no contour (tile_clear(), tile_clear_aligned()).
   std::size_t clear_strips = 0;
   /// Of `strips`: pairs whose clear strip crossed something, too. They were joined by the best strip near the
-  /// strip of shortest spans (tile_near()), by the strip of shortest spans, or by the strip of least area.
+  /// strip of shortest spans (tile_near()), by the strip of shortest spans, by the strip of least area, or by the best
+  /// strip near the shortest spans that cross no other surface (tile_apart(), tile_about()).
   std::size_t narrowed_strips = 0;
   /// Pairs joined by overlay() because each of their strips crossed something or was too long.
   std::size_t crossed_strips = 0;

@@ -183,11 +183,13 @@ Operation affine_operation() {
                       .required(),
                   field("along", &Shear::along, "The direction of the movement, LPS.").direction(),
                   field("normal", &Shear::normal, "The normal of the plane, LPS, at right angles to 'along'.")
-                      .direction()}))
+                      .direction()})
+              .for_example(R"({"by": 0.2, "along": [1, 0, 0], "normal": [0, 0, 1]})"))
       .takes(field("about_mm", &Affine::about_mm,
                    "The point that 'scale' and 'shear' do not move: [x, y, z] or a landmark."))
       .takes(field("matrix", &Affine::matrix,
-                   "The whole map, instead of 'scale' and 'shear': four rows of four numbers, LPS."))
+                   "The whole map, instead of 'scale' and 'shear': four rows of four numbers, LPS.")
+                 .for_example("[[1.1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"))
       .takes(field("file", &Affine::file,
                    "A file of the whole map, instead of 'scale' and 'shear': a linear transform of 3D Slicer "
                    "or ITK, .tfm or .h5.")

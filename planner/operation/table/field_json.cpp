@@ -369,6 +369,13 @@ SortedJson point_in(const std::string& word) {
   return point;
 }
 
+/// A word that is JSON itself: a record or a matrix.
+SortedJson json_in(const std::string& word, const Field& field) {
+  SortedJson json = SortedJson::parse(word, nullptr, false);
+  if (json.is_discarded()) throw std::runtime_error("'" + word + "' is not JSON" + for_example(field));
+  return json;
+}
+
 /// One word of the command line as JSON, according to the field's type.
 struct JsonOfWord {
   const Field& field;
@@ -390,8 +397,9 @@ struct JsonOfWord {
   SortedJson operator()(const std::vector<Value>*) const {
     return (*this)(static_cast<const Value*>(nullptr));
   }
+  SortedJson operator()(const glm::dmat4*) const { return json_in(word, field); }
+  SortedJson operator()(const Records&) const { return json_in(word, field); }
   SortedJson operator()(const void*) const { return word; }
-  SortedJson operator()(const Records&) const { return word; }
 };
 
 /// The form of one word of a field, for help.
@@ -413,8 +421,9 @@ struct Form {
   std::string operator()(const std::vector<Value>*) const {
     return (*this)(static_cast<const Value*>(nullptr));
   }
-  std::string operator()(const void*) const { return "TEXT"; }
+  std::string operator()(const glm::dmat4*) const { return "JSON"; }
   std::string operator()(const Records&) const { return "JSON"; }
+  std::string operator()(const void*) const { return "TEXT"; }
 };
 
 template <typename Value>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "brep/contour/tile_sections.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
@@ -223,6 +224,39 @@ TEST(TileSections, AThinUnevenWallThatLeansByMoreThanItsThicknessIsJoinedByEachC
     sections.push_back({5.0 * s, {wall}});
   }
   expect_no_fall_back(sections, 2, "wall");
+}
+
+TEST(TileSections, AWallWhoseEndPassesAnotherPieceBelowItsRoofIsJoinedByEachCost) {
+  // As a vault that is one piece in one slice and two in the next, which lean by more than the wall's thickness: only
+  // the first piece meets the wall, the second one has a roof of its own, and every strip passes that piece.
+  const auto wall = [](double from_deg, double to_deg, double lean) {
+    constexpr double step_deg = 2.0, thickness = 2.0;
+    const auto steps = static_cast<int>((to_deg - from_deg) / step_deg);
+    Contour contour;
+    const auto add = [&](int k, bool is_inner) {
+      const double deg = from_deg + (to_deg - from_deg) * k / steps, t = deg * pi / 180.0;
+      const double r = 20.0 - lean * (0.9 + 1.3 * std::max(0.0, (deg - 120.0) / 60.0));
+      const double end = (std::min(k, steps - k) + 0.3) / 6.0;
+      const double depth = is_inner ? thickness * std::sqrt(std::clamp(end, 0.02, 1.0)) : 0.0;
+      contour.points_mm.emplace_back((r - depth) * std::cos(t), (r - depth) * std::sin(t));
+    };
+    for (int k = 0; k <= steps; ++k) add(k, false);
+    for (int k = steps; k >= 0; --k) add(k, true);
+    return contour;
+  };
+  std::vector<Section> sections{{0.0, {wall(10.0, 300.0, 0.0)}},
+                                {5.0, {wall(12.0, 200.0, 1.0), wall(206.0, 300.0, 1.0)}}};
+  for (const bool is_turned : {false, true}) {
+    if (is_turned) std::swap(sections[0].contours, sections[1].contours);
+    for (const TileCost cost :
+         {TileCost::shortest_span, TileCost::least_area, TileCost::greatest_volume, TileCost::least_angle}) {
+      const TiledSections tiled = tile_sections(sections, {.cost = cost});
+      const Health found = health(tiled.surface);
+      EXPECT_TRUE(found.solid()) << static_cast<int>(cost) << ": " << told(found);
+      EXPECT_EQ(tiled.strips, 1u) << static_cast<int>(cost);
+      EXPECT_EQ(tiled.crossed_strips, 0u) << static_cast<int>(cost);
+    }
+  }
 }
 
 TEST(TileSections, ContoursOfASmoothFieldWithHolesAndIslandsFallBackOnLessThanTwoInAHundred) {

@@ -2,6 +2,7 @@
 #include "planner/operation/table/field_json.h"
 
 #include <gtest/gtest.h>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 namespace octotomy::planner {
@@ -56,6 +57,50 @@ TEST(PrintFields, LeavesOutAFieldWhoseConditionIsNotMet) {
   EXPECT_FALSE(print_fields(fields(), &drawn).contains("height_mm"));
   drawn.curved = true;
   EXPECT_EQ(print_fields(fields(), &drawn)["height_mm"], 2.5);
+}
+
+struct Skewed {
+  struct Part {
+    double by = 0.0;
+    glm::dvec3 along{1, 0, 0};
+  };
+  std::optional<Part> part;
+  std::optional<glm::dmat4> matrix;
+};
+
+TEST(JsonOfWords, ARecordAndAMatrixAreReadFromAWordOfJson) {
+  const std::vector<Field> of_skewed{
+      record("part", &Skewed::part, "A part.",
+             {field("by", &Skewed::Part::by, "How far."), field("along", &Skewed::Part::along, "Its way.")})
+          .for_example(R"({"by": 2})"),
+      field("matrix", &Skewed::matrix, "A matrix.")};
+  const auto read = [&](std::size_t at, const std::string& word) {
+    Skewed skewed;
+    const nlohmann::json json{{of_skewed[at].name, json_of_words(of_skewed[at], &skewed, {word})}};
+    read_fields(of_skewed, json, &skewed, {"--" + of_skewed[at].name});
+    return skewed;
+  };
+  const Skewed part = read(0, R"({"by": 0.5, "along": [0, 0, 1]})");
+  ASSERT_TRUE(part.part);
+  EXPECT_EQ(part.part->by, 0.5);
+  EXPECT_EQ(part.part->along, glm::dvec3(0, 0, 1));
+  const Skewed matrix = read(1, "[[1,0,0,7],[0,2,0,0],[0,0,3,0],[0,0,0,1]]");
+  ASSERT_TRUE(matrix.matrix);
+  EXPECT_EQ((*matrix.matrix)[3][0], 7.0) << "row by row";
+  EXPECT_EQ((*matrix.matrix)[2][2], 3.0);
+  EXPECT_EQ(word_form(of_skewed[0], std::make_unique<Skewed>().get()), "JSON");
+  EXPECT_EQ(word_form(of_skewed[1], std::make_unique<Skewed>().get()), "JSON");
+  const auto refusal = [&](std::size_t at, const std::string& word) -> std::string {
+    try {
+      read(at, word);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_EQ(refusal(0, "{by: 0.5}"), R"('{by: 0.5}' is not JSON, for example {"by": 2})");
+  EXPECT_NE(refusal(0, "0.5").find("must be an object in braces"), std::string::npos);
+  EXPECT_NE(refusal(1, "[[1,0],[0,1]]").find("four rows of four numbers"), std::string::npos);
 }
 
 }  // namespace
