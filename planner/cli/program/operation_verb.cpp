@@ -4,7 +4,8 @@
 //   1 The words of its options become the JSON of a step, which is read like a step of a plan.
 //   2 The files that it names become objects: meshes, checked to be solids, or octrees. Where both kinds meet,
 //     each kernel gets all of them: meshes by the voxels whose centres they hold, octrees by the boundary of
-//     their voxels. Both kernels then share their operands; the certificate states this.
+//     their voxels. Both kernels then share their operands, as they do where a motion moves a mesh; the
+//     certificate states this.
 //   3 The kernel that the output's format needs computes the answer; with --certify both do and are
 //     compared. If only the mesh kernel has an answer, an octree is made from its voxels.
 //   4 The answer is written, measured and printed.
@@ -75,9 +76,11 @@ class OperationRun {
     const bool with_voxels = operation_.voxel && (wants_octree || text_.certify);
     const bool with_mesh = !wants_octree || !with_voxels || text_.certify;
     const bool is_mixed = operation_.voxel && has_octree_ && has_mesh_;
+    // The voxels of a mesh that a motion moves are those of the moved mesh.
+    const bool is_shared = is_mixed || (operation_.is_motion && has_mesh_);
     if (with_voxels) choose_universe();
     for (Object& object : inputs_) {
-      if (is_mixed) add_file_maker(object);
+      if (is_shared) add_file_maker(object);
       if (with_voxels && is_mixed) check_room(object);
       if (with_voxels) add_voxels(object);
       if (with_mesh && is_mixed) add_surface(object);
@@ -91,7 +94,7 @@ class OperationRun {
                        made.voxel);
     if (with_mesh) answer_by_mesh(made);
     if (wants_octree && !with_voxels) voxelise_answer(made);
-    if (is_mixed) add_makers(made);
+    if (is_shared) add_makers(made);
     if (text_.certify) certify_answer(made);
     made.findings.insert(made.findings.begin(), mended_.begin(), mended_.end());
     made.findings.insert(made.findings.end(), beyond_.begin(), beyond_.end());
@@ -173,9 +176,7 @@ class OperationRun {
   void add_voxels(Object& object) {
     if (object.voxel.symbol) return;
     const Stopwatch watch(timings_, "voxelise");
-    object.voxel.octree = convert::voxelise(universe_, object.mesh.whole->linked(), progress());
-    object.voxel.symbol = voxel::Expression(object.voxel.octree);
-    object.voxel.lineage = "voxel centres inside of " + object.definition;
+    voxelise(*object.mesh.whole, universe_, object.voxel, progress());
   }
 
   /// Makes a mesh of an octree that is combined with meshes: the boundary of its voxels.

@@ -71,8 +71,9 @@ bool is_voxelised(const Object& object) {
   return object.voxel.lineage == voxelised_lineage && object.mesh.whole;
 }
 
-void voxelise(const brep::Solid& mesh, const voxel::Universe& universe, VoxelSide& made) {
-  made.octree = convert::voxelise(universe, mesh.linked());
+void voxelise(const brep::Solid& mesh, const voxel::Universe& universe, VoxelSide& made,
+              const voxel::Progress& progress) {
+  made.octree = convert::voxelise(universe, mesh.linked(), progress);
   made.symbol = voxel::Expression(made.octree);
   made.lineage = voxelised_lineage;
 }

@@ -17,7 +17,8 @@ namespace octotomy::planner {
 /// the moved mesh, because moving the voxels would shift the surface by up to half a voxel.
 bool is_voxelised(const Object& object);
 /// Digitises a mesh and stores the voxels in `made`.
-void voxelise(const brep::Solid& mesh, const voxel::Universe& universe, VoxelSide& made);
+void voxelise(const brep::Solid& mesh, const voxel::Universe& universe, VoxelSide& made,
+              const voxel::Progress& progress = {});
 
 /// Whether an object is known by whole voxels only, without samples or shapes that place its surface between
 /// the voxels' centres.

@@ -65,6 +65,22 @@ TEST_F(OperationVerbs, ABooleanIsASurfaceOrVoxelsWithTheCertificateOfBoth) {
   }
 }
 
+TEST_F(OperationVerbs, AMapOfAMeshIsThatOfItsTrianglesInBothKernelsAndNotIndependent) {
+  // A plate of one voxel at a slant: the nearest voxels of the unmapped plate would lose half of it.
+  brep::write_mesh(brep::shapes::box({-60, -60, -0.5}, {60, 60, 0.5}), folder_ / "plate.off");
+  for (const char* out : {"mapped.ply", "mapped.octree"}) {
+    const CommandAnswer answer = run("affine " + at("plate.off") + " --matrix '[[1.1,0,0,0],[0,0.9,-0.4,0]," +
+                                     "[0,0.4,0.9,0],[0,0,0,1]]' --voxel 1 --certify --json -o " + at(out));
+    ASSERT_EQ(answer.status, 0) << out << answer.errors;
+    const SortedJson certificate = SortedJson::parse(answer.out).at("certificate");
+    EXPECT_EQ(certificate["verdict"], "WARN") << certificate.dump(1);
+    EXPECT_EQ(certificate["independent"], false);
+    EXPECT_NE(certificate["reasons"].dump().find("file: triangles of plate.off"), std::string::npos);
+    EXPECT_NEAR(certificate["voxel"]["volume_mm3"].get<double>(),
+                certificate["mesh"]["volume_mm3"].get<double>(), 0.05 * 14400.0);
+  }
+}
+
 /// A box of 7 x 28 x 28 mm and an octree of a ball: mixed operands in either order, in both formats.
 TEST_F(OperationVerbs, ABooleanOfAMeshAndAnOctreeIsTheSameInBothKernelsAndNotIndependent) {
   brep::write_mesh(brep::shapes::box({3.2, -14, -14}, {10.2, 14, 14}), folder_ / "slab.off");
