@@ -372,11 +372,18 @@ def long_and_deep_expressions_neither_crash_nor_hang(subject):
 @case
 @limits_memory
 def a_limit_on_memory_is_respected(subject):
+    # What fits neither into memory nor onto the disk is refused before it is read.
     subject.write("big.raw", b"")
-    os.truncate(subject.folder / "big.raw", 1 << 30)
-    ended = subject.run("measure", "big.raw", "--raw", "1024x1024x512", "int16", "--spacing", "1,1,1", "--window", "1:",
+    os.truncate(subject.folder / "big.raw", 1 << 43)
+    ended = subject.run("measure", "big.raw", "--raw", "16384x16384x16384", "int16", "--spacing", "1,1,1", "--window", "1:",
                         "--memory", "1", most_s=60)
-    found = [refused(ended, "1 GB" if "1 GB" in ended.errors else "GB", "--memory", status=3)]
+    found = [refused(ended, "GB of memory", "of disk", "--memory", "TMPDIR", status=3)]
+    # What fits onto the disk needs no more memory than the limit.
+    os.truncate(subject.folder / "big.raw", 1 << 30)
+    ended = subject.run("octree", "big.raw", "--raw", "1024x1024x512", "int16", "--spacing", "1,1,1", "--window", "1:",
+                        "--memory", "1", "-o", "big.octree", most_s=60)
+    if ended.status != 0:
+        found.append(f"octree of 1 GB in 1 GB: {ended}")
     for verb in (("look", "head.nrrd", "-o", "limited"), ("run", "plan.json", "-o", "limited"),
                  ("mesh", "head.nrrd", "--window", "300:", "-o", "limited.stl"),
                  ("tet", "ball.stl", "-o", "limited.inp")):

@@ -19,10 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string bytes_of_part(const fs::path& path, std::uint64_t offset, std::uint64_t count) {
+Samples<char> bytes_of_part(const fs::path& path, std::uint64_t offset, std::uint64_t count) {
   std::ifstream in = opened(path);
   in.seekg(static_cast<std::streamoff>(offset));
-  std::string bytes(count, '\0');
+  Samples<char> bytes(count);
   in.read(bytes.data(), static_cast<std::streamsize>(count));
   if (!in) refuse(path, "cannot be read");
   return bytes;
@@ -106,9 +106,9 @@ Scene read_raw(const fs::path& path, const ReadOptions& options) {
   if (!options.spacing_mm) refuse_without_spacing(path);
   place_without_frame(path, layout.dims, {*options.spacing_mm, given_spacing}, options, scene);
   const StoredSamples stored{layout.type, layout.big_endian};
-  const std::string samples = bytes_of_part(path, layout.offset, bytes);
+  const Samples<char> samples = bytes_of_part(path, layout.offset, bytes);
   take_bytes(samples, stored, scene);
-  if (is_smoother_swapped(samples, layout.dims, stored))
+  if (is_smoother_swapped({samples.data(), samples.size()}, layout.dims, stored))
     scene.audit.push_back({"byte_order", Verdict::Warn,
                            std::string("read as ") + (stored.big_endian ? "big" : "little") +
                                "-endian, neighbouring samples differ as much as random numbers, and much "
