@@ -194,7 +194,7 @@ TEST(ToothScan, ScansThatDoNotFitAreRefusedInASentenceThatSaysWhy) {
                         {right.scan_mm.begin(), right.scan_mm.begin() + 2}};
   expect_words(refusal(upper.scan, mouth, few), "the points are too few");
   few.fixed_mm = right.fixed_mm;
-  expect_words(refusal(upper.scan, mouth, few), "state the same places on both, in the same order");
+  expect_words(refusal(upper.scan, mouth, few), "give the same places on both, in the same order");
   for (const auto& [mm, unit] :
        {std::pair(0.001, "its unit is probably"), {1000.0, "its unit is probably um"}}) {
     const glm::dvec3 by(mm);

@@ -76,7 +76,7 @@ test('contacts have a table of their places, and the panes colour both objects',
 });
 
 test('trials have a row and a bar for each number', async () => {
-  assert.match(await shown('doubt'), /How wrong it can be/);
+  assert.match(await shown('doubt'), /Values under random errors/);
   assert.equal(await plots(), 1);
   assert.ok((await result().locator('tbody tr').count()) > 3);
 });

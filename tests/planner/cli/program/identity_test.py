@@ -230,7 +230,7 @@ class Identity(unittest.TestCase):
                 (["named.plan.json", *source, "--identity", "remove", "-o", "o"],
                  "'plantedfamily', which the source states about"),
                 (["named.plan.json", *source, "--pictures", self.at / "views", "-o", "o"], "the result of another plan"),
-                (["named.plan.json", *source, "--pictures", self.at, "-o", "o"], "holds no result.json"),
+                (["named.plan.json", *source, "--pictures", self.at, "-o", "o"], "contains no result.json"),
                 (["named.plan.json", *source, "-o", "o.dcm"], "give a folder"),
                 (["named.plan.json", *source, "--as", "stl", "-o", "o"], "leave --dicom and --as out"),
                 ([self.at / "views/result.json", *source, "-o", "o"], "is no plan"),
