@@ -123,7 +123,7 @@ TEST(DicomValues, AMappingThatDiffersFromTheRescaleIsShownWithBothNumbers) {
   const Finding other = on_mapping(mapping(2.0, -1000.0, "mg/cm3"));
   EXPECT_EQ(other.verdict, Verdict::Warn);
   for (const char* part :
-       {"values are those of the rescale, 1 * stored - 1024 HU.", "would make 2 * stored - 1000 mg/cm3;",
+       {"values are those of the rescale, 1 * stored - 1024 HU.", "would produce 2 * stored - 1000 mg/cm3;",
         "a stored 1000 is -24 HU by the rescale and 1000 mg/cm3 by the mapping"})
     EXPECT_NE(other.detail.find(part), std::string::npos) << part << " is not in " << other.detail;
   // The example lies among the values that the mapping is stated for.

@@ -869,7 +869,7 @@ std::vector<SpoiledKind> of_statements() {
       {"some_bytes_more",
        "pixel_data",
        warn,
-       "6 bytes",
+       "6 more bytes",
        {"a04"},
        [](Images& images) { images[4].elements[0x7fe00010].second += "sixsix"; }},
       {"one_mirrored",

@@ -52,7 +52,7 @@ TEST_F(RefinementOfDecks, AnObjectWithoutAMeshIsNamedAndNothingIsWritten) {
   Timings timings;
   const Exported deck = write_files(along_cut, evaluation, folder_.path(), timings).back();
   EXPECT_FALSE(deck.written);
-  EXPECT_NE(deck.findings.front().find("finer at 'cut'"), std::string::npos) << deck.findings.front();
+  EXPECT_NE(deck.findings.front().find("surface of 'cut'"), std::string::npos) << deck.findings.front();
 }
 
 TEST_F(RefinementOfDecks, PlacesWithoutSizeOrMeaningAreRefused) {

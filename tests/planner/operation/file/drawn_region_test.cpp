@@ -140,7 +140,7 @@ TEST_F(DrawnRegionFile, ClosedCurvesOfSlicerAreProjected) {
   };
   EXPECT_NE(said(curve("IJK", lps)).find("markups[1]: the coordinate system 'IJK' is unknown"),
             std::string::npos);
-  EXPECT_NE(said(curve("LPS", point("1,2,3"))).find("markups[1]: has 1 points"), std::string::npos);
+  EXPECT_NE(said(curve("LPS", point("1,2,3"))).find("markups[1]: has 1 placed points"), std::string::npos);
   EXPECT_NE(said(curve("LPS", point("1,2"))).find("controlPoints[0].position: must be a point"),
             std::string::npos);
   EXPECT_NE(said(R"({"markups": []})").find("no markup of type ClosedCurve"), std::string::npos);

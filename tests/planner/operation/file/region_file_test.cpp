@@ -99,7 +99,7 @@ TEST(RegionFile, AContourDrawnAgainInItsPlaneIsTakenOnceAndTold) {
   const auto path = set_file(folder, {{1, "A", contours}});
   EXPECT_EQ(contour_counts(read_slices(path, "A", findings)), (std::vector<std::size_t>{1, 1, 1, 1, 1}));
   ASSERT_EQ(findings.size(), 1U);
-  EXPECT_HOLDS(findings[0], "rs.dcm: 'A': 3 contours repeat another of the same plane");
+  EXPECT_HOLDS(findings[0], "rs.dcm: 'A': 3 contours repeat another contour of the same plane");
   EXPECT_HOLDS(findings[0], "planes at 4, 6 mm, first near (-10, -10, 4) mm");
   EXPECT_EQ(contour_counts(read_slices(path, "A")), (std::vector<std::size_t>{1, 1, 1, 1, 1}))
       << "the same where nobody asks for findings";

@@ -250,7 +250,7 @@ TEST_F(SvgOutlinesFile, RefusalsSayLineAndPlace) {
   EXPECT_NE(refusal("<path d=\"M3 3 4\"/>").find("character 7: a number is expected"), std::string::npos);
   EXPECT_NE(refusal("<path d=\"M3 3 A 1 1 0 2 0 3 3\"/>").find("flag"), std::string::npos);
   EXPECT_NE(refusal("<path d=\"M3 3 B 1\"/>").find("commands"), std::string::npos);
-  EXPECT_NE(refusal("<rect width=\"5em\" height=\"1\"/>").find("no length"), std::string::npos);
+  EXPECT_NE(refusal("<rect width=\"5em\" height=\"1\"/>").find("is not a length"), std::string::npos);
   EXPECT_NE(refusal("<rect transform=\"turn(3)\"/>").find("'turn' with 1 numbers"), std::string::npos);
   EXPECT_NE(refusal("<use/>").find("unlink clones"), std::string::npos);
   const std::string shape = "<rect width=\"5\" height=\"5\"/>";
@@ -261,8 +261,9 @@ TEST_F(SvgOutlinesFile, RefusalsSayLineAndPlace) {
   EXPECT_NE(refusal("<rect width=5/>").find("is not NAME=\"VALUE\""), std::string::npos);
   EXPECT_NE(refusal("<!-- ").find("is not closed by -->"), std::string::npos);
   EXPECT_NE(refusal("").find("has no outline"), std::string::npos);
-  EXPECT_NE(refusal("<rect/>", "width=\"10mm\" height=\"30mm\" viewBox=\"0 0 10 10\"").find("shape"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal("<rect/>", "width=\"10mm\" height=\"30mm\" viewBox=\"0 0 10 10\"").find("differ from viewBox"),
+      std::string::npos);
   std::ofstream(folder_ / "b.svg") << "<html></html>";
   EXPECT_THROW(read_svg_outlines(folder_ / "b.svg", {}, 0.1), std::runtime_error);
   std::ofstream(folder_ / "b.svg") << "\x89PNG not at all";

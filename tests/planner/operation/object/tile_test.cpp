@@ -159,7 +159,7 @@ TEST(TileStep, WhatCannotBeTiledIsRefusedInALine) {
   expect(refusal(good, R"(, "end_mm": 0)"), "end_mm");
   expect(refusal(good, R"(, "structure": "Jaw")"), "add the set as 'slices'");
   expect(refusal(slice(0.0, circle(5.0)) + ", " + slice(0.0, circle(4.0))),
-         "contours[1], position_mm: is that of contours[0] too");
+         "contours[1], position_mm: is that of contours[0], too");
   expect(refusal(slice(0.0, "[[0, 0], [9, 9], [9, 0], [0, 9]]") + ", " + slice(4.0, circle(5.0))),
          "polygons_mm[0]: crosses itself");
   expect(refusal(slice(0.0, circle(5.0) + ", " + circle(5.0, 6.0)) + ", " + slice(4.0, circle(5.0))),

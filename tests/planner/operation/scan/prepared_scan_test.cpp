@@ -172,9 +172,9 @@ TEST(PreparedScan, AGuessedThresholdOfTheFieldIsAWarningOfTheAudit) {
 
 TEST(PreparedScan, NamesAndValuesThatCannotBeAreRefused) {
   const ScratchFolder folder;
-  EXPECT_NE(
-      ball_refusal(folder, R"({"id": "ct", "do": "gaussian", "scan": "ct", "sigma_mm": 1})").find("taken"),
-      std::string::npos);
+  EXPECT_NE(ball_refusal(folder, R"({"id": "ct", "do": "gaussian", "scan": "ct", "sigma_mm": 1})")
+                .find("is the name of a scan"),
+            std::string::npos);
   EXPECT_NE(ball_refusal(folder, R"({"id": "s", "do": "gaussian", "scan": "ball", "sigma_mm": 1})")
                 .find("no scan is called 'ball'"),
             std::string::npos);
