@@ -104,7 +104,7 @@ test('two landmarks and a distance that the command line finds, too', async () =
   // On teeth, above 662 HU; beside them nothing has a depth, and nothing is placed.
   await one.at_rest();
   await one.click_at(0, [0, 30]);
-  await one.page.locator('.notice', { hasText: 'depth is unknown' }).waitFor();
+  await one.page.locator('.notice', { hasText: 'no depth' }).waitFor();
   // The second name is typed while the first landmark is on its way.
   await one.page.evaluate(() => addEventListener('pointerup', () => {
     const field = document.querySelector('[data-key="landmark-name"]');
