@@ -178,6 +178,14 @@ class SurfacePieces {
   bool touches(const TrianglePoints& triangle, const std::set<Cell>& wanted) const {
     const auto& [a, b, c] = triangle;
     const Cell low = cell_of(glm::min(glm::min(a, b), c)), high = cell_of(glm::max(glm::max(a, b), c));
+    // The box of a large triangle has more cells than are wanted.
+    const double count = (high[0] - low[0] + 1.0) * (high[1] - low[1] + 1.0) * (high[2] - low[2] + 1.0);
+    if (count > static_cast<double>(wanted.size()))
+      return std::any_of(wanted.begin(), wanted.end(), [&](const Cell& cell) {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          if (cell[axis] < low[axis] || cell[axis] > high[axis]) return false;
+        return true;
+      });
     for (double x = low[0]; x <= high[0]; ++x)
       for (double y = low[1]; y <= high[1]; ++y)
         for (double z = low[2]; z <= high[2]; ++z)

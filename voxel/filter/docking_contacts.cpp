@@ -68,8 +68,9 @@ class Crossings {
     return lattice_.lps_mm(glm::dvec3(face.voxel) + 0.5 * (in + out) * step);
   }
 
-  /// The outward normal, accurate to some degrees; zero if all surroundings are inside or all are outside. By Gauss's theorem the area vectors of
-  /// a surface within a ball add up to those of the part of the sphere that lies outside of the solid.
+  /// The outward normal, accurate to some degrees; zero if all surroundings are inside or all are outside. By
+  /// Gauss's theorem the area vectors of a surface within a ball add up to those of the part of the sphere that
+  /// lies outside of the solid.
   glm::dvec3 first_normal(const glm::dvec3& p_mm) const {
     static const std::vector<glm::dvec3> directions = spread_directions(120);
     glm::dvec3 sum(0.0);

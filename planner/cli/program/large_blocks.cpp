@@ -13,9 +13,12 @@
 #include <sys/mman.h>
 #endif
 
+#include "voxel/space/large_memory.h"
+
 namespace {
 
-constexpr std::size_t huge_page = std::size_t{2} << 20;
+using octotomy::voxel::huge_page;
+
 /// Below this size, rounding up to a huge page wastes too much memory.
 constexpr std::size_t least_aligned = 8 * huge_page;
 /// From this size on, a system call costs little compared with filling the block.

@@ -202,6 +202,19 @@ TEST(DockingContacts, OfACapOnABlockReachItsEdgesAndLeaveOutItsSides) {
   EXPECT_THROW(docking_contacts(plate, {block}, {.within_mm = 0.0}), std::invalid_argument);
 }
 
+TEST(DockingContacts, OfAPlateOnAnObjectAKilometreWideAreThoseOnASmallOne) {
+  const Solid plate = solid_of(shapes::box({-6, -12, 0.2}, {6, 12, 3}));
+  const auto contacts_on = [&](double half_mm) {
+    return docking_contacts(plate,
+                            {solid_of(shapes::box({-half_mm, -half_mm, -half_mm}, {half_mm, half_mm, 0}))},
+                            {.within_mm = 0.3});
+  };
+  const std::vector<DockingContact> small = contacts_on(20.0), wide = contacts_on(5e5);
+  ASSERT_GT(small.size(), 100U);
+  EXPECT_NEAR(static_cast<double>(wide.size()), static_cast<double>(small.size()), 0.2 * small.size());
+  for (const DockingContact& contact : wide) EXPECT_NEAR(contact.normal.z, 1.0, 1e-9);
+}
+
 TEST(DockingContacts, APushedSurfaceIsTheSideThatFacesThePush) {
   const Solid plate = solid_of(shapes::box({-6, -12, 0.2}, {6, 12, 3}));
   const std::vector<glm::dvec3> points = pushed_surface(plate, {0, 0, -1}, 1.0);
