@@ -63,6 +63,7 @@ class FiledBlocks {
  public:
   /// Null if no disk has room.
   void* add(std::size_t bytes) {
+    start_watch();
     const int file = unnamed_file(bytes);
     if (file < 0) return nullptr;
     void* const memory = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
@@ -70,8 +71,6 @@ class FiledBlocks {
     if (memory == MAP_FAILED) return nullptr;
     const std::lock_guard lock(mutex_);
     bytes_at_[memory] = bytes;
-    if (!is_watched_) std::thread([this] { watch(); }).detach();
-    is_watched_ = true;
     added_.notify_one();
     return memory;
   }
@@ -85,6 +84,13 @@ class FiledBlocks {
   }
 
  private:
+  /// Precedes everything that an exception would leave behind.
+  void start_watch() {
+    const std::lock_guard lock(mutex_);
+    if (!is_watched_) std::thread([this] { watch(); }).detach();
+    is_watched_ = true;
+  }
+
   [[noreturn]] void watch() {
     for (std::unique_lock lock(mutex_);;) {
       added_.wait(lock, [&] { return !bytes_at_.empty(); });
