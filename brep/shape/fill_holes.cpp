@@ -104,7 +104,8 @@ class CornerCut {
   std::priority_queue<Corner> corners_;
 };
 
-/// Closes a hole by a search if its border is short enough; false if this fails.
+/// Closes a hole of `sides` sides by CGAL's triangulate_hole() and appends the triangles to `patch`. Above
+/// most_sides_for_all sides, the cubic search is not used. Returns false if there is no triangulation.
 bool search(Surface& surface, Halfedge border, std::size_t sides, Patch& patch) {
   const std::size_t before = patch.size();
   CGAL::Polygon_mesh_processing::triangulate_hole(

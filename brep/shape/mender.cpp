@@ -130,7 +130,7 @@ void Mender::flip_flat() {
   with_mesh("flat", [&](Mesh& mesh) {
     const FlatTriangles done = take_out_flat_triangles(mesh);
     replace(triangles_of(mesh), "flat",
-            "cut along another diagonal, or taken out, beside a triangle without area");
+            "replaced or taken out, because it or a triangle beside it has no area");
     if (done.left > 0) left("flat", std::to_string(done.left) + " triangles without area stay", {});
   });
 }
