@@ -22,7 +22,8 @@ Json weighted_summary(std::vector<std::pair<double, double>> value_and_weight, c
 Json thickness_json(const brep::Solid& solid, const voxel::Progress& progress,
                     std::vector<double>& at_vertices);
 
-/// Local thickness in mm by the voxel kernel, without "ray". Throws and costs as voxel::local_thickness().
+/// Local thickness in mm by the voxel kernel, without "ray" and "sample_reach_mm". All voxels of the surface
+/// count equally. Throws and costs as voxel::local_thickness().
 Json thickness_json(const voxel::Octree& octree, const voxel::Progress& progress);
 
 }  // namespace octotomy::planner
