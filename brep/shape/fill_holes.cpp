@@ -114,7 +114,8 @@ bool search(Surface& surface, Halfedge border, std::size_t sides, Patch& patch) 
   return patch.size() > before;
 }
 
-/// The triangles that close a hole of `sides` sides; empty if none close it. Leaves the surface unchanged.
+/// Closes a hole of `sides` sides and returns the triangles, which are then part of the surface. Empty, and
+/// the surface is unchanged, if no triangulation was found.
 Patch patch_of(Surface& surface, Halfedge border, std::size_t sides) {
   Patch patch;
   if (sides <= most_sides_for_delaunay && search(surface, border, sides, patch)) return patch;
