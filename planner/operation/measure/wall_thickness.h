@@ -17,8 +17,8 @@ namespace octotomy::planner {
 Json weighted_summary(std::vector<std::pair<double, double>> value_and_weight, const std::string& unit);
 
 /// Local thickness in mm by the mesh kernel: {"definition", "ray", "ball" (over the surface), "volume" (over
-/// the volume, with its interval), "wall" (the surface away from edges)}, and the values at vertices. Throws
-/// and costs as brep::local_thickness().
+/// the volume, with its interval), "wall" (the surface away from edges), "samples" (their number),
+/// "sample_reach_mm"}, and the values at vertices. Throws and costs as brep::local_thickness().
 Json thickness_json(const brep::Solid& solid, const voxel::Progress& progress,
                     std::vector<double>& at_vertices);
 
