@@ -32,10 +32,10 @@
 //   disc per loop. There are two such parts only around opposite corners of the cell, and their hulls are
 //   disjoint.) A's triangles have their corners in such a part, off B's loops, so they lie inside the hull
 //   and do not meet the discs.
-// 4 A *plain* cell has a sample that was not measured. Its triangles are those of W alone, so that the caps of
-//   A and B, which coincide there, do not appear. On a face between a plain and another cell, W by itself and
-//   A - B may differ; the difference is closed by flat polygons in the face. Their corners lie around the face
-//   in order, so they are convex.
+// 4 A *plain* cell has a sample that was not measured. Its triangles are those of W alone, so that the
+//   surfaces around unmeasured samples, which coincide for A and B, do not appear. On a face between a plain
+//   and another cell, W by itself and A - B may differ; the difference is closed by flat polygons in the
+//   face. Their corners lie around the face in order, so they are convex.
 // 5 If one sample of an edge lies below the window and the other above it, plain and other cells might
 //   alternate around the edge. Four polygons would meet there, so these cells become plain as well.
 //

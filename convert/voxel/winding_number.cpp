@@ -22,12 +22,13 @@
 //   cube of voxels contains no triangle of C, and w(centre) differs from every odd multiple of 1/2 by more
 //   than w can change within the cube, one whole number serves as the threshold of n for the whole cube.
 //   Other cubes are divided, from the universe down to single voxels.
-// 4 Between crossings of its 256 rows, a row of blocks of 16^3 voxels consists of stretches of one n; other
-//   blocks are made voxel by voxel. The octree is put together from above: a cube of one n and one threshold
-//   is Full or Empty.
+// 4 A row of blocks of 16^3 voxels has 256 rows of voxels. Consecutive blocks that no crossing touches form a
+//   stretch if n is the same in all 256 rows. Other blocks are made voxel by voxel. The octree is put
+//   together from above: a cube of one n and one threshold is Full or Empty.
 //
-// Departure from the source, which sums over all triangles by a tree: here only rims cost, a closed surface
-// has none, and the decision for a cube is proven for each of its voxels.
+// Departure from Jacobson, Kavan and Sorkine-Hornung (see the header), who sum over all triangles by a tree:
+// here only rims cost, a closed surface has none, and the decision for a cube is proven for each of its
+// voxels.
 
 namespace octotomy::convert {
 namespace {
