@@ -76,7 +76,8 @@ void diagonalise(Symmetric& a, Symmetric& v) {
   }
 }
 
-/// Whether centred points lie within line_share() of a line through the centre.
+/// Whether the points `which`, relative to their centre, lie on a line through the centre. They may be off it
+/// by line_share() of the farthest point's distance from the centre.
 bool on_a_line(const std::vector<Pair>& pairs, glm::dvec3 Pair::*which) {
   glm::dvec3 far(0.0);
   for (const Pair& pair : pairs)

@@ -351,7 +351,7 @@ void sort_by_score(std::vector<Fit>& fits) {
 /// The result of a search with few samples.
 struct Searched {
   glm::dmat4 best{1.0};
-  std::vector<glm::dmat4> ends;    ///< motions at which the search's starts ended, the best first
+  std::vector<glm::dmat4> ends;    ///< motion reached from each start of the search, the best first
   std::vector<glm::dmat4> others;  ///< the different ones of them after further refinement, the best first
 };
 

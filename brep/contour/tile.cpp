@@ -295,7 +295,8 @@ struct Band {
   std::size_t end(std::size_t row) const { return high.last[row]; }
 };
 
-/// All columns of paths from any start.
+/// The band of all paths. A path starts at one of the n points of the upper ring and ends n columns farther,
+/// so it stays within the columns 0 to 2n.
 Band all_of(const Pair& pair) {
   const std::size_t rows = pair.m() + 1;
   return {{0, std::vector<std::size_t>(rows, 0)}, {0, std::vector<std::size_t>(rows, 2 * pair.n())}};

@@ -61,7 +61,8 @@ glm::dvec2 shift_mm(const std::vector<Section>& sections, int attempt) {
 }
 constexpr int attempt_count = 4;
 
-/// Contours at even depth run counter-clockwise, holes clockwise.
+/// The contours, moved by `shift` (mm): counter-clockwise at even nesting depth (outer contours), clockwise
+/// at odd depth (holes).
 std::vector<Contour> directed(const std::vector<Contour>& contours, const glm::dvec2& shift) {
   const std::vector<std::size_t> depth = depths(nest(contours));
   std::vector<Contour> turned = contours;
@@ -353,7 +354,9 @@ class Strips {
     return face;
   }
 
-  /// Records that a triangle of a group's clear strip crosses something, numbered by the group's rings.
+  /// Records a triangle of a group's clear strip that crosses another surface. `face` has numbers of the
+  /// array of all points; it is stored with the numbers of the group's two rings. Ignored if the group has no
+  /// strip or not yet a clear one.
   void avoid(std::size_t g, const std::array<std::uint32_t, 3>& face) {
     if (strips_[g].empty() || attempts_[g] < clear_attempt) return;
     avoided_[g].push_back(in_rings(face, place_of(surface_.groups[g])));

@@ -36,15 +36,19 @@ class PolygonSplitter {
   /// `triangles` and `counts` must outlive this object.
   PolygonSplitter(Triangles& triangles, PolygonCounts& counts) : triangles_(triangles), counts_(counts) {}
 
-  /// Appends a polygon, which winds as its triangles do:
-  /// 1 Three corners are a triangle, even if it has no area.
-  /// 2 If every triangle of the fan from the first corner faces the same way, the fan fills the polygon.
-  /// 3 Otherwise cuts ears, the most nearly equilateral first, in the projection along the polygon's main
-  ///   axis (Meisters, Polygons have ears, 1975), by exact predicates: concave polygons, and those with a
-  ///   hole that a double side joins to the outline.
-  /// 4 A polygon that crosses itself or has no area becomes the fan of 2 and is counted.
-  /// Throws Error (Input) if there are too few corners or a corner is not a point. Cost: usually n log n, n^2
-  /// at worst.
+  /// Appends a polygon as triangles that wind as it does:
+  /// 1 Three corners become one triangle, even if it has no area.
+  /// 2 If there are more, successive equal corners are merged. If fewer than three are left, the polygon is
+  ///   counted and left out.
+  /// 3 If all triangles of the fan from the first corner face the same way and the fan turns by less than a
+  ///   full circle, the fan is used.
+  /// 4 Otherwise the polygon is cut into ears, the most nearly equilateral first (Meisters, Polygons have
+  ///   ears, 1975). Exact predicates decide in the projection along the polygon's main axis. The polygon may
+  ///   be concave, or have a hole that a double side joins to the outline.
+  /// 5 A polygon that crosses itself, or with three or more corners but no area, becomes the fan and is
+  ///   counted.
+  /// Throws Error (Input) if there are fewer than three corners or a corner is no number of a point. Cost:
+  /// usually n log n, n^2 at worst.
   void add(std::span<const long long> corners);
   /// Appends a strip of triangles. Triangles that repeat a point only change the strip's direction and are
   /// left out.

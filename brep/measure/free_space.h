@@ -5,10 +5,11 @@
 
 namespace octotomy::brep {
 
-/// The free space around a solid: a box that exceeds the solid's by `margin_mm`, without the solid. The walls
-/// of the free space are the solid's gaps and holes. Cavities of the solid belong to the free space. Has the
-/// solid's proof, because the box touches nothing. Throws std::invalid_argument if the solid is empty or the
-/// margin is not above 0. Cost: linear.
+/// The free space around a solid: the solid's box enlarged by `margin_mm` on each side, minus the solid.
+/// Where the solid has a gap or a hole, the free space is as thin as the gap, so its wall thickness there is
+/// the width of the gap. Cavities of the solid belong to the free space. Its proof is proof_of_part() of the
+/// solid's, because the box touches nothing. Throws std::invalid_argument if the solid is empty or the margin
+/// is not above 0. Cost: linear in the triangles.
 Solid free_space(const Solid& solid, double margin_mm);
 
 }  // namespace octotomy::brep

@@ -99,8 +99,9 @@ Lattice lattice_about(const Triangles& surface, const EncloseOptions& options) {
   lattice.origin_mm = low - lattice.cell_mm * glm::dvec3(2.27182818, 2.31415926, 2.14142135);
   const glm::dvec3 cells = glm::ceil((high - lattice.origin_mm) / lattice.cell_mm) + 2.0;
   if (!(std::max({cells.x, cells.y, cells.z}) < (1 << side_bits) - 2))
-    throw Error(ErrorCode::Geometry, "cells of " + short_text(lattice.cell_mm) + " mm are too small for " +
-                                         short_text(extent) + " mm: a side has at most 2^20 of them");
+    throw Error(ErrorCode::Geometry, "cells of " + short_text(lattice.cell_mm) +
+                                         " mm are too small for an extent of " + short_text(extent) +
+                                         " mm, because at most 2^20 cells fit along it: choose larger cells");
   lattice.cells = LatticePoint(cells);
   return lattice;
 }

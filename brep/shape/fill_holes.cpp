@@ -104,7 +104,8 @@ class CornerCut {
   std::priority_queue<Corner> corners_;
 };
 
-/// Closes a hole by a search if its border is short enough; false if this fails.
+/// Closes a hole of `sides` sides by CGAL's triangulate_hole() and appends the triangles to `patch`. Above
+/// most_sides_for_all sides, the cubic search is not used. Returns false if there is no triangulation.
 bool search(Surface& surface, Halfedge border, std::size_t sides, Patch& patch) {
   const std::size_t before = patch.size();
   CGAL::Polygon_mesh_processing::triangulate_hole(
@@ -113,7 +114,8 @@ bool search(Surface& surface, Halfedge border, std::size_t sides, Patch& patch) 
   return patch.size() > before;
 }
 
-/// The triangles that close a hole of `sides` sides; empty if none close it. Leaves the surface unchanged.
+/// Closes a hole of `sides` sides and returns the triangles, which are then part of the surface. Empty, and
+/// the surface is unchanged, if no triangulation was found.
 Patch patch_of(Surface& surface, Halfedge border, std::size_t sides) {
   Patch patch;
   if (sides <= most_sides_for_delaunay && search(surface, border, sides, patch)) return patch;

@@ -48,8 +48,8 @@ struct Bounds {
 };
 
 /// Distances at the middles of cells. They bound the distances at all points in a cell, because distances
-/// change by at most the distance between points. A cell's distances are computed once `enough_points` points
-/// were in the cell.
+/// change by at most the distance between points. The distances of a cell are computed only after
+/// `enough_points` points have lain in it.
 class CoarseDistances {
  public:
   CoarseDistances(const LevelBody& body, double edge_mm)

@@ -130,7 +130,7 @@ void Mender::flip_flat() {
   with_mesh("flat", [&](Mesh& mesh) {
     const FlatTriangles done = take_out_flat_triangles(mesh);
     replace(triangles_of(mesh), "flat",
-            "cut along another diagonal, or taken out, beside a triangle without area");
+            "was replaced or taken out, because it or a triangle beside it has no area");
     if (done.left > 0) left("flat", std::to_string(done.left) + " triangles without area stay", {});
   });
 }
@@ -284,7 +284,8 @@ void Mender::remove_films() {
         own.is_closed && std::abs(own.volume_mm3) <= film_share() * std::pow(own.area_mm2, 1.5);
     if (!is_film && own.faces.size() > 1) return true;
     change("films",
-           "triangle " + name(f) + (is_film ? " of a shell that encloses nothing" : " without neighbours") +
+           "triangle " + name(f) +
+               (is_film ? " of a shell that encloses almost no volume" : " without neighbours") +
                ": taken out",
            centre(f));
     return false;

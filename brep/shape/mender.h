@@ -41,7 +41,8 @@ class Mender {
   /// Replaces the surface by a solid that was made with cells of that size.
   void replace(const Solid& solid, double cell_mm, const std::string& what);
   void fill_holes(const std::optional<double>& longest_mm);
-  /// Removes triangles without neighbours, and closed shells without content: two coincident sheets.
+  /// Removes triangles without neighbours and closed shells that enclose almost no volume, such as two
+  /// coincident sheets.
   void remove_films();
   void remove_intersections();
 

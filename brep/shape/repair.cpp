@@ -36,9 +36,11 @@ void check(const Triangles& surface, const RepairOptions& options) {
     for (const std::uint32_t v : surface.faces[f])
       if (v >= surface.points_mm.size() ||
           (!options.solid && !std::isfinite(glm::dot(surface.points_mm[v], glm::dvec3(1.0)))))
-        throw Error(ErrorCode::Input, "repair: triangle " + std::to_string(f) +
-                                          " refers to a point that does not exist or is not finite; --solid "
-                                          "makes a solid without such triangles");
+        throw Error(
+            ErrorCode::Input,
+            "repair: triangle " + std::to_string(f) +
+                " refers to a point that does not exist or is not finite; --solid leaves out triangles with "
+                "points that are not finite; if the point does not exist, export the mesh again");
 }
 
 /// The volume inside, for comparison; lines through holes are left out.

@@ -59,12 +59,11 @@ struct RowCount {
   std::uint32_t cells;
 };
 
-/// A case in the form for the inner loop. Eight rows of edges run along a row of cells: along x at (y, z) =
-/// (0, 0), (1, 0), (0, 1), (1, 1), along y at z = 0, 1, along z at y = 0, 1. A cell's edges are, in order:
-/// along x in the first four rows, then the other edges at its lower x, then those at its upper x, which are
-/// the next cell's lower edges.
+/// A case of marching cubes, for cells in a row along x. Edges 0 to 3 of a cell are its edges along x, at (y,
+/// z) = (0, 0), (1, 0), (0, 1), (1, 1). Edges 4 to 7 are the other edges at its lower x: along y at z = 0, 1,
+/// then along z at y = 0, 1. Edges 8 to 11 are the same at its upper x; the next cell has them as 4 to 7.
 struct FlatCase {
-  std::array<std::uint32_t, 8> crossed{};  ///< 1 if the row's edge at the cell's lower x is crossed
+  std::array<std::uint32_t, 8> crossed{};  ///< 1 if this edge of the cell is crossed
   std::uint32_t count = 0;
   std::array<std::array<std::uint8_t, 3>, 5> triangles{};
 };

@@ -25,18 +25,19 @@
 // 2 Both surfaces are disjoint on the faces of cells: marching_cubes.cpp parts the inside corners of a face,
 //   so the part of a face outside A or B is one convex polygon, and B's crossings lie inside A.
 // 3 In a cell that both cross, the table's triangles of A and of B may cross, because neither loop is planar.
-//   The cell keeps them if a plane of each pair of triangles separates the pair. Otherwise each connected part of the
-//   cell's boundary that is outside B gets a convex hull, and B's triangles are replaced by the facets of these hulls
-//   that span B's loops. (By 2 a part meets each face in one convex polygon, or in nothing, so the hull meets the
-//   cell's boundary in that part alone. The rest of the hull's surface is one disc per loop. Two parts only occur
-//   around opposite corners of the cell, and their hulls are disjoint.) A's triangles have their corners in such a
-//   part, off B's loops, so they lie inside the hull and do not meet the discs.
-// 4 A *plain* cell has a sample that was not measured. Its triangles are those of W alone, so that the caps of
-//   A and B, which coincide there, do not appear. On a face between a plain and another cell, W by itself and
-//   A - B may differ; the difference is closed by flat polygons in the face. Their corners lie around the face
-//   in order, so they are convex.
-// 5 Around an edge from below to above the window, plain and other cells might alternate. Four polygons would
-//   meet there, so these cells become plain as well.
+//   The cell keeps them if a plane of each pair of triangles separates the pair. Otherwise each connected
+//   part of the cell's boundary that is outside B gets a convex hull, and B's triangles are replaced by the
+//   facets of these hulls that span B's loops. (By 2 a part meets each face in one convex polygon, or in
+//   nothing, so the hull meets the cell's boundary in that part alone. The rest of the hull's surface is one
+//   disc per loop. There are two such parts only around opposite corners of the cell, and their hulls are
+//   disjoint.) A's triangles have their corners in such a part, off B's loops, so they lie inside the hull
+//   and do not meet the discs.
+// 4 A *plain* cell has a sample that was not measured. Its triangles are those of W alone, so that the
+//   surfaces around unmeasured samples, which coincide for A and B, do not appear. On a face between a plain
+//   and another cell, W by itself and A - B may differ; the difference is closed by flat polygons in the
+//   face. Their corners lie around the face in order, so they are convex.
+// 5 If one sample of an edge lies below the window and the other above it, plain and other cells might
+//   alternate around the edge. Four polygons would meet there, so these cells become plain as well.
 //
 // A triangle's cell follows from its centroid: no triangle of marching cubes lies in a face.
 

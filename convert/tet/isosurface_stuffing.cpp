@@ -48,7 +48,7 @@ double too_near(std::size_t w) {
 struct Lattice {
   glm::dvec3 origin_mm{0.0};
   double half_mm = 0.5;
-  glm::ivec3 points{0};  ///< extent of the lattice along each axis, in halves of a cell
+  glm::ivec3 points{0};  ///< number of lattice positions along each axis, half a cell apart
 
   glm::dvec3 at(const LatticePoint& p) const { return origin_mm + half_mm * glm::dvec3(p); }
   bool has(const LatticePoint& p) const {

@@ -7,7 +7,8 @@
 
 namespace octotomy::convert {
 
-/// Every dihedral angle of a stuffed surface is above this; the paper proves 10.7 degrees.
+/// Lower bound in degrees of the dihedral angles of the tetrahedra that stuff() makes, as Labelle and
+/// Shewchuk (2007) prove.
 constexpr double stuffed_dihedral_deg() {
   return 10.7;
 }

@@ -45,7 +45,8 @@ class MemoryFile {
  public:
   explicit MemoryFile(const char* name) : file_(memfd_create(name, MFD_CLOEXEC)) {
     if (file_ < 0) fail("cannot make a file in memory for the mesher", errno);
-    // The child's standard streams replace 0 to 2 one by one, so no source may have one of these numbers.
+    // The child replaces its file descriptors 0 to 2 one after the other. So a file that replaces one of them
+    // must have a descriptor above 2.
     if (file_ <= STDERR_FILENO) {
       const int higher = fcntl(file_, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
       const int error = errno;

@@ -14,7 +14,7 @@ bool is_fit(const TetCorners& corners_mm, double least_deg);
 /// For each node, the elements with this corner, ascending.
 std::vector<std::vector<std::uint32_t>> elements_about(const Tetrahedra& tetrahedra);
 
-/// Splits sides of elements one after the other. Elements and nodes keep their numbers; new ones come after
+/// Splits edges of elements one after the other. Elements and nodes keep their numbers; new ones come after
 /// them. `boundary_nodes` stay as they are.
 class SideSplitter {
  public:
@@ -22,8 +22,9 @@ class SideSplitter {
   /// smallest angle of the divided elements.
   SideSplitter(Tetrahedra& tetrahedra, double least_deg);
 
-  /// Divides the elements about a side by a new node, which need not lie on the side. False, and nothing
-  /// changes, if no element has that side or a part would be unfit.
+  /// Splits the edge between nodes a and b: divides all elements around it by a new node at `at_mm`, which
+  /// need not lie on the edge. Returns false without a change if no element has the edge, or if a part would
+  /// violate the constructor's condition.
   bool split(std::uint32_t a, std::uint32_t b, const glm::dvec3& at_mm);
 
  private:

@@ -31,8 +31,8 @@ struct SlabLists {
   std::vector<std::size_t> first;
   std::vector<std::uint32_t> triangles;
 };
-/// `layers_of` returns the layers that a triangle needs, as the first one and the one after the last, within
-/// 0..side.
+/// Lists the triangles that each slab needs. `layers_of` returns the layers that a triangle needs, as the
+/// first one and the one after the last, within 0..side.
 SlabLists sort_into_slabs(const std::vector<Corners>& triangles, int side,
                           const std::function<std::pair<int, int>(const Corners&)>& layers_of);
 
@@ -50,8 +50,9 @@ struct LayerCut {
   /// the cut, so the entries and exits of a row cancel on a closed surface.
   bool entering = false;
 };
-/// Cuts an edge if one end is at or below z and the other above. Interpolates from the lower end, so that
-/// both triangles on an edge get the same bits. Precondition: z is within layers_cut().
+/// The segment in which the plane of centres of layer z cuts a triangle. An edge is cut if one end is at or
+/// below z and the other above. Points are interpolated from the lower end, so that both triangles on an edge
+/// get the same bits. Precondition: z is within layers_cut().
 LayerCut cut_by_layer(const Corners& corners, int z);
 
 /// Blocks of 16^3 voxels of a universe, empty at first.

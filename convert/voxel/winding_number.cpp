@@ -16,17 +16,19 @@
 
 // The winding number of an open surface S is that of S closed by a cap, less that of the cap. The passes:
 // 1 The rim of S is filled by a cap C, see cap.h.
-// 2 Along each row of voxels, crossings of S + C by signs give the whole number n about each centre.
-// 3 A voxel is inside where n - w > 1/2, w the winding number of C. Away from C, w is
-//   smooth. If a cube of voxels contains no triangle of C, and w(centre) differs from every odd multiple of
-//   1/2 by more than w can change within the cube, one whole number serves as the threshold of n for the whole
-//   cube. Other cubes are divided, from the universe down to single voxels.
-// 4 Between crossings of its 256 rows, a row of blocks of 16^3 voxels consists of stretches of one n; other
-//   blocks are made voxel by voxel. The octree is put together from above: a cube of one n and one threshold
-//   is Full or Empty.
+// 2 Along each row of voxels, the signed crossings of S + C are summed to the whole number n, the winding
+//   number of S + C about each voxel centre.
+// 3 Let w be the winding number of C. A voxel is inside where n - w > 1/2. Away from C, w is smooth. If a
+//   cube of voxels contains no triangle of C, and w(centre) differs from every odd multiple of 1/2 by more
+//   than w can change within the cube, one whole number serves as the threshold of n for the whole cube.
+//   Other cubes are divided, from the universe down to single voxels.
+// 4 A row of blocks of 16^3 voxels has 256 rows of voxels. Consecutive blocks that no crossing touches form a
+//   stretch if n is the same in all 256 rows. Other blocks are made voxel by voxel. The octree is put
+//   together from above: a cube of one n and one threshold is Full or Empty.
 //
-// Departure from the source, which sums over all triangles by a tree: here only rims cost, a closed surface
-// has none, and the decision for a cube is proven for each of its voxels.
+// Departure from Jacobson, Kavan and Sorkine-Hornung (see the header), who sum over all triangles by a tree:
+// here only rims cost, a closed surface has none, and the decision for a cube is proven for each of its
+// voxels.
 
 namespace octotomy::convert {
 namespace {

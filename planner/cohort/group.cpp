@@ -274,7 +274,8 @@ Json merge_group(const std::vector<Subject>& subjects, const fs::path& out, cons
       folder.path() / "index.html",
       drawn_page("Cohort of " + std::to_string(subjects.size()) + " subjects",
                  {{"kind", "cohort"}, {"subjects", shown}, {"columns", columns}, {"findings", findings}},
-                 "Without scripts, read summary.json, wide.csv and the folder plots beside it."));
+                 "This page needs scripts. Without them, read summary.json, wide.csv and the folder 'plots' "
+                 "in the folder of this page."));
   folder.publish();
   return summary;
 }

@@ -490,10 +490,9 @@ class Evaluator {
     if (!touches(object)) return;
     for (const std::string& used : objects_used(step.action))
       if (touches(result_.objects.at(used))) return;
-    object.findings.push_back(
-        "it reaches the border of the universe (" + plain(box_) +
-        ") and is cut off there in this answer by voxels alone: a certificate enlarges the "
-        "universe where there is room");
+    object.findings.push_back("the object reaches the border of the universe (" + plain(box_) +
+                              ") and is cut off there, because this answer was computed by the voxel kernel "
+                              "alone: certify the object, which enlarges the universe if there is room");
   }
 
   /// Whether files are prepared. That takes longest, so certificates wait for it, and run in parallel with

@@ -337,7 +337,8 @@ class PlanHistory::Database {
                              ": cannot be written, so the plan's states cannot be stored there: copy the "
                              "plan and its .history to a folder in which you may write");
   }
-  /// Throws: an edit is not newer than its parent, or its text does not have the stored checksum.
+  /// Reports a damaged history: the current edit is missing, an edit is not newer than its parent, or its
+  /// text cannot be put together or does not have the stored checksum.
   [[noreturn]] void refuse_damaged(std::int64_t edit) const {
     throw std::runtime_error(path_.string() + ": the history is damaged at state " + std::to_string(edit) +
                              ": move it away, and a new one is begun");

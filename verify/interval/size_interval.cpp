@@ -481,7 +481,8 @@ double blur_of(const brep::Solid& solid, const glm::dmat3& sample_edges,
     const glm::dvec3 normal = glm::cross(q - p, r - p);
     const double length = glm::length(normal);
     if (!(length > 0.0)) continue;
-    // `one` is one sample along the normal. The largest depth in a sheet is half its thickness.
+    // `one` is the way of one sample along the normal, in mm. No point of a sheet is deeper than half its
+    // thickness, so the inside is read at this depth, but between 0.5 and `away` samples deep.
     const glm::dvec3 n = normal / length, one = n * glm::length(glm::transpose(sample_edges) * n);
     const glm::dvec3 at = (p + q + r) / 3.0;
     const double half_thickness = half_thickness_mm / glm::length(one);

@@ -286,8 +286,9 @@ double normal_deviate(std::uint64_t seed, std::uint64_t index) {
 }  // namespace
 
 voxel::Box head_bounds() {
-  // The bounds are even and the box's middle is whole. So voxels of scans and universes of 1 and 2 mm
-  // coincide, and planes at whole millimetres lie between voxels.
+  // The bounds and the coordinates of the middle of the box are even. So the voxels of a scan that is not
+  // tilted are also voxels of a universe with the same spacing of 1 or 2 mm. Planes at whole millimetres (at
+  // 2 mm: even ones) lie between voxels.
   return {{-100, -122, -136}, {100, 126, 116}};
 }
 

@@ -129,8 +129,8 @@ struct Named {
   }
 
  private:
-  /// Limits the number of replaced leaves, because nested origins can grow exponentially. read_once() needs
-  /// far fewer leaves.
+  /// Once an expression has this many leaves, by_origins() keeps further leaves instead of replacing them by
+  /// their origins, because nested origins can grow exponentially. read_once() needs far fewer leaves.
   static constexpr std::size_t most_leaves = 64;
 
   /// Converts a tree whose leaves are numbered by `its_names` to the numbers of this expression. Replaces

@@ -155,8 +155,9 @@ RepresentationStudy manipulation_study() {
   // A motion by even numbers of voxels maps blocks of two voxels a side onto such blocks, so the counts do
   // not change. The thesis prints 7,660, 30,010 and 31,270 before and after.
   study.entries.push_back({"table 7.7",
-                           "intersection moved by (20, 30, 40): P of level 7, F and E of level 8", "same",
-                           sameness(finest_of(inside) == finest_of(moved_inside))});
+                           "intersection, before and after a motion by (20, 30, 40) voxels: Partial of level "
+                           "7, Full and Empty of level 8",
+                           "same", sameness(finest_of(inside) == finest_of(moved_inside))});
 
   const auto count = [](std::uint64_t n) { return std::to_string(n); };
   study.beside.push_back({"table 7.2",

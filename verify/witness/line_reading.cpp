@@ -403,9 +403,9 @@ LineReading window_reading(std::shared_ptr<const voxel::Scene> scan, double low,
           [window](const voxel::Box& part) { return window->may_meet(part); }, box, 100.0};
 }
 
-/// The cost of two hundred windows. An expression that costs more has no reading, for instance if steps of
-/// the plan double its size repeatedly. Reading a line would take seconds, and the recursion would be as deep
-/// as the number of operands.
+/// The largest cost of an expression with a reading, equal to that of two hundred windows. A costlier
+/// expression has none, for instance one whose size is doubled repeatedly by steps of the plan. Reading one
+/// line of it would take seconds, and the recursion would be as deep as it has operands.
 constexpr double most_cost = 2e4;
 
 /// Reads the cheaper operand first, and the other one only where the answer still depends on it.

@@ -105,13 +105,14 @@ glm::dvec3 plane_normal(const std::vector<glm::dvec3>& points, const glm::dvec3&
 /// A crossing with its first normal.
 using Place = DockingContact;
 
-/// Places in cubes of an edge.
+/// Places, sorted into cubes with the edge `edge_mm`.
 class PlaceGrid {
  public:
   PlaceGrid(const std::vector<Place>& places, double edge_mm) : places_(places), edge_mm_(edge_mm) {
     for (std::size_t i = 0; i < places.size(); ++i) cells_[cell_of(places[i].p_mm)].push_back(i);
   }
-  /// Those within the edge of a point whose first normals are within 37 degrees of a direction.
+  /// The positions in mm of the places within edge_mm of `p_mm` whose first normals are within 37 degrees of
+  /// `normal`.
   std::vector<glm::dvec3> alike(const glm::dvec3& p_mm, const glm::dvec3& normal) const {
     constexpr double least_alike = 0.8;
     std::vector<glm::dvec3> found;

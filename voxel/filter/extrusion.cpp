@@ -333,8 +333,9 @@ class Finder {
     return column;
   }
 
-  /// The range allowed for a column's samples: its median, with `is_wide` extended towards each neighbour's
-  /// median by the share lies_off_ of their difference, and a margin for noise.
+  /// The range allowed for a column's samples: its median, plus and minus a margin for noise. If `is_wide`,
+  /// the range also extends towards each neighbour's median, by the share lies_off_ of the difference of both
+  /// medians.
   std::pair<float, float> allowed(const glm::ivec2& p, bool is_wide) const {
     const Column& own = columns_[view_.column(p.x, p.y)];
     float low = own.median, high = own.median;

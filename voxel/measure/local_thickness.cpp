@@ -40,8 +40,8 @@ std::size_t index_in(const glm::ivec3& dims, const glm::ivec3& at) {
               static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(at.z));
 }
 
-/// For each place, the distance to the nearest voxel outside. The pyramid's higher levels store the largest
-/// distance in each block.
+/// For each place, the distance in mm to the nearest place that no voxel of the object touches. The higher
+/// levels of the pyramid store the largest distance in each block.
 class Pyramid {
  public:
   Pyramid(const Octree& octree, const VoxelRange& range, int finer)

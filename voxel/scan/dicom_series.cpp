@@ -521,8 +521,8 @@ class SeriesAssembler {
     for (DicomSlice& slice : stack.slices) slice.spacing_mm = sum / static_cast<double>(stack.slices.size());
   }
 
-  /// Sets the directions to the mean of the slices' directions. If all are equal, the result has exactly the
-  /// bits of the first slice.
+  /// Returns the means of the slices' directions along rows and along columns. If all are equal, they have
+  /// exactly the bits of the first slice. Warns if a slice is visibly turned from the mean.
   std::pair<glm::dvec3, glm::dvec3> mean_directions(const DicomStack& stack) {
     const DicomSlice& first = stack.first();
     glm::dvec3 along_row(0.0), along_column(0.0);

@@ -306,8 +306,9 @@ class SeriesReader {
            repeats);
   }
 
-  /// The greatest common divisor of all differences between samples. If it is above one unit, samples were
-  /// stored with 8 bits or processed with losses.
+  /// Warns if the measured samples of a CT (int16) come in steps above 4 HU. The step is the greatest common
+  /// divisor of all their differences. A large step means that samples were stored with fewer bits or
+  /// processed with losses.
   void audit_steps() {
     const auto* samples = std::get_if<Int16Samples>(&scene_.samples);
     if (samples == nullptr || scene_.modality != "CT") return;

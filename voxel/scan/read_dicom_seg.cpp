@@ -326,13 +326,13 @@ class SegReader {
     fit_ = chosen_fit();
     if (!fit_.holds())
       refused("whose planes are not evenly apart: " + place_of(fit_.worst) +
-              print(" lies %.3g mm off planes %.6g mm apart: write it with evenly spaced frames, or as .nrrd "
-                    "on the lattice of its scan",
+              print(" lies %.3g mm from the nearest of planes with a spacing of %.6g mm: write the "
+                    "segmentation with evenly spaced frames, or as .nrrd on the lattice of its scan",
                     fit_.off_mm, fit_.step_mm));
     if (!fit_.is_exact())
-      warn_spacing(
-          print("planes lie up to %.3g mm off planes %.6g mm apart, most ", fit_.off_mm, fit_.step_mm) +
-          place_of(fit_.worst) + ": they are treated as evenly spaced");
+      warn_spacing(print("planes lie up to %.3g mm from planes with a spacing of %.6g mm, most ", fit_.off_mm,
+                         fit_.step_mm) +
+                   place_of(fit_.worst) + ": they are treated as evenly spaced");
     const double planes = std::round((frames_.back().height_mm - fit_.low_mm) / fit_.step_mm) + 1.0;
     if (planes > 4.0 * static_cast<double>(frames_.size()) + 64.0)
       refused("whose planes are scattered: " + print("%.0f for %zu frames", planes, frames_.size()));

@@ -41,11 +41,11 @@ const Expression::Term& before_samples(const Expression::Term& term);
 /// number of complements and right sides of a minus. Throws as for_each_term() does.
 std::vector<Window> positive_windows(const Expression& expression);
 
-/// Computes samples of expressions at single positions, without building a scan. The owner of a voxel is the
-/// first window, in the order of the expressions and in reading order within each, that contains the voxel
-/// and is not under a complement or to the right of a minus; if there is none, the first window whose
-/// complement contains the voxel. Of a union's operands only those that contain the voxel own it. Copies
-/// share their data.
+/// Computes samples of expressions at single positions, without building a scan. Windows are tested in the
+/// order of the expressions and in reading order within each. The owner of a voxel is the first window that
+/// contains the voxel and is under an even number of complements and right sides of a minus. If there is
+/// none, it is the first other window that does not contain the voxel. A window in an operand of a union can
+/// own only voxels that this operand contains. Copies share their data.
 class GreyOwners {
  public:
   /// Precondition: the sources' `voxels` have this universe. Cost: combine() for each operand of a union that

@@ -137,8 +137,8 @@ class DepthReads {
     return {outer.node.child(number), outer.origin + (octant << (outer.node.side_log2() - 1))};
   }
 
-  /// The node on the given level, or the larger node of equal samples that contains it. Counts an indirect
-  /// visit to every node below the node on the ray's path.
+  /// The node on the given level, or the larger node of equal samples that contains it. The ray's path ends
+  /// at Full and Empty nodes; each node that is visited below such a node counts as an indirect visit.
   Place find(int level, int p, int q, int d) {
     Place place = root_;
     for (int at = 0; at < level && !is_even(place); ++at) {

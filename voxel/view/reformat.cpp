@@ -283,8 +283,8 @@ EdgeLetters edge_letters(const Sheet& sheet) {
   letters.bottom = patient_side(sheet.down);
   const std::vector<glm::dvec3>& columns = sheet.columns_mm;
   if (columns.empty()) return letters;
-  // Directions are those from the middle to the ends: both ends of a dental arch run backwards, but one lies
-  // on the right and one on the left.
+  // The letters name the directions from the curve's middle to its ends. The curve's tangents would not do:
+  // at both ends of a dental arch they point to the back, but one end lies on the right and one on the left.
   const glm::dvec3 middle_mm = 0.5 * (columns[(columns.size() - 1) / 2] + columns[columns.size() / 2]);
   if (columns.front() != middle_mm) letters.left = patient_side(columns.front() - middle_mm);
   if (columns.back() != middle_mm) letters.right = patient_side(columns.back() - middle_mm);

@@ -25,7 +25,7 @@ constexpr std::array<Direction, 6> all_directions{{{"left", 0, 1.0},
                                                    {"superior", 2, 1.0},
                                                    {"inferior", 2, -1.0}}};
 
-/// The direction of a word or of its first letter.
+/// The direction that is written as a whole word or as its first letter alone; null if there is none.
 const Direction* direction_of(std::string_view word) {
   for (const Direction& direction : all_directions)
     if (word == direction.word || (word.size() == 1 && word[0] == direction.word[0])) return &direction;

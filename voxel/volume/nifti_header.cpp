@@ -448,8 +448,9 @@ class NiftiReader {
     const double least = pair_ ? 0.0 : static_cast<double>(header_bytes_) + 4.0;
     double offset = std::trunc(fields_.vox_offset);
     if (!pair_ && offset == 0.0) {
-      header_.audit.push_back({"offset", Verdict::Warn,
-                               print("the header states no offset of the samples: %g is assumed", least)});
+      header_.audit.push_back(
+          {"offset", Verdict::Warn,
+           print("the header states no offset of the samples (vox_offset): byte %g is assumed", least)});
       offset = least;
     }
     require(offset >= (pair_ ? 0.0 : static_cast<double>(header_bytes_)) && offset <= 1e9,

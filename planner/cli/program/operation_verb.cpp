@@ -190,14 +190,14 @@ class OperationRun {
     object.mesh.lineage = "boundary of the voxels of " + object.definition;
   }
 
-  /// States as the origin of both kernels' operands the file from which they come.
+  /// Records for both kernels that the operand comes from a file.
   static void add_file_maker(Object& object) {
     const std::string lineage = object.mesh.whole ? object.mesh.lineage : object.voxel.lineage;
     object.voxel.makers = object.mesh.makers = {"file: " + lineage};
   }
 
-  /// States as the origin of each kernel's answer its code and the operands' files, sorted and without
-  /// repetitions.
+  /// Records where each kernel's answer comes from: the operation with the kernel's lineage, and the
+  /// operands' origins. Sorted, without repetitions.
   void add_makers(Object& made) const {
     const auto add = [&](std::vector<std::string>& all, const std::string& lineage, auto of_operand) {
       all.push_back(operation_.name + ": " + lineage);

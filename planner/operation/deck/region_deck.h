@@ -24,9 +24,10 @@ struct RegionDeck {
 /// step allows the fallback, voxels are used and `fallback` is set. A region that the step lists as moved is
 /// filled at its position before its motions.
 ///
-/// Each region has the material that the step states for it. Without a stated material, a held object is soft
-/// tissue, and so is every further region that is no holder. Every other region is assumed to be cortical
-/// bone. This is a finding unless the region is a holder, which moves as a rigid body.
+/// A single region is soft tissue. Each of several regions has the material that the step states for it. If
+/// none is stated and the step has holders (`moved` or `fixed`), a holder is cortical bone and all other
+/// regions are soft tissue. If the step has no holders, cortical bone is assumed, which is reported as a
+/// finding.
 ///
 /// The surface FREE_<object>, or FREE for a single object, is where the object touches no other. The surface
 /// <one>_TO_<other> is where two objects touch, as faces of the first. If the two slide, each has separate

@@ -74,7 +74,9 @@ std::vector<ListedTransform> listed_text(const std::string& text, const std::str
     } else if ((key == "Parameters" || key == "FixedParameters") && !found.empty()) {
       (key == "Parameters" ? found.back().parameters : found.back().fixed) = numbers_of(value, where);
     } else {
-      refuse(where, "'" + key.substr(0, 40) + "' is none of Transform, Parameters and FixedParameters");
+      refuse(where, "'" + key.substr(0, 40) +
+                        "' is none of Transform, Parameters and FixedParameters, or stands before the first "
+                        "Transform: save the transform in 3D Slicer as .tfm or .h5");
     }
   }
   return found;

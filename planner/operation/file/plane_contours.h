@@ -36,8 +36,8 @@ PlaneContours contours_in_plane(const voxel::Scene& scene, double low, double hi
 PlaneContours contours_in_plane(const brep::Mesh& surface, const ViewPlane& plane,
                                 std::size_t* open = nullptr);
 
-/// Of contours that do not cross: the outline of the region that contains a point, and the contours of the
-/// region's holes. Empty if the point lies outside of all regions or in a hole.
+/// Returns the outline of the region that contains a point, and the contours of that region's holes. Empty if
+/// the point lies outside of all regions or in a hole. Precondition: the contours do not cross.
 PlaneContours region_around(const PlaneContours& contours, const glm::dvec2& p_mm);
 
 }  // namespace octotomy::planner

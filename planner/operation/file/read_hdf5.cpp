@@ -177,7 +177,9 @@ Hdf5File::Hdf5File(std::string_view bytes) : bytes_(bytes) {
   in.take(version < 2 ? 9 : 1);
   if (version == 1) in.take(4);
   if (in.number(8) != 0) refuse_file("has a base address other than 0, which cannot be read");
-  in.take(16);  // free space or extension, and the end of the file, which part() computes from the bytes
+  // Skips the address of the free space (from version 2 on: of the extension), and that of the end of the
+  // file. part() uses the number of bytes instead.
+  in.take(16);
   if (version < 2) in.take(16);
   root_ = in.number(8);
 }

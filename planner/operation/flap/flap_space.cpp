@@ -94,8 +94,9 @@ void check(const FlapSpace& space, const FieldLocation& place) {
   const std::size_t segments = space.curve.size() - 1;
   const std::size_t most = space.part == "osteotomy" ? segments + 1 : segments;
   if (space.part != "resection" && static_cast<std::size_t>(space.number) > most)
-    place.at("number").refuse("must be at most the number of its kind: the curve has " +
-                              std::to_string(most) + " of part '" + space.part + "'");
+    place.at("number").refuse(
+        "must be at most the number of places that the curve has for the part, which is " +
+        std::to_string(most) + " for part '" + space.part + "'");
   if (space.uncut_at && static_cast<std::size_t>(*space.uncut_at) > segments)
     place.at("uncut_at")
         .refuse("must be a segment of the curve, which has " + std::to_string(segments) + " segments");

@@ -137,9 +137,11 @@ class Reader {
     mandible(incisor < 0 ? tip : incisor, last);
   }
 
-  /// The tip is the first row that stands in front of the rows below it. A second rule, which does not depend
-  /// on the head's pitch, selects the row farthest in front of the line from the opening's floor to the bone
-  /// below.
+  /// Places the tip of the nasal spine at the first row that projects in front of the rows below it, or at
+  /// `foremost_row` if there is none. If the spine continues into the bone below it, its upper end is the
+  /// tip. A second rule, which does not depend on the head's pitch, finds the row farthest in front of the
+  /// line from the opening's floor to the bone below. Its distance from the tip contributes to the tip's
+  /// doubt, which is at most 3 mm. If neither rule finds a spine, the tip is missing.
   void place_spine(int floor, int foremost_row) {
     const int end = within(floor + rows_of(spine_line));
     int first = -1;

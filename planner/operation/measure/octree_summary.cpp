@@ -139,7 +139,7 @@ Json octree_answer(const voxel::OctreeFile& file, std::optional<std::uint64_t> b
   made.lps_from_voxel = to_json(universe.lps_from_voxel);
   made.metadata = metadata_of(file);
   if (!bytes_file) made.findings.emplace_back("bytes_file: null, because no octree file was read or written");
-  if (file.metadata.empty()) made.findings.emplace_back("metadata: null, because the file contains none");
+  if (file.metadata.empty()) made.findings.emplace_back("metadata: null, because the octree has none");
   Json json = answer(timings);
   json.update(print_record(made));
   return json;

@@ -17,7 +17,7 @@ struct SurfaceQuestions {
   std::vector<glm::dvec3> distance = {};  ///< two points
   std::vector<glm::dvec3> angle = {};     ///< three points, the angle at the second
   std::vector<glm::dvec3> along = {};     ///< two points
-  const brep::Mesh* to = nullptr;         ///< file of another surface, for the least distance to it
+  const brep::Mesh* to = nullptr;         ///< another surface, for the least distance to it; null: none
   bool thickness = false, curvature = false;
 };
 

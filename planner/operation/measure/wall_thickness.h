@@ -17,12 +17,13 @@ namespace octotomy::planner {
 Json weighted_summary(std::vector<std::pair<double, double>> value_and_weight, const std::string& unit);
 
 /// Local thickness in mm by the mesh kernel: {"definition", "ray", "ball" (over the surface), "volume" (over
-/// the volume, with its interval), "wall" (the surface away from edges)}, and the values at vertices. Throws
-/// and costs as brep::local_thickness().
+/// the volume, with its interval), "wall" (the surface away from edges), "samples" (their number),
+/// "sample_reach_mm"}, and the values at vertices. Throws and costs as brep::local_thickness().
 Json thickness_json(const brep::Solid& solid, const voxel::Progress& progress,
                     std::vector<double>& at_vertices);
 
-/// Local thickness in mm by the voxel kernel, without "ray". Throws and costs as voxel::local_thickness().
+/// Local thickness in mm by the voxel kernel, without "ray" and "sample_reach_mm". All voxels of the surface
+/// count equally. Throws and costs as voxel::local_thickness().
 Json thickness_json(const voxel::Octree& octree, const voxel::Progress& progress);
 
 }  // namespace octotomy::planner

@@ -192,9 +192,9 @@ void voxels(const Mask& typed, const VoxelBench& bench, VoxelSide& made) {
     const auto found = findings_of_slices(mask, drawn, bench.scans);
     made.findings.insert(made.findings.end(), found.begin(), found.end());
     if (auto cut = cut_at_cube(drawn.mask, bench.universe, mask.slices.generic_string()))
-      made.findings.push_back(
-          *cut +
-          ", although the cube contains all of the plan's scans: check that the contours belong to them");
+      made.findings.push_back(*cut +
+                              "; the cube contains all of the plan's scans, so check that the contours "
+                              "belong to one of these scans");
     const voxel::Expression slices = std::move(drawn.mask);
     made.symbol = made.symbol ? *made.symbol & slices : slices;
   }
@@ -202,9 +202,9 @@ void voxels(const Mask& typed, const VoxelBench& bench, VoxelSide& made) {
   made.lineage = "regions projected at voxel centres";
   if (made.octree.is_empty())
     throw std::runtime_error(
-        "the mask contains no voxel, because its regions do not overlap or lie outside of the universe, "
-        "which spans " +
-        plain(bench.box_mm()) + ": draw them within the universe");
+        "the mask contains no voxel: its regions have no common part, are thinner than a voxel, or lie "
+        "outside of the universe, which spans " +
+        plain(bench.box_mm()) + ": draw regions that overlap within the universe");
 }
 
 /// The intersection of the regions' prisms; none if there are no regions.

@@ -88,14 +88,14 @@ brep::Triangles tiled_contours(const voxel::Scene& scene, const SampleWindow& wi
   options.cost = cost_of(asked);
   brep::TiledSections tiled = convert::contour_surface(scene, window.low, window.high_or_infinity(), options);
   findings.push_back(
-      "contours: " + std::to_string(tiled.strips) + " pairs joined by strips, " +
+      "contours: " + std::to_string(tiled.strips) + " pairs joined by strips; of these, " +
       std::to_string(tiled.clear_strips) +
-      " of them by spans that cross no contour, because the best strips would cross other parts, " +
+      " by spans that cross no contour, because their best strips would cross other parts; of these, " +
       std::to_string(tiled.narrowed_strips) +
-      " of them nearer to the shortest spans or by least area, because these would cross other parts, too; " +
+      " nearer to the shortest spans or by least area, because such spans would cross other parts, too; " +
       std::to_string(tiled.crossed_strips) +
-      " pairs by overlay, because every strip would cross other parts; " + std::to_string(tiled.overlaid) +
-      " branchings, ends and single contours by overlay");
+      " pairs joined by overlay, because every strip would cross other parts or be too long; " +
+      std::to_string(tiled.overlaid) + " branchings, ends and single contours joined by overlay");
   return std::move(tiled.surface);
 }
 
@@ -145,9 +145,8 @@ Made of_octree(const FileBench& bench, const Meshed& asked, std::vector<std::str
   const auto& octree = std::get<voxel::Octree>(file.tree);
   if (cubes) return cuberille_of(octree, asked);
   findings.push_back(
-      "surface: the octree stores voxels only as inside or outside, so the isosurface runs half-way between "
-      "them in steps, and its area is too large, for a ball by 9 %: for a smooth surface, make a grey or "
-      "partial octree");
+      "surface: the octree has no shares of voxels and no samples, so the isosurface has steps and its area "
+      "is too large (for a ball by 9 %): for a smooth surface, make a grey or partial octree");
   return convert::isosurface(octree.universe(), octree);
 }
 

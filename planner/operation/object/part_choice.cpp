@@ -266,8 +266,9 @@ std::vector<std::pair<std::size_t, voxel::Octree>> components_of(const brep::Sol
   return found;
 }
 
-/// The largest parts that only one kernel selected. None if a kernel did not select the largest of its own
-/// parts, or if one object lacks a part of the other that must be there according to the witness.
+/// The parts that only one kernel selected as its largest. None if there are no such parts, if a kernel
+/// selected other parts than the largest of its own, or if the witness contradicts one: a kernel lacks a part
+/// where the witness requires it, or the mesh kernel has a part where the witness excludes it.
 std::optional<Differing> ranked(const WholeObject& whole, const brep::Solid& solid,
                                 const voxel::Octree& chosen, const voxel::Octree& by_voxels,
                                 const voxel::Octree& apart_in_mesh) {

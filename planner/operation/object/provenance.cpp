@@ -49,8 +49,8 @@ bool is_within(const brep::Solid& mesh, const voxel::Box& box) {
          glm::all(glm::lessThanEqual(size.high_mm, box.high_mm + rounding_mm));
 }
 
-/// The object of which `made` is an image, and the motion. A later motion of the image starts from the still
-/// object, because that also contains what the image has outside of the universe.
+/// The unmoved object of which `made` is an image, and the motion from that object to `made`, in LPS. A later
+/// motion of `made` starts from the unmoved object, because `made` lacks the part that left the universe.
 Object::Image image_of(const Object& still, const glm::dmat4& moved_from_still, const BoundBench& bench,
                        const Object& made) {
   const Object& first = still_of(bench.objects, still);

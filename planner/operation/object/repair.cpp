@@ -87,7 +87,7 @@ Mended mended(const Repair& repair, const std::filesystem::path& path, const vox
 Json told(const Mended& made, const brep::RepairEffect& effect, const brep::KnownSolids& solids) {
   const auto estimator = [](bool is_solid) {
     return is_solid ? "divergence theorem over the mesh"
-                    : "lengths inside on parallel lines; lines through holes are left out";
+                    : "lengths of parallel lines inside the mesh; lines through holes are left out";
   };
   return {{"changes", changes_json(made.repaired.changes)},
           {"left", changes_json(made.repaired.left)},

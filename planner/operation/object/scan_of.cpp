@@ -131,7 +131,7 @@ void need_one_meaning(const ScanOf& step, const ScanBench& bench, const voxel::E
       if (!why.empty())
         throw voxel::Error(voxel::ErrorCode::Input, "the samples of '" + name + "' come from '" +
                                                         window.scan + "' and " + why + ": leave '" + name +
-                                                        "' out, or make the scan on '" + window.scan + "'");
+                                                        "' out, or set \"scan\" to '" + window.scan + "'");
     }
   }
 }
@@ -307,11 +307,13 @@ MadeScan made(const ScanOf& step, const ScanBench& bench) {
     findings.push_back("no sample of the scan lies in '" + step.expression +
                        "', so all samples would have the value of holes: correct the expression");
   else if (compared.compared == 0)
-    findings.emplace_back("no sample could be checked by a second reading, so nothing confirms this scan");
+    findings.emplace_back(
+        "no sample could be checked by an independent computation, so nothing confirms this scan");
   if (compared.differing > 0)
-    findings.push_back(std::to_string(compared.differing) + " of " + std::to_string(compared.compared) +
-                       " checked samples differ from a second reading, by up to " +
-                       std::to_string(compared.largest) + ": do not rely on this scan, and please report it");
+    findings.push_back(
+        std::to_string(compared.differing) + " of " + std::to_string(compared.compared) +
+        " checked samples differ from an independent computation, in the scan's unit by up to " +
+        std::to_string(compared.largest) + ": do not rely on this scan, and please report it");
   if (step.hole_value && result.hole_samples > 0)
     findings.push_back(std::to_string(result.hole_samples) +
                        " samples outside of all objects have the value " + plain(*step.hole_value) +

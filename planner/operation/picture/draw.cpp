@@ -209,7 +209,8 @@ void add_box(const std::optional<voxel::Scene>& scene, DrawnItems& drawing, std:
                         {{"low_mm", to_json(box.low_mm)}, {"high_mm", to_json(box.high_mm)}}});
 }
 
-/// The octree whose inside shows samples in slices; none if no object limits them.
+/// The voxels of the object `name`, which limits where slices show samples. A mesh file is voxelised. Throws
+/// std::runtime_error if the octree is not binary.
 voxel::Octree shown_inside(const std::string& name, const voxel::Lattice& lattice, const FileBench& bench) {
   if (bench.step == nullptr && is_mesh(name)) {
     const glm::dvec3 spacing = lattice.spacing_mm();

@@ -16,9 +16,10 @@ namespace octotomy::planner {
 /// may need more memory than is free.
 voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> voxel_mm);
 
-/// The universe of a scan. The samples of a label map are cells. `are_labels` states that the scan is a label
-/// map if its file does not. The borders of voxels then lie on those of the first cell; otherwise the centres
-/// of voxels on a border between two cells would all be assigned to the same side.
+/// The universe of a scan, with `voxel_mm` as above. If the scan is a label map, by its file or by
+/// `are_labels`, each sample stands for a cell, and borders of voxels are aligned with the border of the
+/// first cell where there is room. Otherwise the voxel centres on a border between two cells would all be
+/// assigned to the same side.
 voxel::Universe universe_of(const voxel::Scene& scan, std::optional<double> voxel_mm,
                             bool are_labels = false);
 

@@ -49,7 +49,7 @@ voxel::Finding identity_finding(const IdentityOf& scan, const IdentityOf& laid) 
   const std::string who = is_scan && is_laid ? "both state nothing"
                           : is_scan          ? scan.name + " states nothing"
                           : is_laid          ? laid.name + " states nothing"
-                                             : "one of them does not state it";
+                                             : "they do not both state this";
   return {
       "identity", voxel::Verdict::Warn,
       "whether " + both + " are of one " + joined(found.unstated, " and ") + " could not be checked: " + who};

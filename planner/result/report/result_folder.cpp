@@ -164,9 +164,8 @@ void need_free(const fs::path& folder, const ResultList& list, const fs::path& n
 ResultList need_place(const fs::path& place, const fs::path& named, const std::vector<fs::path>& names) {
   if (lies_in(fs::current_path(), fs::weakly_canonical(place)))
     refuse(named.string() +
-           ": is the working folder or contains it, and a result replaces its folder: choose a folder in it, "
-           "as -o "
-           "report");
+           ": is the working folder or contains it, and writing a result puts a new folder in its place: "
+           "choose a folder inside the working folder, such as -o report");
   constexpr std::size_t longest_beside = 20;  // "." before it, ".octotomy-" with six letters and "~" after
   if (place.filename().native().size() + longest_beside > NAME_MAX)
     refuse(named.string() + ": is too long a name: choose a shorter -o");

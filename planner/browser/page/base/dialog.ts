@@ -34,8 +34,8 @@ export function open_dialog(title: string, name: string, closed: () => void = ()
   return {refill, close};
 }
 
-/// Opens a dialog with a field for one line of text, which contains `usual` at first. Resolves with the text,
-/// or with null if the person closes the dialog.
+/// Opens a dialog with a field for one line of text, which contains `usual` at first. Resolves with the
+/// trimmed text, or with null if it is empty or the person closes the dialog.
 export function ask_text(title: string, label: string, usual: string): Promise<string|null> {
   return new Promise((resolve) => {
     let answer: string|null = null;

@@ -30,7 +30,7 @@ function row(step: Step, neck: Neck): Child {
       button(
           `${size(neck)} near ${place}`, `Shows the neck. ${neck.kept ? "Both kernels keep the part" : "The kernels differ"}`,
           () => show_place(neck.at_mm, what), {class: "ghost small"}),
-      el("span", {class: "spring"}), choice("Keep", "The part stays, and the certificate has no doubt about it", "keep_bridges_mm"),
+      el("span", {class: "spring"}), choice("Keep", "The part beyond the neck stays, and the certificate reports no doubt about it", "keep_bridges_mm"),
       choice("Cut", "The object loses a small cube about the neck", "cut_bridges_mm"));
 }
 

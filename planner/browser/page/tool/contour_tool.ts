@@ -272,7 +272,7 @@ function forget(): void {
 export const contour_tool: Tool = {
   name: "contour",
   title: "Contours",
-  says: "In a slice: draw around a region, drag, smooth or erase contours, find one around a pixel, copy them to the next slice. , and . copy.",
+  says: "In a slice: draw around a region, drag, smooth or erase contours, find one around a pixel, or copy them: the comma key copies to the previous slice, the full stop key to the next.",
   key: "e",
   cursor: "crosshair",
   is_pointed: true,

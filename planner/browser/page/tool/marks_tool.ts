@@ -122,7 +122,7 @@ export const marks_tool: Tool = {
   },
   panel: () =>
       (piece() ? marks_panel() :
-                 el("p", {class: "says"}, "Select the piece that moves in the list or click it in a view.")),
+                 el("p", {class: "says"}, "Select the piece to be moved: click it in the list or in a view.")),
 };
 
 function marks_panel(): Child {

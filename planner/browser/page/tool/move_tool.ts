@@ -73,7 +73,7 @@ export const move_tool: Tool = {
   name: "move",
   title: "Move a piece",
   says:
-      "Select a piece, then drag it within the ring, by an arrow for one direction, or turn it by the ring. The overlap with what stays is drawn in red.",
+      "Select a piece. Drag inside the ring to move it freely, drag an arrow to move it in one direction, or drag the ring to turn it. The overlap with the parts that stay is drawn in red.",
   key: "g",
   cursor: "move",
 
@@ -126,7 +126,7 @@ export const move_tool: Tool = {
   draw: draw_handles,
   panel: () =>
       (piece() ? null :
-                 el("p", {class: "says"}, "Select the piece that moves in the list or click it in a view.")),
+                 el("p", {class: "says"}, "Select the piece to be moved: click it in the list or in a view.")),
 };
 
 function handle_at(pane: Pane, at: Vec2, centre: Vec2, one: {source: string; step: Step | undefined}): Handle|
