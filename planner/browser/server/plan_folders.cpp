@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "planner/plan/dependence.h"
 #include "voxel/space/error.h"
@@ -31,8 +32,24 @@ bool may_begin_after(char before) {
   return std::string_view(" \t\n'\"`([{<=,;:").find(before) != std::string_view::npos;
 }
 
-bool ends_path(char symbol) {
-  return std::string_view(" \t\n'\"`)]}>,;:").find(symbol) != std::string_view::npos;
+/// Folders' names may contain blanks and commas, so that these end a path only after its last slash.
+constexpr std::string_view softly_ends_path = " \t,", ends_path = "\n'\"`)]}>;:";
+
+bool begins_path(std::string_view text, std::size_t at) {
+  return text[at] == '/' && (at == 0 || may_begin_after(text[at - 1])) && at + 1 < text.size() &&
+         text[at + 1] != '/' && softly_ends_path.find(text[at + 1]) == std::string_view::npos &&
+         ends_path.find(text[at + 1]) == std::string_view::npos;
+}
+
+/// The file's name in an absolute path: its first character, and the one after the path.
+std::pair<std::size_t, std::size_t> name_of_path(std::string_view text, std::size_t begin) {
+  std::size_t last_slash = begin, end = begin + 1;
+  for (; end < text.size() && ends_path.find(text[end]) == std::string_view::npos; ++end) {
+    if (text[end] != '/') continue;
+    if (may_begin_after(text[end - 1])) break;
+    last_slash = end;
+  }
+  return {last_slash + 1, std::min(end, text.find_first_of(softly_ends_path, last_slash))};
 }
 
 }  // namespace
@@ -64,17 +81,14 @@ std::string without_folders(std::string text, const std::vector<std::string>& fo
     for (std::size_t at = 0; (at = text.find(folder, at)) != std::string::npos;)
       text.erase(at, folder.size());
   std::string kept;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool begins = text[i] == '/' && (i == 0 || may_begin_after(text[i - 1])) && i + 1 < text.size() &&
-                        !ends_path(text[i + 1]) && text[i + 1] != '/';
-    if (!begins) {
-      kept += text[i];
+  for (std::size_t at = 0; at < text.size();) {
+    if (!begins_path(text, at)) {
+      kept += text[at++];
       continue;
     }
-    const std::size_t end = static_cast<std::size_t>(
-        std::find_if(text.begin() + static_cast<std::ptrdiff_t>(i), text.end(), ends_path) - text.begin());
-    kept += fs::path(text.substr(i, end - i)).filename().string();
-    i = end - 1;
+    const auto [name, end] = name_of_path(text, at);
+    kept += text.substr(name, end - name);
+    at = end;
   }
   return kept;
 }

@@ -21,6 +21,8 @@ TEST(PlanFolders, AMessageKeepsTheNamesOfFilesAndLosesTheirFolders) {
            {"/elsewhere/a/b.stl: not found (/tmp/x/y)", "b.stl: not found (y)"},
            {"1/2 of https://example.org/a, 3 mm / 4 mm and/or less",
             "1/2 of https://example.org/a, 3 mm / 4 mm and/or less"},
+           {"cannot read /other/Roe Ann/a b/x.stl, which is damaged", "cannot read x.stl, which is damaged"},
+           {"'/other/Roe, Ann/x.stl' and /other/Roe Ann/y.stl", "'x.stl' and y.stl"},
            {"no path at all", "no path at all"}})
     EXPECT_EQ(without_folders(said, folders), shown);
 }
